@@ -1,0 +1,12 @@
+# Flags of every target of this project, never of a consumer.
+add_library(bespoke_flags INTERFACE)
+target_compile_features(bespoke_flags INTERFACE cxx_std_20)
+# Contraction would let results differ between the instruction sets that hot loops are compiled for.
+target_compile_options(bespoke_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+if(BESPOKE_WARNINGS_AS_ERRORS)
+  target_compile_options(bespoke_flags INTERFACE -Werror)
+endif()
+if(BESPOKE_SANITIZE)
+  target_compile_options(bespoke_flags INTERFACE -fsanitize=${BESPOKE_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(bespoke_flags INTERFACE -fsanitize=${BESPOKE_SANITIZE})
+endif()

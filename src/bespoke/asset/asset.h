@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bespoke/mapping/mapping.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/statistics.h"
+#include "bespoke/volume/certificate.h"
+#include "bespoke/volume/pyramid.h"
+
+namespace bespoke {
+
+/// One of the two models that a map joins, without its geometry.
+struct ModelRecord {
+  std::string hash;  ///< content_hash of the mesh
+  Box box;           ///< mesh units, own frame
+};
+
+struct AnchorRecord {
+  std::string name;
+  Vector3 a;            ///< mesh units
+  Vector3 b;            ///< mesh units
+  double weight = 0;    ///< infinite = exact
+  double residual = 0;  ///< |Ψ(1)(a) − b|, mesh units
+};
+
+/// What an asset says about its map besides the map itself. No clock, no path, no user.
+struct AssetRecord {
+  std::string unit;                ///< of all lengths, "unknown" when nobody said
+  std::string elastic_method;      ///< for instance "csrbf"
+  std::string surface_fit_method;  ///< for instance "laplacian", "given"
+  double lambda = 0;               ///< effective distance, mesh units
+  double tolerance = 0;            ///< asked of the bake, mesh units
+  Statistics bake_error;           ///< measured, mesh units
+  std::string options_json;        ///< an object: every option that shaped the map
+  std::string stages_json;         ///< an array: what each stage found, without times
+  std::vector<AnchorRecord> anchors;
+  ModelRecord source;
+  ModelRecord target;
+};
+
+/// The grids that are for other programs' eyes: displacement, source_distance, jacobian. Opaque here; made by
+/// make_asset, kept as they are from reading to writing.
+class PreviewGrids;
+
+/// A map as a file holds it, version 1 (DESIGN, "Asset").
+struct Asset {
+  RigidTransform target_from_source;  ///< Γ
+  RotationPath path = RotationPath::geodesic;
+  AffineMap affine;         ///< a₀, A
+  Pyramid pyramid;          ///< u
+  Certificate certificate;  ///< of t = 1, as found when the asset was made
+  AssetRecord record;
+  std::string
+      exact_map;  ///< bytes of the exact E (`--keep-exact`), empty without; the asset does not read them
+  std::shared_ptr<const PreviewGrids> preview;
+};
+
+/// Adds the preview grids for `source` (the reference model, source frame) to everything else that `asset`
+/// already holds. Throws InvalidInput.
+Asset with_preview(Asset asset, const TriangleMesh& source);
+
+}  // namespace bespoke

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// A point on or near the source and its counterpart on the target (q ∈ G_a, q' ∈ G_b). Neither need lie on a
+/// surface.
+struct AnchorPair {
+  std::string name;                                         ///< may be empty
+  Vector3 a;                                                ///< source frame, mesh units
+  Vector3 b;                                                ///< target frame, mesh units
+  double weight = std::numeric_limits<double>::infinity();  ///< > 0, no unit; infinite = met exactly
+};
+
+struct Anchors {
+  std::string unit;  ///< as the file says it, for instance "cm"; empty when it does not
+  std::vector<AnchorPair> pairs;
+};
+
+/// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"?}]} or, by the ending
+/// .csv, rows name,ax,ay,az,bx,by,bz[,weight] with an optional header row. Throws FileError, or FormatError
+/// naming the file and the line or the pair and what is wrong (not finite, weight ≤ 0, missing key, two pairs
+/// of one name).
+Anchors read_anchors(const std::filesystem::path& path);
+
+/// Appends the eight corners of the bounding boxes as exact pairs named "corner_000" … "corner_111" (x, y, z;
+/// Fig. 5).
+void add_box_corners(Anchors& anchors, const Box& source_box, const Box& target_box);
+
+/// 3×n each, and n: the pairs as matrices.
+Points source_points(const Anchors& anchors);
+Points target_points(const Anchors& anchors);
+Eigen::VectorXd weights(const Anchors& anchors);
+
+}  // namespace bespoke

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bespoke/fitting/anchors.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/progress.h"
+#include "bespoke/statistics.h"
+
+namespace bespoke {
+
+enum class SurfaceFitMethod {
+  laplacian,   ///< the paper's (IV.C, Eq. 11–15)
+  multiscale,  ///< a space deformation, coarse to fine
+};
+
+struct SurfaceFitOptions {
+  SurfaceFitMethod method = SurfaceFitMethod::laplacian;
+  int max_iterations = 100;
+  /// ε of the paper: stop when the root mean square of a step falls below this fraction of the source's
+  /// bounding-box diagonal.
+  double epsilon = 1e-5;
+};
+
+enum class StopReason { converged, stagnated, iteration_cap };
+
+struct SurfaceFitSummary {
+  Statistics before;  ///< distance of the warped source's vertices from the target surface, mesh units
+  Statistics after;   ///< the same for the fitted source
+  int iterations = 0;
+  StopReason stop_reason = StopReason::iteration_cap;
+  std::size_t unmatched_vertices =
+      0;  ///< no compatible point in the last iteration: moved by the smoothness term alone
+  double seconds = 0;
+};
+
+/// One line.
+std::string to_string(const SurfaceFitSummary& summary);
+
+/// The source deformed onto the target, with the source's connectivity (H'_a).
+struct SurfaceFit {
+  Points vertices;  ///< 3×n, source frame, mesh units
+  std::vector<double>
+      confidence;  ///< n, in [0, 1]: 0 where a vertex was moved without a counterpart of its own
+  SurfaceFitSummary summary;
+};
+
+/// What the surface fitting works on, all in the source frame, mesh units.
+struct SurfaceFitInput {
+  const TriangleMesh& source;
+  const Points& warped_vertices;          ///< 3×n: the source's vertices after the coarse warp Ẽ
+  const TriangleMesh& target;             ///< H'_b, the target in the source frame
+  const Points& anchor_sources;           ///< 3×k
+  const Points& anchor_targets;           ///< 3×k
+  const Eigen::VectorXd& anchor_weights;  ///< k
+};
+
+/// Throws InvalidInput for unusable meshes or sizes that differ, SolverError when the factorisation fails.
+SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
+                       const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// A point on a surface.
+struct SurfacePoint {
+  Vector3 point;  ///< mesh units
+  int face = 0;
+  Vector3 barycentric;  ///< weights of the face's three vertices, ≥ 0, sum 1
+  double squared_distance = std::numeric_limits<double>::infinity();  ///< from the query
+};
+
+/// Which points of the surface may answer a query.
+struct ClosestPointQuery {
+  double max_distance = std::numeric_limits<double>::infinity();  ///< mesh units
+  /// Only faces whose unit normal n satisfies n · normal > min_cosine answer (the paper's compatible points,
+  /// IV.C: within 90° is min_cosine 0). Without a normal every face answers.
+  std::optional<Vector3> normal;
+  double min_cosine = 0;
+};
+
+/// Bounding-volume tree over the triangles of a mesh; answers exact closest-point queries. Copies what it
+/// needs. Queries are thread-safe and, at equal distance, answer the face of least index. Faces without area
+/// answer too when no normal is asked for.
+class ClosestPointTree {
+ public:
+  /// Throws InvalidInput when the mesh has no faces or non-finite vertices.
+  explicit ClosestPointTree(const TriangleMesh& mesh);
+  ~ClosestPointTree();
+  ClosestPointTree(ClosestPointTree&&) noexcept;
+  ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
+
+  /// Empty when no face satisfies the query.
+  std::optional<SurfacePoint> closest(const Vector3& x, const ClosestPointQuery& query = {}) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<const Tree> tree_;
+};
+
+}  // namespace bespoke

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// What the one-scale system of Eq. 16 would cost; known before anything is factored.
+struct CsrbfEstimate {
+  std::size_t centers = 0;
+  double entries_per_row = 0;      ///< mean number of centres within λ of a centre
+  std::size_t factor_entries = 0;  ///< of the sparse Cholesky factor (symbolic factorisation)
+  std::size_t factor_bytes = 0;
+  double condition = 0;       ///< estimate, grows like (λ/h)⁷ with h the median spacing of the centres
+  double median_spacing = 0;  ///< h, mesh units
+  double advised_lambda = 0;  ///< the largest λ (mesh units) that stays within the limits below
+};
+
+struct CsrbfOptions {
+  double lambda = 0;                              ///< effective distance, > 0, mesh units
+  std::size_t max_memory = std::size_t{4} << 30;  ///< bytes for matrix and factor
+  double max_condition = 1e13;  ///< beyond it the coefficients have no correct digit left to spare
+};
+
+struct CsrbfSummary {
+  CsrbfEstimate estimate;
+  double residual = 0;  ///< max over centres of |E(vᵢ) − v'ᵢ|, mesh units
+  double seconds = 0;
+};
+
+CsrbfEstimate estimate_csrbf(const Points& sources, const CsrbfOptions& options);
+
+/// One line: centres, entries a row, factor size, condition, residual, seconds.
+std::string to_string(const CsrbfSummary& summary);
+
+/// The paper's elastic map (Eq. 16–17): Σ cᵢ φ(|x − vᵢ|/λ) + a₀ + A x with Wendland's C4 function, the affine
+/// tail by the Schur complement of the sparse Cholesky factor.
+class CsrbfMap : public ElasticMap {
+ public:
+  CsrbfMap(Points centers, Points coefficients, AffineMap affine, double lambda);
+
+  AffineMap affine() const override { return affine_; }
+  Points displacement(const Points& x) const override;
+  Points displacement_gradient(const Points& x) const override;
+  Support support() const override;
+
+  const Points& centers() const { return centers_; }            ///< 3×n, mesh units
+  const Points& coefficients() const { return coefficients_; }  ///< 3×n, mesh units
+  double lambda() const { return lambda_; }                     ///< mesh units
+
+ private:
+  class Evaluator;
+  Points centers_;
+  Points coefficients_;
+  AffineMap affine_;
+  double lambda_;
+  std::shared_ptr<const Evaluator> evaluator_;
+};
+
+struct CsrbfFit {
+  std::shared_ptr<const CsrbfMap> map;
+  CsrbfSummary summary;
+};
+
+/// E(sources) = targets (3×n each, mesh units). Throws InvalidInput for duplicate or coplanar sources;
+/// MemoryLimitError or SolverError, with the advised λ in the message, before factoring when the estimate
+/// exceeds a limit.
+CsrbfFit fit_csrbf(const Points& sources, const Points& targets, const CsrbfOptions& options,
+                   const Progress& progress = {});
+
+}  // namespace bespoke

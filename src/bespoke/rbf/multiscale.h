@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+#include "bespoke/statistics.h"
+
+namespace bespoke {
+
+/// One scale: Σ cⱼ φ(|x − zⱼ|/λ).
+struct RbfLayer {
+  double lambda = 0;    ///< support radius, mesh units
+  Points centers;       ///< 3×m, mesh units
+  Points coefficients;  ///< 3×m, mesh units
+};
+
+struct MultiscaleOptions {
+  double lambda = 0;     ///< coarsest support radius: the effective distance, > 0, mesh units
+  double tolerance = 0;  ///< refine where |E(vᵢ) − v'ᵢ| exceeds it, > 0, mesh units
+  bool composed = true;  ///< diffeomorphic: layers are composed and each is bounded by ‖∇u_k‖ < 1 everywhere;
+                         ///< otherwise summed
+  int max_levels = 12;
+};
+
+struct MultiscaleSummary {
+  std::vector<double> lambdas;          ///< mesh units, one per layer
+  std::vector<std::size_t> centers;     ///< one per layer
+  std::vector<double> gradient_bounds;  ///< proved bound of ‖∇u_k‖, one per layer (composed only)
+  Statistics residuals;                 ///< |E(vᵢ) − v'ᵢ|, mesh units
+  std::size_t within_tolerance = 0;     ///< vertices
+  double seconds = 0;
+};
+
+/// One line.
+std::string to_string(const MultiscaleSummary& summary);
+
+/// Residual correction over halved scales (Floater–Iske, Wendland), summed: E = affine + Σ u_k, or composed:
+/// E = (id + u_n)∘…∘(id + u_1)∘affine, which cannot fold.
+class MultiscaleMap : public ElasticMap {
+ public:
+  MultiscaleMap(AffineMap affine, std::vector<RbfLayer> layers, bool composed);
+  ~MultiscaleMap() override;
+
+  AffineMap affine() const override { return affine_; }
+  Points displacement(const Points& x) const override;
+  Points displacement_gradient(const Points& x) const override;
+  Support support() const override;
+
+  const std::vector<RbfLayer>& layers() const { return layers_; }
+  bool composed() const { return composed_; }
+
+ private:
+  struct Evaluators;
+  AffineMap affine_;
+  std::vector<RbfLayer> layers_;
+  bool composed_;
+  std::unique_ptr<const Evaluators> evaluators_;
+};
+
+struct MultiscaleFit {
+  std::shared_ptr<const MultiscaleMap> map;
+  MultiscaleSummary summary;
+};
+
+/// E(sources) ≈ targets, 3×n each, mesh units. Throws InvalidInput, SolverError.
+MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
+                             const Progress& progress = {});
+
+}  // namespace bespoke

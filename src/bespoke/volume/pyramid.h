@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// Coordinates of a leaf in units of leaves: leaf c holds the nodes 8 c … 8 c + 7 of its level along each
+/// axis.
+using LeafCoordinates = std::array<int, 3>;
+
+/// Nodes along an edge of a leaf, and nodes of a leaf. The same leaves as an OpenVDB tree's, so that storing
+/// copies them.
+inline constexpr int leaf_edge = 8;
+inline constexpr int leaf_nodes = leaf_edge * leaf_edge * leaf_edge;
+
+/// One lattice of the pyramid. Node (i, j, k) lies at origin + voxel_size·(i, j, k).
+struct PyramidLevel {
+  double voxel_size = 0;                ///< mesh units
+  std::vector<LeafCoordinates> leaves;  ///< in lexicographic order, each once
+  /// 3·512 floats a leaf, in the leaves' order; node (i, j, k) of a leaf starts at 3·((i·8 + j)·8 + k). Mesh
+  /// units.
+  std::vector<float> values;
+};
+
+/// u as a sum of nested, node-aligned lattices (DESIGN, step 5): node i of a level is node 2 i of the next;
+/// each level is trilinear between its nodes and zero outside its leaves (and the one cell around them); a
+/// leaf below level 0 lies inside a leaf of the level above. The sum is continuous and trilinear in every
+/// finest cell.
+struct Pyramid {
+  Vector3 origin = Vector3::Zero();  ///< mesh units; node (0, 0, 0) of every level
+  std::vector<PyramidLevel> levels;  ///< coarse to fine, voxel_size halved from one to the next
+
+  std::size_t voxel_count() const;  ///< whole leaves, all levels
+  std::size_t byte_count() const;   ///< of values and leaf coordinates
+};
+
+/// Throws InvalidInput, naming the level, unless all of the above holds and every value is finite.
+void require_valid(const Pyramid& pyramid);
+
+}  // namespace bespoke
