@@ -1,0 +1,31 @@
+#include "bespoke/sha256.h"
+
+#include <gtest/gtest.h>
+
+namespace bespoke {
+namespace {
+
+// FIPS 180-4 examples.
+TEST(Sha256, OfTheStandardsExamples) {
+  EXPECT_EQ(sha256("", 0), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256("abc", 3), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Sha256, OfPiecesIsThatOfTheWhole) {
+  Sha256 hash;
+  hash.update("a", 1);
+  hash.update("", 0);
+  hash.update("bc", 2);
+  EXPECT_EQ(hash.finish(), sha256("abc", 3));
+}
+
+TEST(Sha256, StartsAnewAfterFinish) {
+  Sha256 hash;
+  hash.update("x", 1);
+  hash.finish();
+  hash.update("abc", 3);
+  EXPECT_EQ(hash.finish(), sha256("abc", 3));
+}
+
+}  // namespace
+}  // namespace bespoke
