@@ -21,7 +21,7 @@ struct ClosestPointQuery {
   double max_distance = std::numeric_limits<double>::infinity();  ///< mesh units
   /// Only faces whose unit normal n satisfies n · normal > min_cosine answer (the paper's compatible points,
   /// IV.C: within 90° is min_cosine 0). Without a normal every face answers.
-  std::optional<Vector3> normal;
+  std::optional<Vector3> normal = std::nullopt;
   double min_cosine = 0;
 };
 
@@ -36,7 +36,8 @@ class ClosestPointTree {
   ClosestPointTree(ClosestPointTree&&) noexcept;
   ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
 
-  /// Empty when no face satisfies the query.
+  /// Empty when no face satisfies the query. Throws InvalidInput when x is not finite or max_distance is not
+  /// at least 0.
   std::optional<SurfacePoint> closest(const Vector3& x, const ClosestPointQuery& query = {}) const;
 
  private:

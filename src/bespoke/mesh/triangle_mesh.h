@@ -27,13 +27,14 @@ struct MeshFindings {
   std::size_t duplicate_vertices = 0;     ///< at exactly the position of an earlier vertex
 };
 
+/// Throws InvalidInput when a face's index is out of range; the functions below presume it is not.
 MeshFindings inspect_mesh(const TriangleMesh& mesh);
 
 /// One line, for instance "13380 vertices, 26756 faces, 1 component, closed"; names only what is unusual.
 std::string to_string(const MeshFindings& findings);
 
 /// Throws InvalidInput, naming `what` (for instance "source body.obj"), unless the mesh has at least one
-/// face, only finite coordinates, only indices within range, and a positive bounding-box diagonal.
+/// face, only finite coordinates, only indices within range, and a positive, finite bounding-box diagonal.
 void require_valid(const TriangleMesh& mesh, const std::string& what);
 
 /// Axis-aligned bounding box of all columns; empty for no columns.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke::shapes {
+
+/// One face, counter-clockwise in the plane z = 0: (0,0,0), (1,0,0), (0,1,0).
+TriangleMesh triangle();
+
+/// Eight vertices, twelve faces, outward; lower corner at the origin.
+TriangleMesh cube(double edge = 1);
+
+/// Vertices at radius 1 exactly up to rounding; 20·4^levels faces, outward, closed.
+TriangleMesh icosphere(int levels);
+
+/// n×n squares of two triangles each over [0, 1]², normals +z.
+TriangleMesh square_grid(int n);
+
+/// Both meshes as one, b's vertices after a's.
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+
+/// The mesh with all vertices mapped.
+TriangleMesh moved(TriangleMesh mesh, const AffineMap& map);
+
+}  // namespace bespoke::shapes
