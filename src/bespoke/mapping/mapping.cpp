@@ -1,0 +1,37 @@
+#include "bespoke/mapping/mapping.h"
+
+#include <cmath>
+#include <string>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+
+Points move_points(const Points& x, const Points& elastic_image, const RigidTransform& target_from_source,
+                   double t, const MotionOptions& options) {
+  if (x.cols() != elastic_image.cols())
+    throw InvalidInput("mapping of " + std::to_string(x.cols()) + " points with " +
+                       std::to_string(elastic_image.cols()) + " elastic images; the numbers must be equal");
+  if (!std::isfinite(t)) throw InvalidInput("mapping at t = " + std::to_string(t) + ": t must be finite");
+  // Exact at both ends, where the formulas below are only so up to rounding.
+  if (t == 0) return x;
+  if (t == 1) return target_from_source * elastic_image;
+
+  const Vector3 translation = t * target_from_source.translation;
+  switch (options.order) {
+    case MappingOrder::elastic_first: {
+      const Matrix3 rotation = rotation_at(target_from_source.rotation, options.path, t);
+      return (rotation * ((1 - t) * x + t * elastic_image)).colwise() + translation;
+    }
+    case MappingOrder::rigid_first: {
+      const Matrix3 rotation = rotation_at(target_from_source.rotation, options.path, t);
+      const Matrix3 elastic_rotation = t * target_from_source.rotation;
+      return (rotation * x + elastic_rotation * (elastic_image - x)).colwise() + translation;
+    }
+    case MappingOrder::linear:
+      return ((1 - t) * x + t * (target_from_source.rotation * elastic_image)).colwise() + translation;
+  }
+  throw InvalidInput("mapping: unknown order");
+}
+
+}  // namespace bespoke
