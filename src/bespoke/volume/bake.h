@@ -17,6 +17,7 @@ struct BakeOptions {
   std::optional<double> voxel_size;  ///< one uniform level of this size (mesh units) instead of one chosen to
                                      ///< meet the tolerance
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
+  std::size_t error_points = 1'000'000;  ///< random points of the band at which the error is measured
 };
 
 struct BakeLevelSummary {

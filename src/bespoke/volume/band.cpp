@@ -1,0 +1,161 @@
+#include "bespoke/volume/band.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "bespoke/error.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+struct Ball {
+  Vector3 center;  // in the support's frame
+  double radius;
+};
+
+constexpr int largest_leaf = 1 << 24;
+
+Matrix3 inverse_frame(const Support& support) {
+  const Matrix3& linear = support.frame.linear;
+  if (!(linear.allFinite() && support.frame.offset.allFinite()))
+    throw InvalidInput("the frame of the map's support is not finite");
+  const Matrix3 inverse = linear.inverse();
+  // Beyond this the support is a needle along which no lattice makes sense.
+  constexpr double largest_condition = 1e9;
+  if (!(inverse.norm() * linear.norm() < largest_condition))
+    throw InvalidInput("the frame of the map's support is singular (determinant " +
+                       std::to_string(linear.determinant()) + "): the affine part flattens space");
+  return inverse;
+}
+
+std::vector<Ball> balls_of(const Support& support) {
+  std::vector<Ball> balls;
+  for (const BallCloud& cloud : support.clouds) {
+    if (!(cloud.radius >= 0 && std::isfinite(cloud.radius) && cloud.centers.allFinite()))
+      throw InvalidInput("a ball of the map's support is not finite");
+    for (Eigen::Index i = 0; i < cloud.centers.cols(); ++i)
+      balls.push_back({cloud.centers.col(i), cloud.radius});
+  }
+  // Large balls first: they settle most boxes with one test.
+  std::stable_sort(balls.begin(), balls.end(),
+                   [](const Ball& a, const Ball& b) { return a.radius > b.radius; });
+  return balls;
+}
+
+// Descends an octree of boxes of leaves, keeping for each box the balls that its nodes may touch.
+class BandSearch {
+ public:
+  BandSearch(const Support& support, const Lattice& lattice)
+      : frame_(support.frame), lattice_(lattice), box_(bounding_box(support)), balls_(balls_of(support)) {
+    if (!(lattice.voxel_size > 0 && std::isfinite(lattice.voxel_size) && lattice.origin.allFinite()))
+      throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is not positive and finite");
+    if (balls_.empty()) return;
+    const double leaf_size = leaf_edge * lattice.voxel_size;
+    const Vector3 low = (box_.min() - lattice.origin) / leaf_size;
+    const Vector3 high = (box_.max() - lattice.origin) / leaf_size;
+    if (!(low.minCoeff() > -largest_leaf && high.maxCoeff() < largest_leaf))
+      throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is too fine for a band of " +
+                         std::to_string(box_.sizes().maxCoeff()) + " mesh units");
+    while (leaf_size * (1 << depth_) < 2 * balls_.front().radius && depth_ < 20) ++depth_;
+    // One node of slack: a node of the leaf below may touch the box by rounding.
+    const auto root = [&](double leaf) { return static_cast<int>(std::floor(leaf)) >> depth_; };
+    for (int i = root(low.x() - 0.5); i <= root(high.x() + 0.5); ++i)
+      for (int j = root(low.y() - 0.5); j <= root(high.y() + 0.5); ++j)
+        for (int k = root(low.z() - 0.5); k <= root(high.z() + 0.5); ++k) roots_.push_back({i, j, k});
+  }
+
+  std::size_t roots() const { return roots_.size(); }
+
+  // emit(corner, depth): all 8^depth leaves from `corner` · 2^depth on.
+  template <class Emit>
+  void search(std::size_t root, const Emit& emit) const {
+    descend(roots_[root], depth_, balls_, emit);
+  }
+
+ private:
+  template <class Emit>
+  void descend(const LeafCoordinates& at, int depth, const std::vector<Ball>& candidates,
+               const Emit& emit) const {
+    const double half_edge = 0.5 * ((leaf_edge << depth) - 1) * lattice_.voxel_size;
+    const double corner = static_cast<double>(leaf_edge << depth) * lattice_.voxel_size;
+    const Vector3 middle = frame_ * Vector3(lattice_.origin + corner * Vector3(at[0], at[1], at[2]) +
+                                            Vector3::Constant(half_edge));
+    double reach = 0;  // of the box's image around its middle
+    for (int sign = 0; sign < 4; ++sign)
+      reach = std::max(reach, (frame_.linear * Vector3(half_edge, sign & 1 ? half_edge : -half_edge,
+                                                       sign & 2 ? half_edge : -half_edge))
+                                  .norm());
+    reach *= 1 + 1e-12;  // rounding must not lose a leaf that touches
+    std::vector<Ball> touching;
+    for (const Ball& ball : candidates) {
+      const double distance = (middle - ball.center).norm();
+      if (distance + reach <= ball.radius) return emit(at, depth);
+      if (distance - reach <= ball.radius * (1 + 1e-12)) touching.push_back(ball);
+    }
+    if (touching.empty()) return;
+    if (depth == 0) return emit(at, 0);
+    for (int octant = 0; octant < 8; ++octant)
+      descend({2 * at[0] + (octant >> 2 & 1), 2 * at[1] + (octant >> 1 & 1), 2 * at[2] + (octant & 1)},
+              depth - 1, touching, emit);
+  }
+
+  AffineMap frame_;
+  Lattice lattice_;
+  Box box_;
+  std::vector<Ball> balls_;
+  int depth_ = 0;
+  std::vector<LeafCoordinates> roots_;
+};
+
+}  // namespace
+
+std::vector<LeafCoordinates> band_leaves(const Support& support, const Lattice& lattice) {
+  const BandSearch search(support, lattice);
+  std::vector<std::vector<LeafCoordinates>> found(search.roots());
+  parallel_for(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t root = begin; root < end; ++root)
+      search.search(root, [&](const LeafCoordinates& at, int depth) {
+        const int edge = 1 << depth;
+        for (int i = 0; i < edge; ++i)
+          for (int j = 0; j < edge; ++j)
+            for (int k = 0; k < edge; ++k)
+              found[root].push_back({edge * at[0] + i, edge * at[1] + j, edge * at[2] + k});
+      });
+  });
+  std::vector<LeafCoordinates> leaves;
+  for (const auto& part : found) leaves.insert(leaves.end(), part.begin(), part.end());
+  std::sort(leaves.begin(), leaves.end());
+  return leaves;
+}
+
+std::size_t count_band_leaves(const Support& support, const Lattice& lattice) {
+  const BandSearch search(support, lattice);
+  return parallel_reduce(
+      search.roots(), 1, std::size_t{0},
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t count = 0;
+        for (std::size_t root = begin; root < end; ++root)
+          search.search(root,
+                        [&](const LeafCoordinates&, int depth) { count += std::size_t{1} << (3 * depth); });
+        return count;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
+}
+
+Box bounding_box(const Support& support) {
+  Box box;
+  const Matrix3 inverse = inverse_frame(support);
+  for (const BallCloud& cloud : support.clouds)
+    for (Eigen::Index i = 0; i < cloud.centers.cols(); ++i) {
+      const Vector3 center = inverse * (cloud.centers.col(i) - support.frame.offset);
+      const Vector3 reach = cloud.radius * inverse.rowwise().norm();
+      box.extend(Vector3(center - reach));
+      box.extend(Vector3(center + reach));
+    }
+  return box;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+#include "bespoke/volume/band.h"
+#include "bespoke/volume/pyramid.h"
+
+namespace bespoke {
+
+/// What one uniform level would cost and miss; known before any of it is taken.
+struct UniformEstimate {
+  double voxel_size = 0;  ///< mesh units
+  std::size_t leaves = 0;
+  std::size_t bytes = 0;
+  double error = 0;  ///< expected largest trilinear error, mesh units
+};
+
+/// Probes the trilinear error at a few thousand cells of the band.
+UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice);
+
+/// A voxel size whose estimated error meets `tolerance` (> 0, mesh units), found from the error's order 2.
+double uniform_voxel_size(const ElasticMap& map, double tolerance);
+
+/// Throws MemoryLimitError, naming the voxel size and the tolerance that would fit, when `estimate` needs
+/// more than `max_memory` bytes.
+void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std::size_t max_memory);
+
+}  // namespace bespoke
