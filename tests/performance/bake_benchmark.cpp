@@ -19,7 +19,7 @@ void BakeOfACheapMap(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * voxels));
 }
 
-BENCHMARK(BakeOfACheapMap)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BakeOfACheapMap)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace bespoke
