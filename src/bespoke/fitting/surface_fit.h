@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,15 @@ struct SurfaceFitOptions {
   /// ε of the paper: stop when the root mean square of a step falls below this fraction of the source's
   /// bounding-box diagonal.
   double epsilon = 1e-5;
+  /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit: how much smoothness counts against reaching
+  /// the target in one step (laplacian only). 1 is the printed equation. By default it grows with the number
+  /// of vertices, so that displacements spread over the same distance at any resolution.
+  std::optional<double> stiffness;
 };
 
 enum class StopReason { converged, stagnated, iteration_cap };
+
+const char* to_string(StopReason reason);
 
 struct SurfaceFitSummary {
   Statistics before;  ///< distance of the warped source's vertices from the target surface, mesh units
