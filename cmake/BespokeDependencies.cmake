@@ -1,11 +1,16 @@
-# Everything the library links. Order matters: OpenVDB's module directory has a FindTBB of its own that
-# clashes with TBBConfig, so TBB, Eigen and OpenMesh are found before that directory is appended.
-find_package(Threads REQUIRED)
-find_package(TBB CONFIG REQUIRED)
-find_package(Eigen3 3.3 CONFIG REQUIRED)
-find_package(OpenMesh CONFIG REQUIRED)
-find_package(nlohmann_json CONFIG REQUIRED)
-find_package(OpenSSL REQUIRED COMPONENTS Crypto)
-list(APPEND CMAKE_MODULE_PATH
-     "/usr/lib/${CMAKE_CXX_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
-find_package(OpenVDB 8.0 MODULE REQUIRED COMPONENTS openvdb)
+# Everything the library links, for the build and, installed, for consumers of the package. Order matters:
+# OpenVDB's module directory has a FindTBB of its own that clashes with TBBConfig, so TBB, Eigen and OpenMesh
+# are found before that directory is appended.
+include(CMakeFindDependencyMacro)
+find_dependency(Threads)
+find_dependency(TBB CONFIG)
+find_dependency(Eigen3 3.3 CONFIG)
+find_dependency(OpenMesh CONFIG)
+find_dependency(nlohmann_json CONFIG)
+find_dependency(OpenSSL COMPONENTS Crypto)
+list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_CXX_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
+# FindOpenVDB turns BUILD_SHARED_LIBS on for whoever calls it.
+set(bespoke_shared_libs "${BUILD_SHARED_LIBS}")
+find_dependency(OpenVDB 8.0 MODULE COMPONENTS openvdb)
+set(BUILD_SHARED_LIBS "${bespoke_shared_libs}")
+unset(bespoke_shared_libs)

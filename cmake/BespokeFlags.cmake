@@ -3,6 +3,10 @@ add_library(bespoke_flags INTERFACE)
 target_compile_features(bespoke_flags INTERFACE cxx_std_20)
 # Contraction would let results differ between the instruction sets that hot loops are compiled for.
 target_compile_options(bespoke_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # False alarms on `"literal" + std::string` (GCC bug 105329).
+  target_compile_options(bespoke_flags INTERFACE -Wno-restrict)
+endif()
 if(BESPOKE_WARNINGS_AS_ERRORS)
   target_compile_options(bespoke_flags INTERFACE -Werror)
 endif()

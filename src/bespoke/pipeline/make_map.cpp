@@ -1,0 +1,105 @@
+#include "bespoke/pipeline/make_map.h"
+
+#include <chrono>
+#include <utility>
+
+#include "bespoke/fitting/exact_map_io.h"
+#include "bespoke/pipeline/method_names.h"
+#include "bespoke/pipeline/summary_json.h"
+
+namespace bespoke {
+namespace {
+
+std::string options_json(const MakeMapOptions& options, bool given_fitted) {
+  Json json;
+  json["path"] = name_of(rotation_paths, options.path);
+  if (!given_fitted) {
+    json["surface_fit"] = name_of(surface_fit_methods, options.fit.surface_fit.method);
+    json["max_iterations"] = options.fit.surface_fit.max_iterations;
+    json["epsilon"] = options.fit.surface_fit.epsilon;
+  }
+  json["elastic"] = name_of(elastic_methods, options.fit.elastic);
+  json["lambda"] = options.fit.lambda;
+  json["fit_tolerance"] = options.fit.fit_tolerance;
+  json["tolerance"] = options.bake.tolerance;
+  if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;
+  return json.dump();
+}
+
+std::string stages_json(const FittedMapping& fit, const BakeSummary& bake) {
+  Json stages = Json::array();
+  for (const StageReport& stage : fit.stages) {
+    Json entry = {{"name", stage.name}};
+    entry.update(Json::parse(stage.json));
+    stages.push_back(std::move(entry));
+  }
+  Json entry = {{"name", "bake"}};
+  entry.update(to_json(bake));
+  stages.push_back(std::move(entry));
+  return stages.dump();
+}
+
+std::vector<AnchorRecord> anchor_records(const Anchors& anchors, const FittedMapping& fit) {
+  std::vector<AnchorRecord> records;
+  for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
+    const AnchorPair& pair = anchors.pairs[i];
+    records.push_back({pair.name, pair.a, pair.b, pair.weight, fit.anchor_residual[i]});
+  }
+  return records;
+}
+
+AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit,
+                        const BakeSummary& bake) {
+  AssetRecord record;
+  record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
+  record.elastic_method = name_of(elastic_methods, options.fit.elastic);
+  record.surface_fit_method =
+      input.fitted ? "given" : name_of(surface_fit_methods, options.fit.surface_fit.method);
+  record.lambda = options.fit.lambda;
+  record.tolerance = options.bake.tolerance;
+  record.bake_error = bake.error;
+  record.options_json = options_json(options, input.fitted != nullptr);
+  record.stages_json = stages_json(fit, bake);
+  record.anchors = anchor_records(input.anchors, fit);
+  record.source = {content_hash(input.source), bounding_box(input.source.vertices)};
+  record.target = {content_hash(input.target), bounding_box(input.target.vertices)};
+  return record;
+}
+
+}  // namespace
+
+MakeMapOptions default_options(double source_diagonal) {
+  MakeMapOptions options;
+  options.fit.lambda = default_lambda * source_diagonal;
+  options.fit.fit_tolerance = default_fit_tolerance * source_diagonal;
+  options.bake.tolerance = default_tolerance * source_diagonal;
+  return options;
+}
+
+MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const Progress& progress) {
+  MadeMap made;
+  made.fit = input.fitted
+                 ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
+                 : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
+  Bake baked = bake(*made.fit.elastic, options.bake, progress);
+  made.bake = baked.summary;
+
+  Asset& asset = made.asset;
+  asset.target_from_source = made.fit.target_from_source;
+  asset.path = options.path;
+  asset.affine = made.fit.elastic->affine();
+  asset.pyramid = std::move(baked.pyramid);
+  asset.certificate = certify(asset.pyramid, asset.affine, 1, progress);
+  asset.record = make_record(input, options, made.fit, made.bake);
+  if (options.keep_exact)
+    asset.exact_map =
+        write_exact_map(*made.fit.elastic, input.source, made.fit.fitted_vertices, options.fit.lambda);
+
+  progress.check();
+  const auto start = std::chrono::steady_clock::now();
+  asset = with_preview(std::move(asset), input.source);
+  made.preview_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return made;
+}
+
+}  // namespace bespoke

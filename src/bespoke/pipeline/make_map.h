@@ -1,0 +1,43 @@
+#pragma once
+
+#include "bespoke/asset/asset.h"
+#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/volume/bake.h"
+
+namespace bespoke {
+
+/// Default lengths as fractions of the source's bounding-box diagonal.
+inline constexpr double default_lambda = 0.1;
+inline constexpr double default_tolerance = 0.0005;
+inline constexpr double default_fit_tolerance = 0.0001;
+
+struct MakeMapOptions {
+  FitOptions fit;
+  BakeOptions bake;
+  RotationPath path = RotationPath::geodesic;
+  bool keep_exact = false;  ///< store the exact E as well (Asset::exact_map)
+};
+
+/// Options whose lengths are the default fractions above of `source_diagonal` (mesh units).
+MakeMapOptions default_options(double source_diagonal);
+
+struct MakeMapInput {
+  const TriangleMesh& source;
+  const TriangleMesh& target;
+  const Anchors& anchors;
+  /// The source already fitted to the target, target frame, same connectivity: surface fitting is skipped.
+  const TriangleMesh* fitted = nullptr;
+};
+
+struct MadeMap {
+  Asset asset;
+  FittedMapping fit;
+  BakeSummary bake;
+  double preview_seconds = 0;
+};
+
+/// The whole way from two models and their anchors to an asset: fit, bake, certificate, preview grids.
+/// Throws InvalidInput, SolverError, MemoryLimitError, Interrupted.
+MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/mapping/mapping.h"
+
+namespace bespoke {
+
+/// What a value of an enumeration is called on the command line, in assets and in reports.
+template <class Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+
+inline constexpr std::array surface_fit_methods{
+    Named<SurfaceFitMethod>{"laplacian", SurfaceFitMethod::laplacian},
+    Named<SurfaceFitMethod>{"multiscale", SurfaceFitMethod::multiscale}};
+
+inline constexpr std::array elastic_methods{
+    Named<ElasticMethod>{"csrbf", ElasticMethod::csrbf},
+    Named<ElasticMethod>{"multiscale", ElasticMethod::multiscale},
+    Named<ElasticMethod>{"diffeomorphic", ElasticMethod::diffeomorphic},
+    Named<ElasticMethod>{"pffd", ElasticMethod::pffd}};
+
+inline constexpr std::array rotation_paths{Named<RotationPath>{"geodesic", RotationPath::geodesic},
+                                           Named<RotationPath>{"euler", RotationPath::euler}};
+
+inline constexpr std::array mapping_orders{Named<MappingOrder>{"elastic-first", MappingOrder::elastic_first},
+                                           Named<MappingOrder>{"rigid-first", MappingOrder::rigid_first},
+                                           Named<MappingOrder>{"linear", MappingOrder::linear}};
+
+template <class Value, std::size_t size>
+constexpr std::string_view name_of(const std::array<Named<Value>, size>& names, Value value) {
+  for (const Named<Value>& named : names)
+    if (named.value == value) return named.name;
+  return "unknown";
+}
+
+template <class Value, std::size_t size>
+constexpr std::optional<Value> value_of(const std::array<Named<Value>, size>& names, std::string_view name) {
+  for (const Named<Value>& named : names)
+    if (named.name == name) return named.value;
+  return std::nullopt;
+}
+
+}  // namespace bespoke

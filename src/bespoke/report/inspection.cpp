@@ -1,0 +1,129 @@
+#include "bespoke/report/inspection.h"
+
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "bespoke/pipeline/method_names.h"
+#include "bespoke/pipeline/summary_json.h"
+
+namespace bespoke {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string tuple(const Vector3& v) {
+  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+}
+
+std::string rows(const Matrix3& matrix) {
+  std::string text;
+  for (int row = 0; row < 3; ++row) text += (row ? " " : "") + tuple(matrix.row(row).transpose());
+  return text;
+}
+
+std::string model(const ModelRecord& record) {
+  return record.hash.substr(0, 16) + ", box " + tuple(record.box.min()) + " to " + tuple(record.box.max());
+}
+
+Json to_json(const PyramidLevel& level) {
+  return {{"voxel_size", level.voxel_size},
+          {"leaves", level.leaves.size()},
+          {"voxels", level.leaves.size() * leaf_nodes}};
+}
+
+Json to_json(const ModelRecord& record) {
+  return {{"hash", record.hash}, {"box", bespoke::to_json(record.box)}};
+}
+
+Json to_json(const AnchorRecord& anchor) {
+  Json json = {{"name", anchor.name}, {"a", bespoke::to_json(anchor.a)}, {"b", bespoke::to_json(anchor.b)}};
+  if (std::isfinite(anchor.weight)) json["weight"] = anchor.weight;
+  json["residual"] = anchor.residual;
+  return json;
+}
+
+/// The three conditions that make Ψ a bijection of space, each with its value.
+std::string certificate_text(const Certificate& certificate) {
+  std::ostringstream text;
+  if (certificate.is_bijection()) {
+    text << "the map is a bijection of space: it is continuous, det of its gradient is at least "
+         << number(certificate.least_determinant) << " in all " << certificate.certified
+         << " finest cells, and outside them it is affine with det "
+         << number(certificate.affine_determinant);
+  } else {
+    text << "not proved to be a bijection: " << certificate.certified << " cells certified, "
+         << certificate.undecided << " undecided, " << certificate.folded
+         << " folded, det of the affine part " << number(certificate.affine_determinant);
+    if (!certificate.places.empty())
+      text << "; the first of these cells lies at " << tuple(certificate.places.front().center);
+  }
+  return text.str();
+}
+
+}  // namespace
+
+std::string inspection_text(const Asset& asset) {
+  const AssetRecord& record = asset.record;
+  std::ostringstream text;
+  text << "map          points of the source to points of the target, unit " << record.unit << '\n'
+       << "method       surface fitting " << record.surface_fit_method << ", elastic "
+       << record.elastic_method << ", effective distance " << number(record.lambda) << '\n'
+       << "rotation     " << rows(asset.target_from_source.rotation) << ", path "
+       << name_of(rotation_paths, asset.path) << '\n'
+       << "translation  " << tuple(asset.target_from_source.translation) << '\n'
+       << "affine       " << rows(asset.affine.linear) << ", offset " << tuple(asset.affine.offset) << '\n';
+  for (std::size_t k = 0; k < asset.pyramid.levels.size(); ++k) {
+    const PyramidLevel& level = asset.pyramid.levels[k];
+    text << "level " << k << "      voxel size " << number(level.voxel_size) << ", "
+         << level.leaves.size() * leaf_nodes << " voxels in " << level.leaves.size() << " leaves\n";
+  }
+  text << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
+       << number(record.tolerance) << '\n'
+       << "certificate  " << certificate_text(asset.certificate) << '\n'
+       << "source       " << model(record.source) << '\n'
+       << "target       " << model(record.target) << '\n'
+       << "exact map    "
+       << (asset.exact_map.empty() ? "not stored" : std::to_string(asset.exact_map.size()) + " bytes") << '\n'
+       << "anchors      " << record.anchors.size() << '\n';
+  for (const AnchorRecord& anchor : record.anchors)
+    text << "  " << (anchor.name.empty() ? "(no name)" : anchor.name) << "  residual "
+         << number(anchor.residual) << '\n';
+  return text.str();
+}
+
+std::string inspection_json(const Asset& asset) {
+  const AssetRecord& record = asset.record;
+  Json levels = Json::array();
+  for (const PyramidLevel& level : asset.pyramid.levels) levels.push_back(to_json(level));
+  Json anchors = Json::array();
+  for (const AnchorRecord& anchor : record.anchors) anchors.push_back(to_json(anchor));
+  const Json json = {{"direction", "maps points of the source to points of the target"},
+                     {"unit", record.unit},
+                     {"rotation", bespoke::to_json(asset.target_from_source.rotation)},
+                     {"translation", bespoke::to_json(asset.target_from_source.translation)},
+                     {"path", name_of(rotation_paths, asset.path)},
+                     {"affine_linear", bespoke::to_json(asset.affine.linear)},
+                     {"affine_offset", bespoke::to_json(asset.affine.offset)},
+                     {"surface_fit", record.surface_fit_method},
+                     {"elastic", record.elastic_method},
+                     {"lambda", record.lambda},
+                     {"tolerance", record.tolerance},
+                     {"bake_error", bespoke::to_json(record.bake_error)},
+                     {"voxels", asset.pyramid.voxel_count()},
+                     {"levels", std::move(levels)},
+                     {"certificate", bespoke::to_json(asset.certificate)},
+                     {"exact_map_bytes", asset.exact_map.size()},
+                     {"source", to_json(record.source)},
+                     {"target", to_json(record.target)},
+                     {"anchors", std::move(anchors)},
+                     {"options", Json::parse(record.options_json)},
+                     {"stages", Json::parse(record.stages_json)}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace bespoke

@@ -1,0 +1,70 @@
+#include "bespoke/report/report.h"
+
+#include <sys/resource.h>
+
+#include "bespoke/pipeline/summary_json.h"
+
+namespace bespoke {
+namespace {
+
+Json stage(const std::string& name, double seconds, const Json& found) {
+  Json json = {{"name", name}, {"seconds", seconds}};
+  json.update(found);
+  return json;
+}
+
+Json model(const TriangleMesh& mesh) {
+  Json json = {{"diagonal", diagonal(mesh.vertices)}};
+  json.update(to_json(inspect_mesh(mesh)));
+  return json;
+}
+
+}  // namespace
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
+}
+
+std::string fit_report(const MakeMapInput& input, const MadeMap& made, double seconds) {
+  Json stages = Json::array();
+  for (const StageReport& found : made.fit.stages)
+    stages.push_back(stage(found.name, found.seconds, Json::parse(found.json)));
+  const Certificate& certificate = made.asset.certificate;
+  stages.push_back(stage("bake", made.bake.seconds, to_json(made.bake)));
+  stages.push_back(stage("certificate", certificate.seconds, to_json(certificate)));
+  stages.push_back(stage("preview", made.preview_seconds, Json::object()));
+
+  const Json json = {{"command", "fit"},
+                     {"unit", made.asset.record.unit},
+                     {"source", model(input.source)},
+                     {"target", model(input.target)},
+                     {"options", Json::parse(made.asset.record.options_json)},
+                     {"anchor_residuals", to_json(made.fit.anchor_residuals)},
+                     {"vertex_residuals", to_json(made.fit.vertex_residuals)},
+                     {"stages", std::move(stages)},
+                     {"voxels", made.asset.pyramid.voxel_count()},
+                     {"seconds", seconds},
+                     {"peak_memory", peak_memory()}};
+  return json.dump(2) + "\n";
+}
+
+std::string apply_report(const std::vector<AppliedProduct>& products, const std::vector<double>& times,
+                         double seconds) {
+  Json entries = Json::array();
+  for (const AppliedProduct& product : products)
+    entries.push_back({{"name", product.name},
+                       {"points", product.summary.points},
+                       {"in_band", product.summary.in_band},
+                       {"affine_only", product.summary.affine_only},
+                       {"seconds", product.summary.seconds}});
+  const Json json = {{"command", "apply"},
+                     {"times", times},
+                     {"products", std::move(entries)},
+                     {"seconds", seconds},
+                     {"peak_memory", peak_memory()}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace bespoke

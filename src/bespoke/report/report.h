@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bespoke/apply/apply_mapping.h"
+#include "bespoke/pipeline/make_map.h"
+
+namespace bespoke {
+
+/// Largest resident memory of this process so far, bytes.
+std::size_t peak_memory();
+
+/// How a map came to be, as a JSON object: models, options, per stage its residuals, iterations, stop reason
+/// and seconds, counts, peak memory.
+std::string fit_report(const MakeMapInput& input, const MadeMap& made, double seconds);
+
+struct AppliedProduct {
+  std::string name;  ///< of the file, without its directory
+  ApplySummary summary;
+};
+
+/// What was applied at which times, as a JSON object.
+std::string apply_report(const std::vector<AppliedProduct>& products, const std::vector<double>& times,
+                         double seconds);
+
+}  // namespace bespoke
