@@ -1,0 +1,193 @@
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/fitting/exact_map_io.h"
+#include "bespoke/mesh/product_io.h"
+#include "bespoke/report/report.h"
+#include "bespoke/volume/baked_map.h"
+#include "commands.h"
+#include "name_option.h"
+#include "output_files.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ApplyArguments {
+  std::string map;
+  std::vector<std::string> products;
+  std::string output;
+  std::string out_dir;
+  std::string report;
+  double t = 1;
+  std::optional<int> frames;
+  std::optional<RotationPath> path;
+  std::optional<MappingOrder> order;
+  bool exact = false;
+  bool untrusted = false;
+  RunOptions run;
+};
+
+/// OUT.obj itself, or OUT_000.obj … OUT_NNN.obj with --frames.
+std::vector<fs::path> frame_paths(const fs::path& path, std::optional<int> frames) {
+  if (!frames) return {path};
+  const int digits = std::max<int>(3, static_cast<int>(std::to_string(*frames).size()));
+  std::vector<fs::path> paths;
+  for (int k = 0; k <= *frames; ++k) {
+    std::string number = std::to_string(k);
+    number.insert(0, static_cast<std::size_t>(digits) - number.size(), '0');
+    fs::path frame = path;
+    frame.replace_filename(path.stem().string() + "_" + number + path.extension().string());
+    paths.push_back(std::move(frame));
+  }
+  return paths;
+}
+
+/// One list of frames a product.
+std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments) {
+  if (arguments.output.empty() == arguments.out_dir.empty())
+    throw CLI::ValidationError("apply", "give either -o OUT or --out-dir DIR");
+  if (!arguments.output.empty() && arguments.products.size() > 1)
+    throw CLI::ValidationError("-o", "takes one product, but " + std::to_string(arguments.products.size()) +
+                                         " are given; use --out-dir DIR");
+  std::vector<std::vector<fs::path>> plan;
+  std::vector<fs::path> outputs;
+  for (const std::string& product : arguments.products) {
+    const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
+                                                   : fs::path(arguments.output);
+    require_mesh_ending("apply", path);
+    plan.push_back(frame_paths(path, arguments.frames));
+    outputs.insert(outputs.end(), plan.back().begin(), plan.back().end());
+  }
+  if (!arguments.report.empty()) outputs.emplace_back(arguments.report);
+  std::vector<fs::path> inputs(arguments.products.begin(), arguments.products.end());
+  inputs.emplace_back(arguments.map);
+  require_safe_outputs(inputs, outputs);
+  return plan;
+}
+
+std::vector<double> times(const ApplyArguments& arguments) {
+  if (!arguments.frames) return {arguments.t};
+  std::vector<double> times;
+  for (int k = 0; k <= *arguments.frames; ++k) times.push_back(static_cast<double>(k) / *arguments.frames);
+  return times;
+}
+
+std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
+  if (!arguments.exact) return std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
+  if (asset.exact_map.empty())
+    throw InvalidInput(arguments.map + ": holds no exact map; make it with `bespoke fit --keep-exact`");
+  try {
+    return read_exact_map(asset.exact_map);
+  } catch (const FormatError& error) {
+    throw FormatError(arguments.map + ": " + error.what());
+  }
+}
+
+/// Throws InvalidInput, with the product's name, for products that cannot be moved.
+AppliedPoints apply_to(const std::string& name, const Product& product, const ElasticMap& elastic,
+                       const Asset& asset, const std::vector<double>& times, const MotionOptions& motion) {
+  if (product.vertices.cols() == 0) throw InvalidInput(name + ": has no vertices");
+  try {
+    return apply_mapping(elastic, asset.target_from_source, product.vertices, times, motion);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(name + ": " + error.what());
+  }
+}
+
+void run(const ApplyArguments& arguments, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  if (!arguments.out_dir.empty()) fs::create_directories(arguments.out_dir);
+  const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
+  Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
+  const std::shared_ptr<const ElasticMap> elastic = elastic_map(arguments, asset);
+  const MotionOptions motion{arguments.path.value_or(asset.path),
+                             arguments.order.value_or(MappingOrder::elastic_first)};
+
+  OutputFiles outputs;
+  std::vector<AppliedProduct> applied;
+  for (std::size_t i = 0; i < arguments.products.size(); ++i) {
+    progress.step("apply", i, arguments.products.size());
+    Product product = read_product(arguments.products[i]);
+    AppliedPoints moved = apply_to(arguments.products[i], product, *elastic, asset, times(arguments), motion);
+    for (std::size_t k = 0; k < plan[i].size(); ++k) {
+      progress.check();
+      product.vertices = std::move(moved.frames[k]);
+      outputs.write(plan[i][k], [&](const fs::path& path) { write_product(path, product); });
+    }
+    applied.push_back({fs::path(arguments.products[i]).filename().string(), moved.summary});
+  }
+  progress.step("apply", arguments.products.size(), arguments.products.size());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!arguments.report.empty())
+    outputs.write_text(arguments.report, apply_report(applied, times(arguments), seconds));
+  outputs.keep();
+
+  if (arguments.run.quiet) return;
+  for (std::size_t i = 0; i < applied.size(); ++i)
+    std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary).c_str());
+}
+
+CLI::Validator finite_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        const bool holds = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+        return holds ? std::string() : "'" + text + "' is not a finite number";
+      },
+      "");
+}
+
+}  // namespace
+
+void add_apply_command(CLI::App& app) {
+  auto arguments = std::make_shared<ApplyArguments>();
+  CLI::App* apply = app.add_subcommand("apply", "Carry products across a map");
+  apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
+  apply
+      ->add_option("PRODUCT", arguments->products,
+                   "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+      ->required();
+  apply->add_option("-o,--output", arguments->output, "File to write, for one product")->type_name("OUT");
+  apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")
+      ->type_name("DIR");
+  CLI::Option* t = apply
+                       ->add_option("--t", arguments->t,
+                                    "How far the map goes: 0 is the source, 1 the target (default: 1)")
+                       ->check(finite_number())
+                       ->type_name("T");
+  apply
+      ->add_option("--frames", arguments->frames,
+                   "Write N+1 files for t = 0, 1/N, …, 1, from one lookup: OUT_000.obj, OUT_001.obj, …")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("N")
+      ->excludes(t);
+  add_name_option(*apply, "--path", arguments->path, rotation_paths,
+                  "How the rotation grows with t (default: as stored in the asset)");
+  add_name_option(*apply, "--order", arguments->order, mapping_orders,
+                  "In which order the rigid and the elastic part act; the last two are for comparison "
+                  "(default: elastic-first)");
+  apply->add_flag("--exact", arguments->exact,
+                  "Evaluate the exact map that --keep-exact stored, not the grids");
+  apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
+      ->type_name("FILE");
+  apply->add_flag("--untrusted", arguments->untrusted,
+                  "Check the asset in a child process under limits first");
+  add_run_options(*apply, arguments->run);
+  apply->footer(
+      "Examples:\n"
+      "  bespoke apply map.vdb dress.obj -o dress_on_man.obj\n"
+      "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
+      "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24");
+  apply->callback([arguments] {
+    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  });
+}
+
+}  // namespace bespoke::command

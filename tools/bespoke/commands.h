@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace bespoke::command {
+
+/// Each adds one subcommand, which runs while the arguments are parsed.
+void add_fit_command(CLI::App& app);
+void add_apply_command(CLI::App& app);
+void add_info_command(CLI::App& app);
+void add_samples_command(CLI::App& app);
+
+}  // namespace bespoke::command

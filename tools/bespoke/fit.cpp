@@ -1,0 +1,219 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/pipeline/make_map.h"
+#include "bespoke/report/report.h"
+#include "commands.h"
+#include "length_option.h"
+#include "name_option.h"
+#include "output_files.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+namespace {
+
+struct FitArguments {
+  std::string source;
+  std::string target;
+  std::string anchors;
+  std::string output;
+  std::string fitted;
+  std::string fitted_out;
+  std::string report;
+  std::optional<SurfaceFitMethod> surface_fit;
+  std::optional<ElasticMethod> elastic;
+  std::optional<RotationPath> path;
+  std::optional<Length> lambda;
+  std::optional<Length> tolerance;
+  std::optional<Length> fit_tolerance;
+  std::optional<Length> voxel_size;
+  std::optional<std::uint64_t> max_memory;
+  bool keep_exact = false;
+  bool add_corners = false;
+  bool paper = false;
+  RunOptions run;
+};
+
+void require_consistent(const FitArguments& arguments) {
+  if (arguments.anchors.empty() && arguments.fitted.empty())
+    throw CLI::ValidationError("--anchors", "is required unless --fitted gives the fitted source");
+  if (arguments.add_corners && arguments.anchors.empty())
+    throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
+  std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
+  std::vector<std::filesystem::path> outputs{arguments.output};
+  for (const std::string* input : {&arguments.anchors, &arguments.fitted})
+    if (!input->empty()) inputs.emplace_back(*input);
+  for (const std::string* output : {&arguments.fitted_out, &arguments.report})
+    if (!output->empty()) outputs.emplace_back(*output);
+  if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
+  require_safe_outputs(inputs, outputs);
+}
+
+MakeMapOptions make_options(const FitArguments& arguments, double source_diagonal) {
+  MakeMapOptions options = default_options(source_diagonal);
+  if (arguments.paper) {
+    options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
+    options.fit.elastic = ElasticMethod::csrbf;
+    options.path = RotationPath::euler;
+  }
+  if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
+  if (arguments.elastic) options.fit.elastic = *arguments.elastic;
+  if (arguments.path) options.path = *arguments.path;
+  if (arguments.lambda) options.fit.lambda = arguments.lambda->in_mesh_units(source_diagonal);
+  if (arguments.fit_tolerance)
+    options.fit.fit_tolerance = arguments.fit_tolerance->in_mesh_units(source_diagonal);
+  if (arguments.tolerance) options.bake.tolerance = arguments.tolerance->in_mesh_units(source_diagonal);
+  if (arguments.voxel_size) options.bake.voxel_size = arguments.voxel_size->in_mesh_units(source_diagonal);
+  if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
+  options.keep_exact = arguments.keep_exact;
+  return options;
+}
+
+TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
+  TriangleMesh mesh = read_triangle_mesh(path);
+  require_valid(mesh, role + " " + path);
+  if (!quiet) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
+  return mesh;
+}
+
+void print_stages(const MadeMap& made) {
+  for (const StageReport& stage : made.fit.stages)
+    std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
+  std::printf("%-12s %s\n", "bake", to_string(made.bake).c_str());
+  std::printf("%-12s %s\n", "certificate", to_string(made.asset.certificate).c_str());
+  std::printf("%-12s %s\n", "anchors", to_string(made.fit.anchor_residuals).c_str());
+  std::printf("%-12s %s\n", "vertices", to_string(made.fit.vertex_residuals).c_str());
+}
+
+void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
+                              const MadeMap& made) {
+  if (made.bake.tolerance_met) return;
+  std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
+               made.bake.error.max, options.bake.tolerance,
+               arguments.voxel_size ? "a smaller --voxel-size lowers it"
+                                    : "a larger --max-memory allows smaller voxels");
+}
+
+void run(const FitArguments& arguments, const Progress& progress) {
+  require_consistent(arguments);
+  const auto start = std::chrono::steady_clock::now();
+  const bool quiet = arguments.run.quiet;
+  const TriangleMesh source = read_model("source", arguments.source, quiet);
+  const TriangleMesh target = read_model("target", arguments.target, quiet);
+  std::optional<TriangleMesh> fitted;
+  if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
+  Anchors anchors;
+  if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  if (arguments.add_corners)
+    add_box_corners(anchors, bounding_box(source.vertices), bounding_box(target.vertices));
+
+  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
+  const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
+  const MadeMap made = make_map(input, options, progress);
+  progress.check();
+
+  OutputFiles outputs;
+  outputs.write(arguments.output, [&](const auto& path) { write_asset(path, made.asset); });
+  if (!arguments.fitted_out.empty())
+    outputs.write(arguments.fitted_out, [&](const auto& path) {
+      write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces});
+    });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!arguments.report.empty()) outputs.write_text(arguments.report, fit_report(input, made, seconds));
+  outputs.keep();
+
+  warn_of_missed_tolerance(arguments, options, made);
+  if (quiet) return;
+  print_stages(made);
+  std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
+}
+
+void add_method_options(CLI::App& fit, FitArguments& arguments) {
+  const MakeMapOptions defaults = default_options(1);
+  const auto with_default = [](const std::string& text, std::string_view value) {
+    return text + " (default: " + std::string(value) + ")";
+  };
+  CLI::Option* surface_fit =
+      add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fit_methods,
+                      with_default("How the source is laid onto the target",
+                                   name_of(surface_fit_methods, defaults.fit.surface_fit.method)));
+  CLI::Option* elastic = add_name_option(
+      fit, "--elastic", arguments.elastic, elastic_methods,
+      with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
+  CLI::Option* path = add_name_option(fit, "--path", arguments.path, rotation_paths,
+                                      with_default("How the rotation grows with t; stored in the asset",
+                                                   name_of(rotation_paths, defaults.path)));
+  fit.add_flag("--paper", arguments.paper,
+               "The printed method: --surface-fit laplacian --elastic csrbf --path euler")
+      ->excludes(surface_fit, elastic, path);
+  fit.add_flag("--add-corners", arguments.add_corners,
+               "Add the eight corners of the two bounding boxes as anchor pairs");
+}
+
+void add_length_options(CLI::App& fit, FitArguments& arguments) {
+  const auto defaulted = [](const std::string& text, double fraction) {
+    return text +
+           ", mesh units or % of the source's bounding-box diagonal (default: " + percentage(fraction) + ")";
+  };
+  add_length_option(
+      fit, "--lambda", arguments.lambda,
+      defaulted("Effective distance: how far from the source the elastic part reaches", default_lambda));
+  add_length_option(fit, "--tolerance", arguments.tolerance,
+                    defaulted("Largest difference between the baked and the exact map", default_tolerance));
+  add_length_option(fit, "--fit-tolerance", arguments.fit_tolerance,
+                    defaulted("The multiscale and diffeomorphic maps refine where the fit is missed by more",
+                              default_fit_tolerance));
+  add_length_option(
+      fit, "--voxel-size", arguments.voxel_size,
+      "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: chosen to "
+      "meet --tolerance)");
+}
+
+void add_file_options(CLI::App& fit, FitArguments& arguments) {
+  fit.add_option("SOURCE", arguments.source,
+                 "Reference model that products are designed around: OBJ, PLY, STL, OFF")
+      ->required();
+  fit.add_option("TARGET", arguments.target, "Reference model that products shall fit")->required();
+  fit.add_option("--anchors", arguments.anchors, "Pairs of corresponding points, JSON or CSV")
+      ->type_name("FILE");
+  fit.add_option("-o,--output", arguments.output, "Asset to write")->required()->type_name("MAP.vdb");
+  fit.add_option("--fitted", arguments.fitted,
+                 "The source already laid onto the target (same connectivity); skips surface fitting")
+      ->type_name("MESH");
+  fit.add_option("--fitted-out", arguments.fitted_out, "Write the source as laid onto the target")
+      ->type_name("MESH");
+  fit.add_flag("--keep-exact", arguments.keep_exact,
+               "Store in the asset what `apply --exact` needs to evaluate the map without the grids");
+  fit.add_option("--report", arguments.report,
+                 "Write residuals, iterations, seconds, counts and memory as JSON")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
+void add_fit_command(CLI::App& app) {
+  auto arguments = std::make_shared<FitArguments>();
+  CLI::App* fit = app.add_subcommand("fit", "Compute the map between two reference models and store it");
+  add_file_options(*fit, *arguments);
+  add_method_options(*fit, *arguments);
+  add_length_options(*fit, *arguments);
+  fit->add_option("--max-memory", arguments->max_memory,
+                  "Bytes that a stage may take, for instance 4GiB (default: 8GiB)")
+      ->transform(CLI::AsSizeValue(false))
+      ->type_name("BYTES");
+  add_run_options(*fit, arguments->run);
+  fit->footer(
+      "Examples:\n"
+      "  bespoke fit woman.obj man.obj --anchors pairs.json -o map.vdb\n"
+      "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --paper --lambda 5%\n"
+      "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb --report report.json");
+  fit->callback([arguments] {
+    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  });
+}
+
+}  // namespace bespoke::command

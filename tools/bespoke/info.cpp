@@ -1,0 +1,37 @@
+#include <iostream>
+#include <memory>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/report/inspection.h"
+#include "commands.h"
+
+namespace bespoke::command {
+namespace {
+
+struct InfoArguments {
+  std::string map;
+  bool json = false;
+  bool untrusted = false;
+};
+
+void run(const InfoArguments& arguments) {
+  const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
+  std::cout << (arguments.json ? inspection_json(asset) : inspection_text(asset));
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+  auto arguments = std::make_shared<InfoArguments>();
+  CLI::App* info = app.add_subcommand("info", "Say what an asset holds and what is proved about it");
+  info->add_option("MAP", arguments->map, "Asset, .vdb")->required();
+  info->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
+  info->add_flag("--untrusted", arguments->untrusted, "Check the file in a child process under limits first");
+  info->footer(
+      "Examples:\n"
+      "  bespoke info map.vdb\n"
+      "  bespoke info map.vdb --json | jq .certificate");
+  info->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace bespoke::command

@@ -1,0 +1,36 @@
+#include "length_option.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+namespace bespoke::command {
+
+Length parse_length(const std::string& option, const std::string& text) {
+  Length length;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, length.value);
+  length.percent = stop != end && *stop == '%';
+  const bool complete = error == std::errc() && stop + length.percent == end;
+  if (!(complete && length.value > 0 && std::isfinite(length.value)))
+    throw CLI::ValidationError(option, "'" + text +
+                                           "' is not a positive length; write mesh units (0.02) or a "
+                                           "percentage of the source's bounding-box diagonal (10%)");
+  return length;
+}
+
+std::string percentage(double fraction) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g%%", fraction * 100);
+  return text;
+}
+
+CLI::Option* add_length_option(CLI::App& app, const std::string& name, std::optional<Length>& length,
+                               const std::string& description) {
+  return app
+      .add_option_function<std::string>(
+          name, [name, &length](const std::string& text) { length = parse_length(name, text); }, description)
+      ->type_name("LENGTH");
+}
+
+}  // namespace bespoke::command

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace bespoke::command {
+
+/// A length as the user gives it: mesh units, or a percentage of the source's bounding-box diagonal.
+struct Length {
+  double value = 0;
+  bool percent = false;
+
+  double in_mesh_units(double source_diagonal) const {
+    return percent ? value / 100 * source_diagonal : value;
+  }
+};
+
+/// "0.02" or "10%"; finite and positive. Throws CLI::ValidationError naming `option` and the text.
+Length parse_length(const std::string& option, const std::string& text);
+
+/// A fraction of the diagonal as the user would write it, for instance "10%".
+std::string percentage(double fraction);
+
+/// Adds an option that holds a length; `description` ends with what the default is.
+CLI::Option* add_length_option(CLI::App& app, const std::string& name, std::optional<Length>& length,
+                               const std::string& description);
+
+}  // namespace bespoke::command

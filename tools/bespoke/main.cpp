@@ -1,0 +1,31 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "interruption.h"
+
+int main(int argc, char** argv) {
+  using namespace bespoke::command;
+  CLI::App app{"Maps the space around one model onto the space around another, and carries products across."};
+  app.name("bespoke");
+  app.set_version_flag("--version", BESPOKE_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit codes: 0 done, 1 wrong arguments, 2 bad input, 3 the fit did not succeed,\n"
+      "4 file or memory trouble, 130 or 143 interrupted.\n\n"
+      "bespoke SUBCOMMAND --help explains a subcommand with examples.");
+  add_fit_command(app);
+  add_apply_command(app);
+  add_info_command(app);
+  add_samples_command(app);
+
+  remember_interruptions();
+  return exit_code_of([&] {
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::Success& request) {
+      app.exit(request);  // --help and --version print and are done
+    }
+  });
+}

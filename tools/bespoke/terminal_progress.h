@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "bespoke/progress.h"
+
+namespace bespoke::command {
+
+/// Shows on standard error where a long run is: one bar a stage with the time left when that is a terminal,
+/// else one line at the start of each stage and one every ten seconds. Also what makes an interruption reach
+/// the library. One thread.
+class TerminalProgress {
+ public:
+  explicit TerminalProgress(bool quiet);
+  ~TerminalProgress();
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+  /// Refers to this object.
+  Progress progress();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void show(std::string_view stage, std::size_t done, std::size_t total);
+  void draw_bar(std::size_t done, std::size_t total, double seconds);
+  void print_line(std::size_t done, std::size_t total, double seconds);
+  void end_bar();
+
+  bool quiet_;
+  bool terminal_;
+  bool bar_open_ = false;
+  std::string stage_;
+  Clock::time_point stage_start_;
+  Clock::time_point last_shown_;
+};
+
+}  // namespace bespoke::command
