@@ -58,6 +58,10 @@ struct Asset {
   std::shared_ptr<const PreviewGrids> preview;
 };
 
+/// Throws InvalidInput, naming what is wrong, unless R is a rotation, every number is finite and within its
+/// range, the boxes are not empty and the pyramid is valid.
+void require_valid(const Asset& asset);
+
 /// Adds the preview grids for `source` (the reference model, source frame) to everything else that `asset`
 /// already holds. Throws InvalidInput.
 Asset with_preview(Asset asset, const TriangleMesh& source);

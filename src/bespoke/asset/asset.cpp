@@ -1,0 +1,79 @@
+#include "bespoke/asset/asset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bespoke/asset/preview.h"
+#include "bespoke/error.h"
+#include "bespoke/volume/baked_map.h"
+
+namespace bespoke {
+namespace {
+
+// Far above the rounding of any way to a rotation matrix, far below any rotation that is meant.
+constexpr double rotation_tolerance = 1e-9;
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw InvalidInput(what);
+}
+
+void require_magnitude(double value, const char* what) {
+  require(std::isfinite(value) && value >= 0, std::string(what) + " is " + std::to_string(value));
+}
+
+void require_valid(const RigidTransform& rigid) {
+  require(rigid.rotation.allFinite() && rigid.translation.allFinite(), "the rigid part is not finite");
+  const double error = (rigid.rotation * rigid.rotation.transpose() - Matrix3::Identity()).norm();
+  require(error < rotation_tolerance && rigid.rotation.determinant() > 0,
+          "R is not a rotation: |R Rt - I| = " + std::to_string(error));
+}
+
+void require_valid(const ModelRecord& model, const std::string& what) {
+  require(model.box.min().allFinite() && model.box.max().allFinite() && !model.box.isEmpty(),
+          what + " bounding box is empty or not finite");
+}
+
+void require_valid(const AssetRecord& record) {
+  require_magnitude(record.lambda, "lambda");
+  require_magnitude(record.tolerance, "tolerance");
+  for (const double value : {record.bake_error.min, record.bake_error.median, record.bake_error.p95,
+                             record.bake_error.p99, record.bake_error.max})
+    require_magnitude(value, "bake error");
+  for (const AnchorRecord& anchor : record.anchors) {
+    require(anchor.a.allFinite() && anchor.b.allFinite(), "anchor " + anchor.name + " is not finite");
+    require(anchor.weight > 0, "anchor " + anchor.name + " has weight " + std::to_string(anchor.weight));
+    require_magnitude(anchor.residual, "anchor residual");
+  }
+  require_valid(record.source, "source");
+  require_valid(record.target, "target");
+}
+
+}  // namespace
+
+void require_valid(const Asset& asset) {
+  require_valid(asset.target_from_source);
+  require(asset.affine.linear.allFinite() && asset.affine.offset.allFinite(),
+          "the affine part is not finite");
+  require_valid(asset.pyramid);
+  require(std::isfinite(asset.certificate.least_determinant) &&
+              std::isfinite(asset.certificate.affine_determinant),
+          "the certificate's determinants are not finite");
+  require_valid(asset.record);
+}
+
+Asset with_preview(Asset asset, const TriangleMesh& source) {
+  require_valid(source, "source");
+  require_valid(asset);
+  const BakedMap baked(asset.affine, asset.pyramid);
+  StoredGrid displacement = displacement_preview(asset, baked, bounding_box(source.vertices));
+  StoredGrid jacobian = jacobian_preview(baked, displacement);
+  std::vector<StoredGrid> grids;
+  grids.push_back(std::move(displacement));
+  grids.push_back(source_distance_preview(source));
+  grids.push_back(std::move(jacobian));
+  asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
+  return asset;
+}
+
+}  // namespace bespoke

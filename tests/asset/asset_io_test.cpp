@@ -1,0 +1,196 @@
+#include "bespoke/asset/asset_io.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <bit>
+#include <functional>
+
+#include "asset/small_asset.h"
+#include "bespoke/asset/grid_conversion.h"
+#include "bespoke/asset/record_json.h"
+#include "bespoke/asset/trailer.h"
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class AssetIo : public testing::Test {
+ protected:
+  test::ScratchDirectory directory_;
+
+  std::string written(const Asset& asset) {
+    write_asset(directory_ / "map.vdb", asset);
+    return test::bytes_of(directory_ / "map.vdb");
+  }
+  Asset read_bytes(const std::string& bytes, bool untrusted = false) {
+    test::write_bytes(directory_ / "read.vdb", bytes);
+    return read_asset(directory_ / "read.vdb", {.untrusted = untrusted});
+  }
+};
+
+void expect_same(const Asset& a, const Asset& b) {
+  EXPECT_EQ(a.target_from_source.rotation, b.target_from_source.rotation);
+  EXPECT_EQ(a.target_from_source.translation, b.target_from_source.translation);
+  EXPECT_EQ(a.affine.linear, b.affine.linear);
+  EXPECT_EQ(a.affine.offset, b.affine.offset);
+  EXPECT_EQ(a.path, b.path);
+  EXPECT_EQ(a.pyramid.origin, b.pyramid.origin);
+  ASSERT_EQ(a.pyramid.levels.size(), b.pyramid.levels.size());
+  for (std::size_t i = 0; i < a.pyramid.levels.size(); ++i) {
+    EXPECT_EQ(a.pyramid.levels[i].voxel_size, b.pyramid.levels[i].voxel_size);
+    EXPECT_EQ(a.pyramid.levels[i].leaves, b.pyramid.levels[i].leaves);
+    EXPECT_EQ(a.pyramid.levels[i].values, b.pyramid.levels[i].values);
+  }
+  EXPECT_EQ(record_json(a), record_json(b));
+  EXPECT_EQ(a.exact_map, b.exact_map);
+}
+
+TEST_F(AssetIo, ReadsBackWhatWasWritten) {
+  Asset asset = test::tiny_asset();
+  asset.path = RotationPath::euler;
+  asset.exact_map = std::string("any\0bytes", 9);
+  const std::string bytes = written(asset);
+  expect_same(read_bytes(bytes), asset);
+  expect_same(read_bytes(bytes, /*untrusted=*/true), asset);
+}
+
+TEST_F(AssetIo, KeepsTheSignOfZeroAndDenormals) {
+  Asset asset = test::tiny_asset();
+  asset.pyramid.levels[0].values[0] = -0.0f;
+  asset.pyramid.levels[0].values[1] = std::numeric_limits<float>::denorm_min();
+  const Asset read = read_bytes(written(asset));
+  for (std::size_t i = 0; i < asset.pyramid.levels[0].values.size(); ++i)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(read.pyramid.levels[0].values[i]),
+              std::bit_cast<std::uint32_t>(asset.pyramid.levels[0].values[i]));
+}
+
+TEST_F(AssetIo, WriteReadWriteGivesTheSameBytes) {
+  const Asset asset = with_preview(test::small_asset(), test::sphere({0, 0, 0}, 1, 3));
+  const std::string first = written(asset);
+  EXPECT_EQ(written(read_bytes(first)), first);
+  EXPECT_EQ(written(read_bytes(first, /*untrusted=*/true)), first);
+}
+
+TEST_F(AssetIo, GivesTheSameBytesAtAnyThreadCount) {
+  std::string first;
+  for (const std::size_t threads : {1, 2, 8}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const std::string bytes = written(with_preview(test::small_asset(), test::sphere({0, 0, 0}, 1, 4)));
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first) << threads << " threads";
+  }
+}
+
+TEST_F(AssetIo, OfAnAffineMapHasNoLevelButADisplacement) {
+  Asset asset = test::small_asset();
+  asset.pyramid.levels.clear();
+  const Asset read = read_bytes(written(with_preview(asset, test::sphere({0, 0, 0}, 1, 1))));
+  EXPECT_TRUE(read.pyramid.levels.empty());
+  EXPECT_FALSE(read.preview->grids().front().leaves.empty());
+}
+
+TEST_F(AssetIo, ReadsTextThatIsNotUtf8) {
+  Asset asset = test::tiny_asset();
+  asset.record.anchors[0].name = "\xff\xfe";
+  asset.record.unit = "\xe9";
+  const std::string bytes = written(asset);
+  EXPECT_EQ(written(read_bytes(bytes)), bytes);
+}
+
+TEST_F(AssetIo, RefusesToWriteWhatIsNotValid) {
+  const auto refuses = [&](const std::function<void(Asset&)>& spoil, const std::string& why) {
+    Asset asset = test::tiny_asset();
+    spoil(asset);
+    EXPECT_THAT([&] { write_asset(directory_ / "bad.vdb", asset); },
+                ThrowsMessage<InvalidInput>(HasSubstr(why)));
+    EXPECT_FALSE(std::filesystem::exists(directory_ / "bad.vdb"));
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refuses([](Asset& a) { a.target_from_source.rotation *= 2; }, "not a rotation");
+  refuses([](Asset& a) { a.target_from_source.rotation.col(0) *= -1; }, "not a rotation");
+  refuses([&](Asset& a) { a.target_from_source.translation.x() = nan; }, "rigid part");
+  refuses([&](Asset& a) { a.affine.linear(0, 0) = nan; }, "affine part");
+  refuses([&](Asset& a) { a.pyramid.levels[1].values[7] = std::numeric_limits<float>::infinity(); },
+          "level 1");
+  refuses([&](Asset& a) { a.record.lambda = nan; }, "lambda");
+  refuses([&](Asset& a) { a.record.anchors[0].weight = 0; }, "weight");
+  refuses([&](Asset& a) { a.record.source.box.setEmpty(); }, "source bounding box");
+  refuses([&](Asset& a) { a.record.options_json = "{"; }, "options_json");
+  refuses([&](Asset& a) { a.record.stages_json = "{}"; }, "stages_json");
+  refuses([&](Asset& a) { a.preview.reset(); }, "with_preview");
+}
+
+TEST_F(AssetIo, NamesTheFileThatCannotBeRead) {
+  EXPECT_THAT([&] { read_asset(directory_ / "absent.vdb"); },
+              ThrowsMessage<FileError>(HasSubstr("absent.vdb")));
+  EXPECT_THAT([&] { read_asset(directory_ / ""); },
+              ThrowsMessage<FileError>(HasSubstr("not a regular file")));
+}
+
+TEST_F(AssetIo, RejectsWhatIsNoAsset) {
+  EXPECT_THAT([&] { read_bytes(""); }, ThrowsMessage<FormatError>(HasSubstr("not a bespoke asset")));
+  EXPECT_THAT([&] { read_bytes(std::string(1000, 'x')); },
+              ThrowsMessage<FormatError>(HasSubstr("not a bespoke asset")));
+  const StoredFile plain = stored_file_from_vdb(unseal(written(test::tiny_asset())).vdb);
+  EXPECT_THAT([&] { read_bytes(vdb_bytes(plain)); },
+              ThrowsMessage<FormatError>(HasSubstr("not a bespoke asset")));
+}
+
+TEST_F(AssetIo, RejectsAnotherTrailerVersion) {
+  std::string bytes = written(test::tiny_asset());
+  bytes[bytes.size() - trailer_size + 8] = 2;
+  EXPECT_THAT([&] { read_bytes(bytes); }, ThrowsMessage<FormatError>(HasSubstr("trailer version 2")));
+}
+
+// Each spoils the content and seals it anew, so that only the reader's own checks stand in its way.
+TEST_F(AssetIo, RejectsWellSealedContentThatItCannotVouchFor) {
+  const std::string sound = written(test::tiny_asset());
+  const auto rejects = [&](const std::function<void(StoredFile&)>& spoil, const std::string& why) {
+    StoredFile file = stored_file_from_vdb(unseal(sound).vdb);
+    spoil(file);
+    const std::string bytes = seal({vdb_bytes(file), ""});
+    for (const bool untrusted : {false, true})
+      EXPECT_THAT([&] { read_bytes(bytes, untrusted); }, ThrowsMessage<FormatError>(HasSubstr(why)));
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  rejects([](StoredFile& f) { f.metadata.erase(version_key); }, "bespoke:format_version is missing");
+  rejects([](StoredFile& f) { f.metadata[version_key] = std::int64_t{2}; }, "format version 2");
+  rejects([](StoredFile& f) { f.metadata[version_key] = 1.0; }, "not a 64-bit integer");
+  rejects([](StoredFile& f) { f.metadata.erase(record_key); }, "bespoke:record is missing");
+  rejects([](StoredFile& f) { f.metadata[record_key] = std::string("{"); }, "not JSON");
+  rejects([](StoredFile& f) { f.metadata[record_key] = std::string(1000, '['); }, "nests deeper");
+  rejects([](StoredFile& f) { f.metadata[record_key] = std::string("{}"); }, "is missing");
+  rejects([](StoredFile& f) { f.metadata.erase("bespoke:unit"); }, "bespoke:unit is missing");
+  rejects([](StoredFile& f) { f.metadata["bespoke:unit"] = std::string("mile"); }, "contradicts");
+  rejects([](StoredFile& f) { f.metadata["bespoke:lambda"] = 7.0; }, "contradicts");
+  rejects([](StoredFile& f) { f.metadata["bespoke:more"] = 7.0; }, "unexpected metadata");
+  rejects([](StoredFile& f) { std::swap(f.grids[3], f.grids[4]); }, "in the place of u_0");
+  rejects([](StoredFile& f) { std::swap(f.grids[0], f.grids[3]); }, "in the place of u_0");
+  rejects([](StoredFile& f) { std::swap(f.grids[1], f.grids[2]); }, "in the place of source_distance");
+  rejects([](StoredFile& f) { f.grids.pop_back(); }, "4 grids, the record asks for 5");
+  rejects([](StoredFile& f) { f.grids.push_back(f.grids[4]), f.grids[5].name = "u_2"; }, "6 grids");
+  rejects([](StoredFile& f) { f.grids[3] = f.grids[1], f.grids[3].name = "u_0"; }, "no Vec3S");
+  rejects([](StoredFile& f) { f.grids[3].voxel_size *= 2; }, "contradicts the record");
+  rejects([](StoredFile& f) { f.grids[4].origin.x() += 1e-9; }, "contradicts the record");
+  rejects([](StoredFile& f) { f.grids[3].background = 1; }, "background");
+  rejects([&](StoredFile& f) { f.grids[3].values[5] = nan; }, "not finite");
+  rejects([&](StoredFile& f) { f.grids[0].values[5] = nan; }, "not finite");
+  rejects([](StoredFile& f) { f.grids[3].leaves.pop_back(), f.grids[3].values.resize(2 * 3 * leaf_nodes); },
+          "leaves");
+  rejects(
+      [](StoredFile& f) {
+        f.grids[3].leaves[0] = {-50, 0, 0}, f.grids[4].leaves[0] = {90, 0, 0};
+      },
+      "level");
+  rejects([](StoredFile& f) { f.grids[0].leaves.clear(), f.grids[0].values.clear(); }, "holds no values");
+  rejects([](StoredFile& f) { f.grids[1].grid_class = GridClass::unknown; }, "class");
+  rejects([](StoredFile& f) { f.grids[3].active.assign(f.grids[3].leaves.size(), LeafMask{}); }, "inactive");
+}
+
+}  // namespace
+}  // namespace bespoke

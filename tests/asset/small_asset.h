@@ -1,0 +1,145 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bespoke/asset/asset.h"
+#include "bespoke/asset/preview.h"
+
+namespace bespoke::test {
+
+/// A closed surface around `center`: an octahedron, its faces divided `divisions` times and pushed to radius.
+inline TriangleMesh sphere(const Vector3& center, double radius, int divisions) {
+  std::vector<Vector3> vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::vector<std::array<int, 3>> faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                           {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+  for (int division = 0; division < divisions; ++division) {
+    std::map<std::pair<int, int>, int> middles;
+    const auto middle = [&](int a, int b) {
+      const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
+      if (is_new)
+        vertices.push_back(
+            (vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
+      return entry->second;
+    };
+    std::vector<std::array<int, 3>> finer;
+    for (const auto& [a, b, c] : faces) {
+      const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      for (const auto& face : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+        finer.push_back(face);
+    }
+    faces = finer;
+  }
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    mesh.vertices.col(static_cast<Eigen::Index>(i)) = center + radius * vertices[i];
+  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    mesh.faces.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3i(faces[i][0], faces[i][1], faces[i][2]);
+  return mesh;
+}
+
+/// u(x) = (0.1 sin x, 0.1 sin y, 0.1 cos z), times a window that is zero at the ends of the leaves.
+inline PyramidLevel wavy_level(const Vector3& origin, double voxel_size, std::vector<LeafCoordinates> leaves,
+                               double amplitude) {
+  PyramidLevel level{voxel_size, std::move(leaves), {}};
+  for (const LeafCoordinates& leaf : level.leaves)
+    for (int i = 0; i < leaf_edge; ++i)
+      for (int j = 0; j < leaf_edge; ++j)
+        for (int k = 0; k < leaf_edge; ++k) {
+          const Vector3 node(leaf[0] * leaf_edge + i, leaf[1] * leaf_edge + j, leaf[2] * leaf_edge + k);
+          const Vector3 x = origin + voxel_size * node;
+          const double window = i * (leaf_edge - 1 - i) / 12.25 * j * (leaf_edge - 1 - j) / 12.25;
+          for (const double u : {std::sin(x.x()), std::sin(x.y()), std::cos(x.z())})
+            level.values.push_back(static_cast<float>(amplitude * window * u));
+        }
+  return level;
+}
+
+/// A two-level asset of a few leaves, without preview.
+inline Asset small_asset() {
+  Asset asset;
+  asset.target_from_source.rotation =
+      Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  asset.target_from_source.translation = {0.5, -0.25, 1.0 / 3};
+  asset.affine.linear << 1.1, 0.02, 0, -0.01, 0.95, 0.03, 0, 0, 1.05;
+  asset.affine.offset = {0.1, 0.2, -0.3};
+  asset.pyramid.origin = {-1, -1.1, -0.9};
+  asset.pyramid.levels = {wavy_level(asset.pyramid.origin, 0.125, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
+                          wavy_level(asset.pyramid.origin, 0.0625, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
+  asset.certificate.certified = 12345;
+  asset.certificate.least_determinant = 0.0625;
+  asset.certificate.affine_determinant = asset.affine.linear.determinant();
+  asset.certificate.places = {{1, {0.1, 0.2, 0.3}, 1e-3}};
+  asset.record.unit = "dm";
+  asset.record.elastic_method = "csrbf";
+  asset.record.surface_fit_method = "laplacian";
+  asset.record.lambda = 0.4;
+  asset.record.tolerance = 1e-3;
+  asset.record.bake_error = {100, 1e-6, 1e-5, 1e-4, 2e-4, 5e-4};
+  asset.record.options_json = R"({"lambda":"10%","max_memory":8589934592})";
+  asset.record.stages_json = R"([{"name":"rigid","residual":0.1}])";
+  asset.record.anchors = {{"nose \"tip\" é", {0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, 1.5, 0.01},
+                          {"", {1, 0, 0}, {0, 1, 0}, std::numeric_limits<double>::infinity(), 0}};
+  asset.record.source = {std::string(64, 'a'), Box(Vector3(-1, -1, -1), Vector3(1, 1, 1))};
+  asset.record.target = {std::string(64, 'b'), Box(Vector3(-2, -1, -1), Vector3(1, 3, 1))};
+  return asset;
+}
+
+/// The same with preview grids of one leaf each, so that its file stays small.
+inline Asset tiny_asset() {
+  Asset asset = small_asset();
+  std::vector<StoredGrid> grids(3);
+  const char* names[] = {displacement_name, source_distance_name, jacobian_name};
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    grids[i].name = names[i];
+    grids[i].components = i == 0 ? 3 : 1;
+    grids[i].voxel_size = 0.25;
+    grids[i].leaves = {{-1, 0, 2}};
+    for (int n = 0; n < grids[i].components * leaf_nodes; ++n)
+      grids[i].values.push_back(static_cast<float>(n % 37) / 16);
+    grids[i].metadata["bespoke:meaning"] = std::string("a test");
+  }
+  grids[1].grid_class = GridClass::level_set;
+  grids[1].background = 3;
+  asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
+  return asset;
+}
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// A directory of its own, removed at the end.
+class ScratchDirectory {
+ public:
+  ScratchDirectory() {
+    std::string name = (std::filesystem::temp_directory_path() / "bespoke_asset_XXXXXX").string();
+    path_ = mkdtemp(name.data());
+  }
+  ~ScratchDirectory() { std::filesystem::remove_all(path_); }
+  ScratchDirectory(const ScratchDirectory&) = delete;
+  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace bespoke::test
