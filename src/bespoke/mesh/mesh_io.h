@@ -6,16 +6,11 @@
 
 namespace bespoke {
 
-/// Reads a reference model from OBJ, PLY (ascii and binary), STL or OFF, by the ending of the name. Vertices
-/// keep their order and are never merged (STL, which has no shared vertices, is the exception: corners at
-/// exactly the same position become one vertex in order of first use). Polygons become triangle fans in
-/// place. Throws FileError when the file cannot be opened, FormatError naming the file and (text formats) the
-/// line of a bad index, number or face, InvalidInput for an unknown ending.
+/// Reads a reference model; formats, order, precision and errors as read_product. Polygons become triangle
+/// fans in place.
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path);
 
-/// Writes by the ending of the name, all digits that a float needs to read back unchanged (OBJ: nine
-/// significant digits). Atomic: a temporary file beside the target, fsync, rename. Throws FileError,
-/// InvalidInput for an unknown ending.
+/// Formats, digits and errors as write_product. Atomic.
 void write_triangle_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 }  // namespace bespoke

@@ -1,27 +1,40 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include "bespoke/types.h"
 
 namespace bespoke {
 
-/// A mesh that is carried through a mapping: everything but its positions and normals comes back as it was
-/// read. Polygons stay polygons; vertex order, texture coordinates and face order are kept.
+/// A mesh that is carried through a mapping. Polygons stay polygons; vertex order, face order and the
+/// corners' texture coordinates come back as they were read. Groups, materials, colours and polylines do not:
+/// OpenMesh does not hand them over.
 struct Product {
   Points vertices;                 ///< 3×n, mesh units
   std::vector<int> polygon_start;  ///< p+1; polygon k is corners[start[k]] … corners[start[k+1]-1]
   std::vector<int> corners;        ///< vertex indices
-  Eigen::Matrix2Xd texture;        ///< 2×(number of corners), or empty
+  Eigen::Matrix2Xd texture;        ///< 2×(number of corners), (0, 0) where a face has none; or empty
   bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
 };
 
-/// Formats and errors as read_triangle_mesh; a product may have no faces (a point set).
+/// OBJ, PLY (ascii and binary), STL or OFF, by the ending of the name, through OpenMesh, whose readers round
+/// coordinates to float: at most 6e-8 of a coordinate is lost. Vertices keep their order and are never merged
+/// (STL, which has no shared vertices, is the exception: corners at exactly the same position become one
+/// vertex in order of first use, and a facet whose corners coincide is left out). A product may have no faces
+/// (a point set). Texture coordinates are read from OBJ and PLY. Throws FileError when the file cannot be
+/// opened, InvalidInput for an unknown ending, FormatError naming the file and the line (binary: the element)
+/// of a bad index, number or face. One file is read at a time, whatever the number of threads.
 Product read_product(const std::filesystem::path& path);
 
-/// Writes the product with its vertices as they are now; normals are recomputed. Atomic.
+/// Writes the product with its vertices as they are now: nine significant digits (OBJ, OFF) or floats (PLY
+/// and STL, both binary), so that the floats are read back unchanged. Normals, where the product had them,
+/// are recomputed; texture coordinates are written to OBJ. STL holds triangles without texture, so polygons
+/// become fans there. Atomic. Throws FileError, InvalidInput for an unknown ending, for coordinates that a
+/// float cannot hold, and for a point set as STL.
 void write_product(const std::filesystem::path& path, const Product& product);
+
+/// Polygons as triangle fans about their first corner, in place.
+Faces triangulated(const Product& product);
 
 }  // namespace bespoke
