@@ -9,15 +9,20 @@
 
 namespace bespoke {
 
+class LayerStack;
+
 /// What the one-scale system of Eq. 16 would cost; known before anything is factored.
 struct CsrbfEstimate {
   std::size_t centers = 0;
   double entries_per_row = 0;      ///< mean number of centres within λ of a centre
-  std::size_t factor_entries = 0;  ///< of the sparse Cholesky factor (symbolic factorisation)
-  std::size_t factor_bytes = 0;
+  std::size_t factor_entries = 0;  ///< of the Cholesky factor (symbolic factorisation); 0 when another limit
+                                   ///< already forbids to look
+  std::size_t bytes = 0;           ///< at the worst moment: matrix, factor and temporary fronts
   double condition = 0;       ///< estimate, grows like (λ/h)⁷ with h the median spacing of the centres
   double median_spacing = 0;  ///< h, mesh units
-  double advised_lambda = 0;  ///< the largest λ (mesh units) that stays within the limits below
+  bool within_limits = false;
+  double advised_lambda = 0;  ///< λ when within the limits below, else about the largest that is (mesh
+                              ///< units); 0 when there is none
 };
 
 struct CsrbfOptions {
@@ -28,10 +33,11 @@ struct CsrbfOptions {
 
 struct CsrbfSummary {
   CsrbfEstimate estimate;
-  double residual = 0;  ///< max over centres of |E(vᵢ) − v'ᵢ|, mesh units
+  double residual = 0;  ///< after iterative refinement: max over centres of |E(vᵢ) − v'ᵢ|, mesh units
   double seconds = 0;
 };
 
+/// Throws InvalidInput for fewer than 4 sources, non-finite or duplicate ones, or a λ that is not positive.
 CsrbfEstimate estimate_csrbf(const Points& sources, const CsrbfOptions& options);
 
 /// One line: centres, entries a row, factor size, condition, residual, seconds.
@@ -53,12 +59,11 @@ class CsrbfMap : public ElasticMap {
   double lambda() const { return lambda_; }                     ///< mesh units
 
  private:
-  class Evaluator;
   Points centers_;
   Points coefficients_;
   AffineMap affine_;
   double lambda_;
-  std::shared_ptr<const Evaluator> evaluator_;
+  std::shared_ptr<const LayerStack> stack_;
 };
 
 struct CsrbfFit {

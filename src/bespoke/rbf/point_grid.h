@@ -19,7 +19,15 @@ class PointGrid {
   template <class Visit>
   void for_each_within(const Vector3& x, double radius, const Visit& visit) const;
 
+  /// Calls visit(begin, end) for ranges of sorted positions that together hold every point of the box
+  /// low … high, and few others.
+  template <class Visit>
+  void for_each_range(const Vector3& low, const Vector3& high, const Visit& visit) const;
+
   int size() const { return static_cast<int>(order_.size()); }
+
+  /// Sorted position → index of the point.
+  const std::vector<int>& order() const { return order_; }
 
  private:
   using Cell = Eigen::Array3i;
@@ -47,17 +55,24 @@ std::vector<int> thin_points(const Points& points, double spacing);
 
 template <class Visit>
 void PointGrid::for_each_within(const Vector3& x, double radius, const Visit& visit) const {
-  const Cell low = cell_of(x - Vector3::Constant(radius)).max(0);
-  const Cell high = cell_of(x + Vector3::Constant(radius)).min(cells_ - 1);
   const double squared_radius = radius * radius;
-  for (int k = low.z(); k <= high.z(); ++k)
-    for (int j = low.y(); j <= high.y(); ++j)
-      for (int i = low.x(); i <= high.x(); ++i) {
+  for_each_range(x - Vector3::Constant(radius), x + Vector3::Constant(radius), [&](int begin, int end) {
+    for (int position = begin; position < end; ++position) {
+      const double squared_distance = (sorted_.col(position) - x).squaredNorm();
+      if (squared_distance <= squared_radius) visit(order_[position], squared_distance);
+    }
+  });
+}
+
+template <class Visit>
+void PointGrid::for_each_range(const Vector3& low, const Vector3& high, const Visit& visit) const {
+  const Cell first = cell_of(low).max(0);
+  const Cell last = cell_of(high).min(cells_ - 1);
+  for (int k = first.z(); k <= last.z(); ++k)
+    for (int j = first.y(); j <= last.y(); ++j)
+      for (int i = first.x(); i <= last.x(); ++i) {
         const Range found = range(Cell(i, j, k));
-        for (int position = found.begin; position < found.end; ++position) {
-          const double squared_distance = (sorted_.col(position) - x).squaredNorm();
-          if (squared_distance <= squared_radius) visit(order_[position], squared_distance);
-        }
+        if (found.begin < found.end) visit(found.begin, found.end);
       }
 }
 

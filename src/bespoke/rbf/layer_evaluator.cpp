@@ -1,0 +1,409 @@
+#include "bespoke/rbf/layer_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/parallel.h"
+#include "bespoke/rbf/spatial_order.h"
+
+namespace bespoke {
+namespace {
+
+using Block = LayerEvaluator::Block;
+using Order = LayerEvaluator::Order;
+constexpr int lanes = LayerEvaluator::lanes;
+
+/// Eight doubles that the compiler keeps in one, two or four registers, by the instruction set.
+using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
+
+/// φ and slope_over_s of kernels.h in terms of s and q = max(0, 1 − s).
+struct C2 {
+  static void value(const Lanes& s, const Lanes& q, Lanes& out) { out = (q * q) * (q * q) * (4 * s + 1); }
+  static void slope_over_s(const Lanes&, const Lanes& q, Lanes& out) { out = -20 * (q * q) * q; }
+};
+struct C4 {
+  static void value(const Lanes& s, const Lanes& q, Lanes& out) {
+    const Lanes q2 = q * q;
+    out = (q2 * q2) * q2 * ((35 * s + 18) * s + 3) * (1.0 / 3.0);
+  }
+  static void slope_over_s(const Lanes& s, const Lanes& q, Lanes& out) {
+    const Lanes q2 = q * q;
+    out = (-56.0 / 3.0) * (q2 * q2) * q * (5 * s + 1);
+  }
+};
+
+/// `centers`: six doubles each, place and coefficient.
+struct Sum {
+  const double* centers;
+  const int* nearby;
+  int count;
+  double inverse_lambda;
+};
+
+template <class Function, Order order>
+[[gnu::always_inline]] inline void add_up(const Sum& sum, Block& block) {
+  Lanes x[3];
+  Lanes value[3] = {};
+  Lanes gradient[9] = {};
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < lanes; ++lane) x[axis][lane] = block.x[axis][lane];
+  const double squared_inverse = sum.inverse_lambda * sum.inverse_lambda;
+  for (int k = 0; k < sum.count; ++k) {
+    const double* center = sum.centers + 6 * std::ptrdiff_t(sum.nearby[k]);
+    const Lanes dx = x[0] - center[0];
+    const Lanes dy = x[1] - center[1];
+    const Lanes dz = x[2] - center[2];
+    const Lanes squared = (dx * dx + dy * dy + dz * dz) * squared_inverse;
+    Lanes s;
+    for (int lane = 0; lane < lanes; ++lane) s[lane] = __builtin_sqrt(squared[lane]);
+    const Lanes q = s < 1 ? 1 - s : Lanes{};
+    Lanes weight;
+    if constexpr (order == Order::value) {
+      Function::value(s, q, weight);
+      for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
+    } else {
+      Function::value(s, q, weight);
+      for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
+      Function::slope_over_s(s, q, weight);
+      weight *= squared_inverse;
+      const Lanes direction[3] = {dx * weight, dy * weight, dz * weight};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) gradient[3 * i + j] += center[3 + i] * direction[j];
+    }
+  }
+  for (int lane = 0; lane < lanes; ++lane) {
+    for (int i = 0; i < 3; ++i) block.value[i][lane] = value[i][lane];
+    if constexpr (order == Order::gradient)
+      for (int i = 0; i < 9; ++i) block.gradient[i][lane] = gradient[i][lane];
+  }
+}
+
+using AddUp = void (*)(const Sum&, Block&);
+
+// Chosen by a pointer rather than by target_clones, whose resolvers run before the sanitizers are ready.
+template <class Function, Order order>
+void add_up_anywhere(const Sum& sum, Block& block) {
+  add_up<Function, order>(sum, block);
+}
+
+#if defined(__x86_64__)
+template <class Function, Order order>
+__attribute__((target("avx2"))) void add_up_avx2(const Sum& sum, Block& block) {
+  add_up<Function, order>(sum, block);
+}
+template <class Function, Order order>
+__attribute__((target("avx512f,prefer-vector-width=512"))) void add_up_avx512(const Sum& sum, Block& block) {
+  add_up<Function, order>(sum, block);
+}
+#endif
+
+template <class Function, Order order>
+AddUp fastest() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return add_up_avx512<Function, order>;
+  if (__builtin_cpu_supports("avx2")) return add_up_avx2<Function, order>;
+#endif
+  return add_up_anywhere<Function, order>;
+}
+
+AddUp fastest(Wendland function, Order order) {
+  static const AddUp table[2][2] = {
+      {fastest<C2, Order::value>(), fastest<C2, Order::gradient>()},
+      {fastest<C4, Order::value>(), fastest<C4, Order::gradient>()},
+  };
+  return table[function == Wendland::c4][order == Order::gradient];
+}
+
+void clear(Block& block, Order order) {
+  for (auto& row : block.value) std::fill(std::begin(row), std::end(row), 0.0);
+  if (order == Order::gradient)
+    for (auto& row : block.gradient) std::fill(std::begin(row), std::end(row), 0.0);
+}
+
+template <class Bounds>
+Bounds bounds_of(const Block* blocks, std::size_t count) {
+  Bounds bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = blocks[0].x[axis][0];
+    double high = low;
+    for (std::size_t b = 0; b < count; ++b)
+      for (const double value : blocks[b].x[axis]) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+      }
+    bounds.low[axis] = low;
+    bounds.high[axis] = high;
+  }
+  return bounds;
+}
+
+template <class Bounds>
+double extent(const Bounds& bounds) {
+  double result = 0;
+  for (int axis = 0; axis < 3; ++axis) result = std::max(result, bounds.high[axis] - bounds.low[axis]);
+  return result;
+}
+
+template <class Bounds, class Center>
+bool reaches(const Bounds& bounds, const Center& center, double squared_lambda) {
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double outside =
+        std::max(std::max(bounds.low[axis] - center.z[axis], center.z[axis] - bounds.high[axis]), 0.0);
+    squared += outside * outside;
+  }
+  return squared < squared_lambda;
+}
+
+}  // namespace
+
+LayerEvaluator::LayerEvaluator(const Points& centers, const Points& coefficients, double lambda,
+                               Wendland function)
+    : lambda_(lambda), function_(function), grid_(centers, lambda) {
+  if (coefficients.cols() != centers.cols() || !coefficients.allFinite())
+    throw InvalidInput("radial layer of " + std::to_string(centers.cols()) + " centres and " +
+                       std::to_string(coefficients.cols()) +
+                       " coefficients: the numbers must be equal and the values finite");
+  sorted_.resize(grid_.order().size());
+  for (std::size_t position = 0; position < sorted_.size(); ++position) {
+    const int index = grid_.order()[position];
+    for (int axis = 0; axis < 3; ++axis) {
+      sorted_[position].z[axis] = centers(axis, index);
+      sorted_[position].c[axis] = coefficients(axis, index);
+    }
+  }
+  if (centers.cols() > 0) mark_reach(centers);
+}
+
+void LayerEvaluator::mark_reach(const Points& centers) {
+  constexpr double most_cells = 1 << 22;
+  const Vector3 low = centers.rowwise().minCoeff();
+  const Vector3 high = centers.rowwise().maxCoeff();
+  double edge = lambda_;
+  const auto cells_along = [&] { return ((high - low).array() / edge).floor() + 3; };
+  while (!(cells_along().prod() <= most_cells)) edge *= 1.25;
+  // One cell of margin on every side, so that the neighbours of an occupied cell exist.
+  reach_origin_ = low - Vector3::Constant(edge);
+  reach_inverse_edge_ = 1 / edge;
+  reach_cells_ = (cells_along() + 1).cast<int>();
+  reach_.assign((static_cast<std::size_t>(reach_cells_.cast<double>().prod()) + 63) / 64, 0);
+  for (const Center& center : sorted_) {
+    Eigen::Array3i cell;
+    for (int axis = 0; axis < 3; ++axis)
+      cell[axis] = static_cast<int>((center.z[axis] - reach_origin_[axis]) * reach_inverse_edge_);
+    for (int k = std::max(cell.z() - 1, 0); k <= std::min(cell.z() + 1, reach_cells_.z() - 1); ++k)
+      for (int j = std::max(cell.y() - 1, 0); j <= std::min(cell.y() + 1, reach_cells_.y() - 1); ++j)
+        for (int i = std::max(cell.x() - 1, 0); i <= std::min(cell.x() + 1, reach_cells_.x() - 1); ++i) {
+          const std::size_t bit = (std::size_t(k) * std::size_t(reach_cells_.y()) + std::size_t(j)) *
+                                      std::size_t(reach_cells_.x()) +
+                                  std::size_t(i);
+          reach_[bit / 64] |= std::uint64_t{1} << (bit % 64);
+        }
+  }
+}
+
+bool LayerEvaluator::within_reach(const Bounds& bounds) const {
+  int first[3];
+  int last[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from = (bounds.low[axis] - reach_origin_[axis]) * reach_inverse_edge_;
+    const double to = (bounds.high[axis] - reach_origin_[axis]) * reach_inverse_edge_;
+    // Negated so that NaN is out of reach.
+    if (!(from < reach_cells_[axis]) || !(to >= 0)) return false;
+    first[axis] = static_cast<int>(std::max(from, 0.0));
+    last[axis] = static_cast<int>(std::min(to, double(reach_cells_[axis] - 1)));
+  }
+  for (int k = first[2]; k <= last[2]; ++k)
+    for (int j = first[1]; j <= last[1]; ++j)
+      for (int i = first[0]; i <= last[0]; ++i) {
+        const std::size_t bit = (std::size_t(k) * std::size_t(reach_cells_.y()) + std::size_t(j)) *
+                                    std::size_t(reach_cells_.x()) +
+                                std::size_t(i);
+        if (reach_[bit / 64] >> (bit % 64) & 1) return true;
+      }
+  return false;
+}
+
+void LayerEvaluator::collect(const Bounds& bounds, std::vector<int>& nearby) const {
+  nearby.clear();
+  const double squared_lambda = lambda_ * lambda_;
+  const Vector3 low = Vector3(bounds.low[0], bounds.low[1], bounds.low[2]).array() - lambda_;
+  const Vector3 high = Vector3(bounds.high[0], bounds.high[1], bounds.high[2]).array() + lambda_;
+  grid_.for_each_range(low, high, [&](int begin, int end) {
+    std::size_t kept = nearby.size();
+    nearby.resize(kept + std::size_t(end - begin));
+    for (int position = begin; position < end; ++position) {
+      nearby[kept] = position;
+      kept += reaches(bounds, sorted_[std::size_t(position)], squared_lambda);
+    }
+    nearby.resize(kept);
+  });
+}
+
+void LayerEvaluator::narrow(const Bounds& bounds, const std::vector<int>& candidates,
+                            std::vector<int>& nearby) const {
+  const double squared_lambda = lambda_ * lambda_;
+  nearby.resize(candidates.size());
+  std::size_t kept = 0;
+  for (const int position : candidates) {
+    nearby[kept] = position;
+    kept += reaches(bounds, sorted_[std::size_t(position)], squared_lambda);
+  }
+  nearby.resize(kept);
+}
+
+void LayerEvaluator::sum(Block& block, Order order, const int* nearby, int count) const {
+  fastest(function_, order)({sorted_.empty() ? nullptr : sorted_.front().z, nearby, count, 1 / lambda_},
+                            block);
+}
+
+void LayerEvaluator::evaluate(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const {
+  if (count == 0) return;
+  const auto bounds = bounds_of<Bounds>(blocks, count);
+  if (sorted_.empty()) {
+    for (std::size_t b = 0; b < count; ++b) clear(blocks[b], order);
+    return;
+  }
+  // Groups no wider than λ share one list of candidates; wider ones would drag along too many.
+  if (!(extent(bounds) <= lambda_)) return evaluate_split(blocks, count, order, nearby);
+  if (!within_reach(bounds)) {
+    for (std::size_t b = 0; b < count; ++b) clear(blocks[b], order);
+    return;
+  }
+  std::vector<int> candidates;
+  candidates.swap(nearby);
+  collect(bounds, candidates);
+  for (std::size_t b = 0; b < count; ++b) {
+    narrow(bounds_of<Bounds>(blocks + b, 1), candidates, nearby);
+    sum(blocks[b], order, nearby.data(), int(nearby.size()));
+  }
+}
+
+void LayerEvaluator::evaluate_split(Block* blocks, std::size_t count, Order order,
+                                    std::vector<int>& nearby) const {
+  if (count > 1) {
+    evaluate(blocks, count / 2, order, nearby);
+    evaluate(blocks + count / 2, count - count / 2, order, nearby);
+    return;
+  }
+  evaluate_lanes(*blocks, order, nearby);
+}
+
+void LayerEvaluator::evaluate_lanes(Block& block, Order order, std::vector<int>& nearby) const {
+  const auto bounds = bounds_of<Bounds>(&block, 1);
+  // Up to this width one list for all lanes is cheaper than one each.
+  constexpr double widest_shared_list = 2;
+  if (extent(bounds) <= widest_shared_list * lambda_) {
+    collect(bounds, nearby);
+    return sum(block, order, nearby.data(), int(nearby.size()));
+  }
+  clear(block, order);
+  for (int lane = 0; lane < lanes; ++lane) {
+    Block single;
+    for (int axis = 0; axis < 3; ++axis)
+      std::fill(std::begin(single.x[axis]), std::end(single.x[axis]), block.x[axis][lane]);
+    const auto place = bounds_of<Bounds>(&single, 1);
+    if (!within_reach(place)) continue;
+    collect(place, nearby);
+    if (nearby.empty()) continue;
+    sum(single, order, nearby.data(), int(nearby.size()));
+    for (int i = 0; i < 3; ++i) block.value[i][lane] = single.value[i][0];
+    if (order == Order::gradient)
+      for (int i = 0; i < 9; ++i) block.gradient[i][lane] = single.gradient[i][0];
+  }
+}
+
+LayerStack::LayerStack(std::vector<LayerEvaluator> layers, Stacking stacking)
+    : layers_(std::move(layers)), stacking_(stacking) {}
+
+Points LayerStack::displacement(const Points& x) const { return evaluate(x, Order::value); }
+
+Points LayerStack::gradient(const Points& x) const { return evaluate(x, Order::gradient); }
+
+namespace {
+
+/// What a stack has summed for the points of one block so far.
+struct Total {
+  double value[3][lanes] = {};
+  double gradient[9][lanes] = {};  // of y − x
+};
+
+void add_gradient(const Block& block, Stacking stacking, Total& total) {
+  for (int lane = 0; lane < lanes; ++lane) {
+    Matrix3 layer;
+    Matrix3 before;
+    for (int i = 0; i < 9; ++i) {
+      layer(i / 3, i % 3) = block.gradient[i][lane];
+      before(i / 3, i % 3) = total.gradient[i][lane];
+    }
+    // (I + G)(I + J) − I for composed layers; plain addition for summed ones.
+    Matrix3 after = before + layer;
+    if (stacking == Stacking::composed) after += layer * before;
+    for (int i = 0; i < 9; ++i) total.gradient[i][lane] = after(i / 3, i % 3);
+  }
+}
+
+void add_value(const Block& block, Total& total) {
+  for (int i = 0; i < 3; ++i)
+    for (int lane = 0; lane < lanes; ++lane) total.value[i][lane] += block.value[i][lane];
+}
+
+}  // namespace
+
+Points LayerStack::evaluate(const Points& x, Order order) const {
+  const std::vector<int> places = spatial_order(x);
+  Points result(3, order == Order::value ? x.cols() : 3 * x.cols());
+  constexpr std::size_t grain = 64 * lanes;
+  parallel_for(places.size(), grain, [&](std::size_t begin, std::size_t end) {
+    const std::size_t block_count = (end - begin + lanes - 1) / lanes;
+    std::vector<Block> blocks(block_count);
+    std::vector<Total> totals(block_count);
+    std::vector<int> nearby;
+    // The last block repeats the last point.
+    const auto place = [&](std::size_t block, int lane) {
+      return places[std::min(begin + block * lanes + std::size_t(lane), end - 1)];
+    };
+    const auto load = [&](std::size_t b) {
+      for (int lane = 0; lane < lanes; ++lane)
+        for (int axis = 0; axis < 3; ++axis) {
+          // NaN would hide the other points of the block; an infinite point is out of every reach.
+          const double coordinate = x(axis, place(b, lane));
+          blocks[b].x[axis][lane] =
+              std::isnan(coordinate) ? std::numeric_limits<double>::infinity() : coordinate;
+          if (stacking_ == Stacking::composed) blocks[b].x[axis][lane] += totals[b].value[axis][lane];
+        }
+    };
+    for (const LayerEvaluator& layer : layers_) {
+      for (std::size_t b = 0; b < block_count; ++b) load(b);
+      layer.evaluate(blocks.data(), block_count, order, nearby);
+      for (std::size_t b = 0; b < block_count; ++b) {
+        add_value(blocks[b], totals[b]);
+        if (order == Order::gradient) add_gradient(blocks[b], stacking_, totals[b]);
+      }
+    }
+    for (std::size_t b = 0; b < block_count; ++b)
+      for (int lane = 0; lane < lanes; ++lane) {
+        const int index = place(b, lane);
+        const bool undefined = x.col(index).hasNaN();
+        if (undefined) {
+          result
+              .middleCols(order == Order::value ? index : 3 * Eigen::Index(index),
+                          order == Order::value ? 1 : 3)
+              .setConstant(std::numeric_limits<double>::quiet_NaN());
+          continue;
+        }
+        if (order == Order::value)
+          for (int i = 0; i < 3; ++i) result(i, index) = totals[b].value[i][lane];
+        else
+          for (int i = 0; i < 9; ++i)
+            result(i / 3, 3 * Eigen::Index(index) + i % 3) = totals[b].gradient[i][lane];
+      }
+  });
+  return result;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bespoke/rbf/point_grid.h"
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// Which of kernels.h a layer sums.
+enum class Wendland { c2, c4 };
+
+/// How the layers of a stack act on a point.
+enum class Stacking {
+  summed,    ///< y = x + Σ u_k(x)
+  composed,  ///< y = (id + u_n) ∘ … ∘ (id + u_1) (x)
+};
+
+/// u(x) = Σ cⱼ φ(|x − zⱼ| / λ), prepared for blocks of nearby points.
+class LayerEvaluator {
+ public:
+  /// centers, coefficients: 3×m, finite; lambda > 0; all mesh units. Throws InvalidInput.
+  LayerEvaluator(const Points& centers, const Points& coefficients, double lambda, Wendland function);
+
+  /// Points whose sums are formed side by side.
+  static constexpr int lanes = 8;
+
+  /// Coordinates (mesh units) and sums of `lanes` points.
+  struct Block {
+    double x[3][lanes];
+    double value[3][lanes];     ///< u
+    double gradient[9][lanes];  ///< row-major ∂uᵢ/∂xⱼ; only when asked for
+  };
+
+  /// Which sums a call forms.
+  enum class Order { value, gradient };
+
+  /// Fills the sums of blocks[0 … count − 1]. `nearby` is scratch space, for reuse between calls.
+  void evaluate(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const;
+
+ private:
+  struct Center {
+    double z[3];
+    double c[3];
+  };
+  struct Bounds {
+    double low[3];
+    double high[3];
+  };
+  void evaluate_split(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const;
+  void evaluate_lanes(Block& block, Order order, std::vector<int>& nearby) const;
+  bool within_reach(const Bounds& bounds) const;
+  void collect(const Bounds& bounds, std::vector<int>& nearby) const;
+  void narrow(const Bounds& bounds, const std::vector<int>& candidates, std::vector<int>& nearby) const;
+  void sum(Block& block, Order order, const int* nearby, int count) const;
+  void mark_reach(const Points& centers);
+
+  double lambda_;
+  Wendland function_;
+  PointGrid grid_;
+  std::vector<Center> sorted_;  // in the grid's order
+  // One bit for each cell of a coarse lattice: set where a centre may lie within λ.
+  std::vector<std::uint64_t> reach_;
+  Vector3 reach_origin_ = Vector3::Zero();
+  double reach_inverse_edge_ = 0;
+  Eigen::Array3i reach_cells_ = Eigen::Array3i::Zero();
+};
+
+/// Layers one after another. Sums run in an order that depends on centres and points alone, in `double`
+/// without contraction, so results have the same bits on every instruction set and at any thread count.
+class LayerStack {
+ public:
+  LayerStack(std::vector<LayerEvaluator> layers, Stacking stacking);
+
+  /// y − x at the columns of x (3×n, mesh units); exactly zero where no layer reaches. Any order of points;
+  /// they are sorted by place first.
+  Points displacement(const Points& x) const;
+
+  /// ∇(y − x) at the columns of x: 3×3n, three columns per point, no unit.
+  Points gradient(const Points& x) const;
+
+ private:
+  Points evaluate(const Points& x, LayerEvaluator::Order order) const;
+
+  std::vector<LayerEvaluator> layers_;
+  Stacking stacking_;
+};
+
+}  // namespace bespoke
