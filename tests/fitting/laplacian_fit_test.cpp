@@ -4,21 +4,17 @@
 
 #include <Eigen/Dense>
 #include <limits>
-#include <random>
 
 #include "bespoke/error.h"
+#include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::random_points;
 
-Points random_points(Eigen::Index count, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  return Points::NullaryExpr(3, count, [&](Eigen::Index, Eigen::Index) { return uniform(generator); });
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Eq. 11, summed as it is written.
 struct Energy {

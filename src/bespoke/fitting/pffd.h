@@ -9,8 +9,10 @@ namespace bespoke {
 
 /// The paper's p-FFD (IV.E, Eq. 18) as a function of position: every source face carries the affine map of
 /// its frame (corner, two edges, normal scaled by the square root of the area ratio) onto the fitted face,
-/// and E(x) blends the faces near x with weights that grow without bound on the face and fall to zero at
-/// distance λ; the affine part takes part with a constant weight, so that E joins it continuously at λ.
+/// and E(x) blends the faces near x with weights area · (1 − s)³ / s², s = (distance / λ)², that grow without
+/// bound on the face and fall to zero at distance λ; the least-squares affine map of the vertices takes part
+/// with a constant weight, so that E joins it continuously at λ. On the source surface E is the piecewise
+/// linear map onto the fitted one, exactly; there the gradient is the mean of the touching faces'.
 class PffdMap : public ElasticMap {
  public:
   /// source: reference; fitted: 3×n, its vertices on the target (source frame); lambda > 0, mesh units.
@@ -23,8 +25,18 @@ class PffdMap : public ElasticMap {
   Points displacement_gradient(const Points& x) const override;
   Support support() const override;
 
+  const TriangleMesh& source() const { return source_; }
+  const Points& fitted() const { return fitted_; }  ///< 3×n, mesh units
+  double lambda() const { return lambda_; }         ///< mesh units
+
  private:
   struct Frames;
+  template <class Take>
+  void for_each_blend(const Points& x, const Take& take) const;
+
+  TriangleMesh source_;
+  Points fitted_;
+  double lambda_;
   std::unique_ptr<const Frames> frames_;
 };
 
