@@ -3,35 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/box_tree.h"
 
 namespace bespoke {
 namespace {
 
-constexpr int width = 4;            // children of a node: one SSE register of floats
-constexpr int leaf_size = 4;        // triangles
-constexpr int bins = 16;            // candidate planes of a split
-constexpr int balanced_below = 24;  // depth from which splits halve, so that the depth stays bounded
-// 2^31 triangles reach balanced_below + 16 levels; every level leaves at most width − 1 nodes behind.
-constexpr int stack_size = (balanced_below + 16) * (width - 1) + width;
-
-// Boxes are rounded outwards to float, the query to an interval of floats, and distances compared with
-// this slack: four times the rounding of the float operations between. So a box is never passed over that
-// holds a point as near as the nearest, and ties stay complete.
+// The tree's boxes are rounded outwards to float, the query to an interval of floats, and distances compared
+// with this slack: four times the rounding of the float operations between. So a box is never passed over
+// that holds a point as near as the nearest, and ties stay complete.
 constexpr double slack = 1 + 1e-6;
-
-float round_down(double x) {
-  const auto rounded = static_cast<float>(x);
-  return rounded <= x ? rounded : std::nextafterf(rounded, -std::numeric_limits<float>::infinity());
-}
-
-float round_up(double x) {
-  const auto rounded = static_cast<float>(x);
-  return rounded >= x ? rounded : std::nextafterf(rounded, std::numeric_limits<float>::infinity());
-}
 
 /// Corners are sorted by position and edges run upwards, so that faces that share an edge or a corner compute
 /// bitwise the same closest point there, and the tie goes to the least face.
@@ -115,149 +98,10 @@ Hit closest_on(const Triangle& t, const Vector3& x) {
   return best;
 }
 
-struct Node {
-  alignas(16) float low[3][width];
-  alignas(16) float high[3][width];
-  int child[width];  ///< index of a node, or of the first triangle
-  int count[width];  ///< triangles; 0 for a node, -1 for nothing
-};
-
-struct Range {
-  int begin, end;
-  int depth;
-  int size() const { return end - begin; }
-};
-
-class Builder {
- public:
-  explicit Builder(const TriangleMesh& mesh)
-      : boxes_(static_cast<std::size_t>(mesh.faces.cols())), order_(boxes_.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
-    for (std::size_t face = 0; face < boxes_.size(); ++face)
-      for (const int vertex : mesh.faces.col(static_cast<Eigen::Index>(face)))
-        boxes_[face].extend(mesh.vertices.col(vertex));
-  }
-
-  std::vector<Node> build() {
-    std::vector<Node> nodes(1);
-    std::vector<std::pair<std::size_t, Range>> pending{{0, {0, static_cast<int>(order_.size()), 0}}};
-    while (!pending.empty()) {
-      const auto [node, range] = pending.back();
-      pending.pop_back();
-      const std::vector<Range> parts = divide(range);
-      for (std::size_t i = 0; i < width; ++i) {
-        const bool used = i < parts.size();
-        set_child(nodes[node], i, used ? bounds(parts[i]) : Box(), used ? parts[i].begin : 0,
-                  used ? parts[i].size() : -1);
-        if (!used || parts[i].size() <= leaf_size) continue;
-        nodes[node].child[i] = static_cast<int>(nodes.size());
-        nodes[node].count[i] = 0;
-        pending.push_back({nodes.size(), {parts[i].begin, parts[i].end, range.depth + 1}});
-        nodes.emplace_back();
-      }
-    }
-    return nodes;
-  }
-
-  const std::vector<int>& order() const { return order_; }
-
- private:
-  Vector3 center(int at) const {
-    return boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])].center();
-  }
-
-  Box bounds(const Range& range) const {
-    Box box;
-    for (int i = range.begin; i < range.end; ++i)
-      box.extend(boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
-    return box;
-  }
-
-  static void set_child(Node& node, std::size_t i, const Box& box, int first, int count) {
-    for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][i] = count < 0 ? 0 : round_down(box.min()(axis));
-      node.high[axis][i] = count < 0 ? 0 : round_up(box.max()(axis));
-    }
-    node.child[i] = first;
-    node.count[i] = count;
-  }
-
-  std::vector<Range> divide(const Range& range) {
-    std::vector<Range> parts{range};
-    while (parts.size() < width) {
-      const auto largest = std::max_element(
-          parts.begin(), parts.end(), [](const Range& x, const Range& y) { return x.size() < y.size(); });
-      if (largest->size() <= leaf_size) break;
-      const int middle = split(*largest);
-      const Range upper{middle, largest->end, range.depth};
-      largest->end = middle;
-      parts.push_back(upper);
-    }
-    return parts;
-  }
-
-  // Surface-area heuristic over bins of the centres along the longest axis; halves where that separates
-  // nothing, and below the depth that the query's stack is sized for.
-  int split(const Range& range) {
-    Box centers;
-    for (int i = range.begin; i < range.end; ++i) centers.extend(center(i));
-    int axis = 0;
-    const double extent = centers.diagonal().maxCoeff(&axis);
-    if (!(extent > 0)) return range.begin + range.size() / 2;
-    if (range.depth >= balanced_below) {
-      const int middle = range.begin + range.size() / 2;
-      std::nth_element(order_.begin() + range.begin, order_.begin() + middle, order_.begin() + range.end,
-                       [&](int x, int y) { return key(x, axis) < key(y, axis); });
-      return middle;
-    }
-    const auto bin = [&](int face) {
-      const double share = (key(face, axis) - centers.min()(axis)) / extent;
-      return std::clamp(static_cast<int>(share * bins), 0, bins - 1);
-    };
-    const int cut = best_cut(range, bin);
-    const auto middle = std::partition(order_.begin() + range.begin, order_.begin() + range.end,
-                                       [&](int face) { return bin(face) < cut; });
-    return static_cast<int>(middle - order_.begin());
-  }
-
-  // Between 1 and bins − 1: the first and the last bin are never empty.
-  template <class Bin>
-  int best_cut(const Range& range, const Bin& bin) const {
-    std::array<Box, bins> box;
-    std::array<int, bins> count{};
-    for (int i = range.begin; i < range.end; ++i) {
-      const int face = order_[static_cast<std::size_t>(i)];
-      box[static_cast<std::size_t>(bin(face))].extend(boxes_[static_cast<std::size_t>(face)]);
-      ++count[static_cast<std::size_t>(bin(face))];
-    }
-    std::array<double, bins> cost{};
-    const auto area = [](const Box& b) {
-      const Vector3 d = b.diagonal();
-      return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
-    };
-    Box left, right;
-    int left_count = 0, right_count = 0;
-    for (std::size_t i = 0; i + 1 < bins; ++i) {
-      left.extend(box[i]);
-      left_count += count[i];
-      cost[i + 1] += area(left) * left_count;
-      right.extend(box[bins - 1 - i]);
-      right_count += count[bins - 1 - i];
-      cost[bins - 1 - i] += area(right) * right_count;
-    }
-    return static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
-  }
-
-  double key(int face, int axis) const { return boxes_[static_cast<std::size_t>(face)].center()(axis); }
-
-  std::vector<Box> boxes_;  ///< one per face
-  std::vector<int> order_;  ///< faces, in the order of the leaves
-};
-
 }  // namespace
 
 struct ClosestPointTree::Tree {
-  std::vector<Node> nodes;
+  BoxTree boxes;
   std::vector<Triangle> triangles;  ///< in the order of the leaves
   std::vector<Vector3> normals;     ///< of the triangles; NaN without area, so that no condition holds
 };
@@ -265,10 +109,13 @@ struct ClosestPointTree::Tree {
 ClosestPointTree::ClosestPointTree(const TriangleMesh& mesh) {
   require_valid(mesh, "the mesh of a closest-point tree");
   auto tree = std::make_unique<Tree>();
-  Builder builder(mesh);
-  tree->nodes = builder.build();
+  std::vector<Box> boxes(static_cast<std::size_t>(mesh.faces.cols()));
+  for (std::size_t face = 0; face < boxes.size(); ++face)
+    for (const int vertex : mesh.faces.col(static_cast<Eigen::Index>(face)))
+      boxes[face].extend(mesh.vertices.col(vertex));
+  tree->boxes = build_box_tree(boxes);
   const Points normals = face_normals(mesh);
-  for (const int face : builder.order()) {
+  for (const int face : tree->boxes.order) {
     tree->triangles.push_back(prepare(mesh, face));
     tree->normals.push_back(normals.col(face));
     if (normals.col(face).isZero(0))
@@ -289,7 +136,7 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
     float squared_distance;
     int node;
   };
-  std::array<Entry, stack_size> stack;
+  std::array<Entry, BoxTree::stack_size> stack;
   int top = 0;
   stack[static_cast<std::size_t>(top++)] = {0, 0};
   float low[3], high[3];
@@ -318,17 +165,17 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
   while (top > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--top)];
     if (entry.squared_distance > reach) continue;
-    const Node& node = tree_->nodes[static_cast<std::size_t>(entry.node)];
-    float squared[width] = {};
+    const BoxTree::Node& node = tree_->boxes.nodes[static_cast<std::size_t>(entry.node)];
+    float squared[BoxTree::width] = {};
     for (int axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < width; ++i) {
+      for (int i = 0; i < BoxTree::width; ++i) {
         const float outside =
             std::max(std::max(node.low[axis][i] - high[axis], low[axis] - node.high[axis][i]), 0.0f);
         squared[i] += outside * outside;
       }
     // Leaves at once, since they shorten the reach; nodes onto the stack, the nearest on top.
     const int base = top;
-    for (int i = 0; i < width; ++i) {
+    for (int i = 0; i < BoxTree::width; ++i) {
       if (node.count[i] < 0 || squared[i] > reach) continue;
       if (node.count[i] > 0) {
         ask(node.child[i], node.count[i]);

@@ -28,6 +28,11 @@ struct ClosestPointQuery {
 /// Bounding-volume tree over the triangles of a mesh; answers exact closest-point queries. Copies what it
 /// needs. Queries are thread-safe and, at equal distance, answer the face of least index. Faces without area
 /// answer too when no normal is asked for.
+///
+/// Microseconds of one core per query, 13,380 queries on a body of 39,998 faces at up to 0.2 / 2 / 50 % of
+/// the diagonal from it: 1.5 / 2.7 / 6.1, with normals 1.5 / 2.7 / 7.2, built in 24 ms. Embree 3.13's point
+/// query with a callback in double precision: 1.4 / 2.8 / 8.1, with normals 1.4 / 2.9 / 10.1, built in 78 ms.
+/// So there is no Embree here (closest_point_benchmark; CPU time on a busy two-core machine).
 class ClosestPointTree {
  public:
   /// Throws InvalidInput when the mesh has no faces or non-finite vertices.

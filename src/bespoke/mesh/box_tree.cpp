@@ -1,0 +1,153 @@
+#include "bespoke/mesh/box_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <numeric>
+#include <utility>
+
+namespace bespoke {
+namespace {
+
+constexpr int width = BoxTree::width;
+constexpr int leaf_size = BoxTree::leaf_size;
+constexpr int bins = 16;           // candidate planes of a split
+constexpr int balanced_from = 24;  // levels
+static_assert(BoxTree::stack_size >= (balanced_from + 16) * (width - 1) + width);
+
+using Node = BoxTree::Node;
+
+struct Range {
+  int begin, end;
+  int depth;
+  int size() const { return end - begin; }
+};
+
+class Builder {
+ public:
+  explicit Builder(const std::vector<Box>& boxes) : boxes_(boxes), order_(boxes.size()) {
+    std::iota(order_.begin(), order_.end(), 0);
+  }
+
+  BoxTree build() && {
+    std::vector<Node> nodes(1);
+    std::vector<std::pair<std::size_t, Range>> pending{{0, {0, static_cast<int>(order_.size()), 0}}};
+    while (!pending.empty()) {
+      const auto [node, range] = pending.back();
+      pending.pop_back();
+      const std::vector<Range> parts = divide(range);
+      for (std::size_t i = 0; i < width; ++i) {
+        const bool used = i < parts.size();
+        set_child(nodes[node], i, used ? bounds(parts[i]) : Box(), used ? parts[i].begin : 0,
+                  used ? parts[i].size() : -1);
+        if (!used || parts[i].size() <= leaf_size) continue;
+        nodes[node].child[i] = static_cast<int>(nodes.size());
+        nodes[node].count[i] = 0;
+        pending.push_back({nodes.size(), {parts[i].begin, parts[i].end, range.depth + 1}});
+        nodes.emplace_back();
+      }
+    }
+    return {std::move(nodes), std::move(order_)};
+  }
+
+ private:
+  Vector3 center(int at) const {
+    return boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])].center();
+  }
+
+  Box bounds(const Range& range) const {
+    Box box;
+    for (int i = range.begin; i < range.end; ++i)
+      box.extend(boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
+    return box;
+  }
+
+  static void set_child(Node& node, std::size_t i, const Box& box, int first, int count) {
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][i] = count < 0 ? 0 : round_down(box.min()(axis));
+      node.high[axis][i] = count < 0 ? 0 : round_up(box.max()(axis));
+    }
+    node.child[i] = first;
+    node.count[i] = count;
+  }
+
+  std::vector<Range> divide(const Range& range) {
+    std::vector<Range> parts{range};
+    while (parts.size() < width) {
+      const auto largest = std::max_element(
+          parts.begin(), parts.end(), [](const Range& x, const Range& y) { return x.size() < y.size(); });
+      if (largest->size() <= leaf_size) break;
+      const int middle = split(*largest);
+      const Range upper{middle, largest->end, range.depth};
+      largest->end = middle;
+      parts.push_back(upper);
+    }
+    return parts;
+  }
+
+  // By the surface-area heuristic over bins of the centres along their longest axis.
+  int split(const Range& range) {
+    Box centers;
+    for (int i = range.begin; i < range.end; ++i) centers.extend(center(i));
+    int axis = 0;
+    const double extent = centers.diagonal().maxCoeff(&axis);
+    if (!(extent > 0)) return range.begin + range.size() / 2;
+    if (range.depth >= balanced_from) {
+      const int middle = range.begin + range.size() / 2;
+      std::nth_element(order_.begin() + range.begin, order_.begin() + middle, order_.begin() + range.end,
+                       [&](int x, int y) { return key(x, axis) < key(y, axis); });
+      return middle;
+    }
+    const auto bin = [&](int box) {
+      const double share = (key(box, axis) - centers.min()(axis)) / extent;
+      return std::clamp(static_cast<int>(share * bins), 0, bins - 1);
+    };
+    const int cut = best_cut(range, bin);
+    const auto middle = std::partition(order_.begin() + range.begin, order_.begin() + range.end,
+                                       [&](int box) { return bin(box) < cut; });
+    return static_cast<int>(middle - order_.begin());
+  }
+
+  // Between 1 and bins − 1: the first and the last bin are never empty.
+  template <class Bin>
+  int best_cut(const Range& range, const Bin& bin) const {
+    std::array<Box, bins> bounds_of_bin;
+    std::array<int, bins> count{};
+    for (int i = range.begin; i < range.end; ++i) {
+      const int box = order_[static_cast<std::size_t>(i)];
+      const auto at = static_cast<std::size_t>(bin(box));
+      bounds_of_bin[at].extend(boxes_[static_cast<std::size_t>(box)]);
+      ++count[at];
+    }
+    std::array<double, bins> cost{};
+    const auto area = [](const Box& b) {
+      const Vector3 d = b.diagonal();
+      return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
+    };
+    Box left, right;
+    int left_count = 0, right_count = 0;
+    for (std::size_t i = 0; i + 1 < bins; ++i) {
+      left.extend(bounds_of_bin[i]);
+      left_count += count[i];
+      cost[i + 1] += area(left) * left_count;
+      right.extend(bounds_of_bin[bins - 1 - i]);
+      right_count += count[bins - 1 - i];
+      cost[bins - 1 - i] += area(right) * right_count;
+    }
+    return static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
+  }
+
+  double key(int box, int axis) const { return boxes_[static_cast<std::size_t>(box)].center()(axis); }
+
+  const std::vector<Box>& boxes_;
+  std::vector<int> order_;  ///< in the order of the leaves
+};
+
+}  // namespace
+
+BoxTree build_box_tree(const std::vector<Box>& boxes) {
+  assert(!boxes.empty());
+  return Builder(boxes).build();
+}
+
+}  // namespace bespoke

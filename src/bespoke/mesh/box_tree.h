@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// Bounding-volume tree over boxes, four children a node, whose boxes are floats rounded outwards (one SSE
+/// register tests four). Leaves hold up to four boxes. The root is node 0.
+struct BoxTree {
+  static constexpr int width = 4;
+  static constexpr int leaf_size = 4;
+  /// Entries that a depth-first walk can have waiting: the depth is bounded, see build_box_tree.
+  static constexpr int stack_size = 128;
+
+  struct Node {
+    alignas(16) float low[3][width];
+    alignas(16) float high[3][width];
+    int child[width];  ///< index of a node, or of a leaf's first entry in `order`
+    int count[width];  ///< entries of a leaf; 0 for a node, -1 for nothing
+  };
+
+  std::vector<Node> nodes;
+  std::vector<int> order;  ///< the boxes' indices, leaf by leaf
+};
+
+/// Splits by the surface-area heuristic over bins, and in halves below a depth of 24, so that 2^31 boxes need
+/// at most 40 levels of three waiting nodes. `boxes` must not be empty, nor any of its elements.
+BoxTree build_box_tree(const std::vector<Box>& boxes);
+
+/// The largest float at most x, and the least at least x; infinite beyond a float's range.
+inline float round_down(double x) {
+  const auto rounded = static_cast<float>(x);
+  return rounded <= x ? rounded : std::nextafterf(rounded, -std::numeric_limits<float>::infinity());
+}
+inline float round_up(double x) {
+  const auto rounded = static_cast<float>(x);
+  return rounded >= x ? rounded : std::nextafterf(rounded, std::numeric_limits<float>::infinity());
+}
+
+}  // namespace bespoke
