@@ -26,6 +26,8 @@ std::vector<LeafCoordinates> with_lower_neighbours(const std::vector<LeafCoordin
 
 }  // namespace
 
+const float* absent_leaf() { return zeros.data(); }
+
 PyramidIndex::PyramidIndex(const Pyramid& pyramid) : levels(pyramid.levels.size()) {
   LeafTable finer_entries;
   for (std::size_t level = pyramid.levels.size(); level-- > 0;) {
@@ -41,7 +43,7 @@ PyramidIndex::PyramidIndex(const Pyramid& pyramid) : levels(pyramid.levels.size(
         for (int octant = 0; octant < 8; ++octant) {
           const int block = leaves.find(octant_of(leaf, octant));
           entries[i].blocks[octant] =
-              block == no_leaf ? zeros.data() : &stored.values[std::size_t{3} * leaf_nodes * block];
+              block == no_leaf ? absent_leaf() : &stored.values[std::size_t{3} * leaf_nodes * block];
           entries[i].children[octant] =
               finer_entries.find(octant_of({2 * leaf[0], 2 * leaf[1], 2 * leaf[2]}, octant));
         }

@@ -19,6 +19,9 @@ struct PyramidEntry {
   std::array<std::int32_t, 8> children{};
 };
 
+/// The values that stand for a leaf that is not there: zeros.
+const float* absent_leaf();
+
 /// Neighbours and children of the leaves of a pyramid, found once. Refers to the pyramid's values: the
 /// pyramid must live longer and stay as it is. Every entry but those of level 0 is the child of one entry.
 struct PyramidIndex {
