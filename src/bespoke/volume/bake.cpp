@@ -1,11 +1,15 @@
 #include "bespoke/volume/bake.h"
 
+#include <Eigen/LU>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "bespoke/error.h"
 #include "bespoke/volume/baked_map.h"
+#include "bespoke/volume/certificate.h"
+#include "bespoke/volume/pyramid_builder.h"
+#include "bespoke/volume/repair.h"
 #include "bespoke/volume/sampling.h"
 #include "bespoke/volume/uniform_bake.h"
 
@@ -13,7 +17,8 @@ namespace bespoke {
 namespace {
 
 constexpr std::uint64_t error_seed = 3;
-constexpr int largest_number_of_bakes = 4;
+// Places where a finished pyramid misses the tolerance or folds are refined and the whole measured anew.
+constexpr int largest_number_of_rounds = 5;
 
 bool is_empty(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
@@ -42,14 +47,81 @@ Bake bake_uniform(const ElasticMap& map, double voxel_size, const BakeOptions& o
   return result;
 }
 
-Bake bake_to_tolerance(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {
-  double voxel_size = uniform_voxel_size(map, options.tolerance);
-  for (int bakes = 1;; ++bakes) {
-    Bake result = bake_uniform(map, voxel_size, options, progress);
-    const double error = result.summary.error.max;
-    if (error <= options.tolerance || bakes == largest_number_of_bakes) return result;
-    voxel_size *= std::sqrt(0.9 * options.tolerance / error);
+// Points at which no decision of the builder was taken: random ones of the band, and near the surface, which
+// the centres of the support lie on, 27 in each finest cell.
+Points fresh_points(const PyramidBuilder& builder, const Pyramid& pyramid, const Support& support,
+                    std::size_t count, std::uint64_t seed) {
+  const Points random = random_points(builder.coarsest(), builder.band(), count, seed);
+  Eigen::Index centers = 0;
+  for (const BallCloud& cloud : support.clouds) centers += cloud.centers.cols();
+  Points surface(3, centers);
+  const Matrix3 inverse = support.frame.linear.inverse();
+  Eigen::Index column = 0;
+  for (const BallCloud& cloud : support.clouds)
+    for (Eigen::Index i = 0; i < cloud.centers.cols(); ++i)
+      surface.col(column++) = inverse * (cloud.centers.col(i) - support.frame.offset);
+  const Points near_surface = points_in_cells_at(pyramid, surface, count, seed);
+  Points all(3, random.cols() + near_surface.cols());
+  all << random, near_surface;
+  return all;
+}
+
+// Cells that fold although the map itself keeps its orientation there: finer leaves will mend them.
+Points needless_folds(const ElasticMap& map, const Certificate& certificate) {
+  Points centers(3, static_cast<Eigen::Index>(certificate.places.size()));
+  for (Eigen::Index i = 0; i < centers.cols(); ++i)
+    centers.col(i) = certificate.places[static_cast<std::size_t>(i)].center;
+  const Points gradient = map.displacement_gradient(centers);
+  Eigen::Index kept = 0;
+  for (Eigen::Index i = 0; i < centers.cols(); ++i)
+    if ((map.affine().linear + gradient.middleCols<3>(3 * i)).determinant() > 0)
+      centers.col(kept++) = Vector3(centers.col(i));
+  return centers.leftCols(kept);
+}
+
+Points points_above(const Points& x, const std::vector<double>& errors, double tolerance) {
+  Points above(3, x.cols());
+  Eigen::Index kept = 0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    if (!(errors[static_cast<std::size_t>(i)] <= tolerance)) above.col(kept++) = x.col(i);
+  return above.leftCols(kept);
+}
+
+Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {
+  const Support support = map.support();
+  RefinementOptions refinement;
+  refinement.tolerance = options.tolerance;
+  refinement.max_memory = options.max_memory;
+  PyramidBuilder builder(map, refinement, progress);
+  builder.refine();
+  Bake result;
+  BakeSummary& summary = result.summary;
+  for (int round = 0;; ++round) {
+    result.pyramid = builder.pyramid();
+    const bool last = round + 1 == largest_number_of_rounds;
+    const Certificate certificate = certify(result.pyramid, map.affine(), 1, progress);
+    const Points folds = needless_folds(map, certificate);
+    if (!last && folds.cols() > 0 && builder.refine_at(folds) > 0) {
+      summary.refined_folds += static_cast<std::size_t>(folds.cols());
+      builder.refine();
+      continue;
+    }
+    const RepairSummary repair = repair_folds(result.pyramid, map.affine(), progress);
+    summary.repaired_cells = repair.cells - repair.folded;
+    summary.repair_cost = repair.largest_change;
+    summary.folded_cells = repair.folded;
+    const Points x = fresh_points(builder, result.pyramid, support, options.error_points,
+                                  error_seed + static_cast<std::uint64_t>(round));
+    const std::vector<double> errors =
+        displacement_errors(BakedMap(map.affine(), result.pyramid), map, x, progress);
+    summary.error = summarize(errors);
+    if (last || summary.error.max <= options.tolerance || repair.cells > 0) break;
+    if (builder.refine_at(points_above(x, errors, options.tolerance)) == 0) break;
+    builder.refine();
   }
+  summary.evaluated_points = builder.evaluated_points();
+  summary.peak_bytes = builder.byte_count();
+  return result;
 }
 
 }  // namespace
@@ -61,13 +133,14 @@ std::string to_string(const BakeSummary& summary) {
     leaves += level.leaves;
     voxels += level.voxels;
   }
-  char text[300];
+  char text[400];
   std::snprintf(
       text, sizeof text,
       "%zu levels, finest voxel %.4g, %zu leaves, %zu voxels; error p99 %.4g max %.4g (n = %zu), tolerance "
-      "%s; %.2f s",
+      "%s; %zu folds refined, %zu cells repaired by at most %.2g, %zu still folded; %.2f s",
       summary.levels.size(), summary.levels.empty() ? 0.0 : summary.levels.back().voxel_size, leaves, voxels,
       summary.error.p99, summary.error.max, summary.error.count, summary.tolerance_met ? "met" : "not met",
+      summary.refined_folds, summary.repaired_cells, summary.repair_cost, summary.folded_cells,
       summary.seconds);
   return text;
 }
@@ -81,7 +154,7 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
   Bake result;
   if (!is_empty(map.support()))
     result = options.voxel_size ? bake_uniform(map, *options.voxel_size, options, progress)
-                                : bake_to_tolerance(map, options, progress);
+                                : bake_adaptively(map, options, progress);
   BakeSummary& summary = result.summary;
   for (const PyramidLevel& level : result.pyramid.levels)
     summary.levels.push_back({level.voxel_size, level.leaves.size(), level.leaves.size() * leaf_nodes});

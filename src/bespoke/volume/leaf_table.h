@@ -17,6 +17,9 @@ class LeafTable {
   /// Each leaf once.
   explicit LeafTable(const std::vector<LeafCoordinates>& leaves);
 
+  /// `leaf` must not be in the table yet.
+  void insert(const LeafCoordinates& leaf, std::int32_t position);
+
   /// Position in the list, or no_leaf.
   int find(const LeafCoordinates& leaf) const {
     for (std::size_t slot = hash(leaf) & mask_;; slot = (slot + 1) & mask_) {
@@ -40,6 +43,7 @@ class LeafTable {
 
   std::vector<Slot> slots_;  // a power of two, at most half full
   std::size_t mask_ = 0;
+  std::size_t size_ = 0;
 };
 
 }  // namespace bespoke

@@ -66,20 +66,6 @@ UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) 
   return estimate;
 }
 
-double uniform_voxel_size(const ElasticMap& map, double tolerance) {
-  const Support support = map.support();
-  // Four voxels a radius resolve the smallest bump of an RBF to about a tenth: order 2 holds from there on.
-  double voxel_size = smallest_radius(support) / 4;
-  const Lattice coarse{bounding_box(support).min(), voxel_size};
-  const Points x = random_points(coarse, band_leaves(support, coarse), probes, 2);
-  for (int round = 0; round < 3; ++round) {
-    const double error = probe_margin * probe_error(map, x, voxel_size);
-    if (!(error > 0)) break;  // affine on the band
-    voxel_size *= std::clamp(std::sqrt(tolerance / error), 1e-3, 1.5);
-  }
-  return voxel_size;
-}
-
 void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std::size_t max_memory) {
   if (estimate.bytes <= max_memory) return;
   const auto megabytes = [](std::size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; };

@@ -21,9 +21,6 @@ struct UniformEstimate {
 /// Probes the trilinear error at a few thousand cells of the band.
 UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice);
 
-/// A voxel size whose estimated error meets `tolerance` (> 0, mesh units), found from the error's order 2.
-double uniform_voxel_size(const ElasticMap& map, double tolerance);
-
 /// Throws MemoryLimitError, naming the voxel size and the tolerance that would fit, when `estimate` needs
 /// more than `max_memory` bytes.
 void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std::size_t max_memory);

@@ -1,0 +1,373 @@
+#include "bespoke/volume/pyramid_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <string>
+
+#include "bespoke/error.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+// Octants are tested at one point a cell; the largest of the cell lies a little higher.
+constexpr double test_margin = 0.8;
+// η of DESIGN: a rim may add this much to the gradient.
+constexpr double rim_gradient = 0.3;
+// Voxels of the coarsest level in the radius of the largest ball.
+constexpr double coarsest_voxels_per_radius = 4;
+// Halving the voxels divides a residual by four once they resolve the map; with less in a radius they may
+// not.
+constexpr double resolving_voxels_per_radius = 4;
+
+constexpr std::size_t points_per_call = 1 << 16;
+constexpr int tested_nodes = 64;  // of an octant, one a cell
+// Samples, final values, coordinates and tables, and the index that the look-up needs.
+constexpr std::size_t bytes_per_leaf = 2 * 3 * leaf_nodes * sizeof(float) + 500;
+constexpr std::size_t fixed_bytes = std::size_t{48} << 20;
+
+int octant_number(const LeafCoordinates& leaf) {
+  return (leaf[0] & 1) << 2 | (leaf[1] & 1) << 1 | (leaf[2] & 1);
+}
+
+LeafCoordinates parent_of(const LeafCoordinates& leaf) { return {leaf[0] >> 1, leaf[1] >> 1, leaf[2] >> 1}; }
+
+LeafCoordinates moved(const LeafCoordinates& leaf, int i, int j, int k) {
+  return {leaf[0] + i, leaf[1] + j, leaf[2] + k};
+}
+
+void sort_unique(std::vector<LeafCoordinates>& leaves) {
+  std::sort(leaves.begin(), leaves.end());
+  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+}
+
+double largest_radius(const Support& support) {
+  double radius = 0;
+  for (const BallCloud& cloud : support.clouds)
+    if (cloud.centers.cols() > 0) radius = std::max(radius, cloud.radius);
+  return radius;
+}
+
+// The node of cell `number` of an octant (4³ cells) at which it is tested: the cell's centre, or the middle
+// of a face or an edge, in turn, because harmonic displacements have no error at centres.
+std::array<int, 3> tested_node(int number) {
+  const std::array<int, 3> cell = {number / 16, number / 4 % 4, number % 4};
+  const int middle = 1 + (cell[0] + 2 * cell[1] + 4 * cell[2]) % 7;
+  return {2 * cell[0] + (middle >> 2 & 1), 2 * cell[1] + (middle >> 1 & 1), 2 * cell[2] + (middle & 1)};
+}
+
+Vector3 value_at(const NodeBlock& block, const std::array<int, 3>& node) {
+  const int n = (node[0] * block_edge + node[1]) * block_edge + node[2];
+  return {block[0][n], block[1][n], block[2][n]};
+}
+
+double squared_residual(const float* u, const NodeBlock& sum, int i, int j, int k) {
+  const int n = (i * block_edge + j) * block_edge + k;
+  const float* value = u + node_offset(i, j, k);
+  double squared = 0;
+  for (int c = 0; c < 3; ++c) squared += (value[c] - sum[c][n]) * (value[c] - sum[c][n]);
+  return squared;
+}
+
+}  // namespace
+
+PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& options,
+                               const Progress& progress)
+    : map_(map), options_(options), progress_(progress), support_(map.support()) {
+  coarsest_ = {bounding_box(support_).min(), largest_radius(support_) / coarsest_voxels_per_radius};
+  make_level(0);
+  band_ = band_leaves(support_, coarsest_);
+  add(0, band_);
+}
+
+std::size_t PyramidBuilder::byte_count() const {
+  std::size_t leaves = 0;
+  for (const Level& level : levels_) leaves += level.leaves.size();
+  return fixed_bytes + bytes_per_leaf * leaves;
+}
+
+void PyramidBuilder::require_room(std::size_t level, std::size_t leaves) const {
+  const std::size_t needed = byte_count() + bytes_per_leaf * leaves;
+  if (needed <= options_.max_memory) return;
+  char text[300];
+  int length = std::snprintf(
+      text, sizeof text, "a tolerance of %.4g needs more than %zu MB at voxels of %.4g, the limit is %zu MB",
+      options_.tolerance, needed >> 20, levels_[level].lattice.voxel_size, options_.max_memory >> 20);
+  if (level > 0)
+    std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length),
+                  "; a tolerance of %.4g would fit", 1.5 * missed_[level - 1]);
+  throw MemoryLimitError(text);
+}
+
+PyramidBuilder::Level& PyramidBuilder::make_level(std::size_t level) {
+  while (levels_.size() <= level) {
+    Level made;
+    made.lattice = {coarsest_.origin, std::ldexp(coarsest_.voxel_size, -static_cast<int>(levels_.size()))};
+    levels_.push_back(std::move(made));
+    missed_.push_back(0);
+  }
+  return levels_[level];
+}
+
+void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves) {
+  sort_unique(leaves);
+  Level& grown = make_level(level);
+  std::erase_if(leaves, [&](const LeafCoordinates& leaf) { return grown.table.find(leaf) != no_leaf; });
+  if (leaves.empty()) return;
+  if (level > 0) {
+    std::vector<LeafCoordinates> parents;
+    for (const LeafCoordinates& leaf : leaves) parents.push_back(parent_of(leaf));
+    add(level - 1, std::move(parents));
+  }
+  require_room(level, leaves.size());
+  const std::vector<float> samples = sample_leaves(map_, levels_[level].lattice, leaves, progress_);
+  evaluated_points_ += leaves.size() * leaf_nodes;
+  Level& target = levels_[level];
+  for (const LeafCoordinates& leaf : leaves) {
+    target.table.insert(leaf, static_cast<std::int32_t>(target.leaves.size()));
+    target.leaves.push_back(leaf);
+  }
+  target.samples.insert(target.samples.end(), samples.begin(), samples.end());
+  for (std::size_t finer = level; finer < levels_.size(); ++finer) levels_[finer].rims_known = false;
+}
+
+void PyramidBuilder::sum_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const {
+  const Level& at = levels_[level];
+  std::array<const float*, 8> blocks;
+  bool complete = true;
+  for (int octant = 0; octant < 8; ++octant) {
+    const int found = at.table.find(moved(leaf, octant >> 2 & 1, octant >> 1 & 1, octant & 1));
+    blocks[octant] = found == no_leaf ? nullptr : &at.samples[std::size_t{3} * leaf_nodes * found];
+    complete = complete && found != no_leaf;
+  }
+  if (!complete) coarse_block(level, leaf, sum);
+  int node = 0;
+  for (int i = 0; i < block_edge; ++i)
+    for (int j = 0; j < block_edge; ++j)
+      for (int k = 0; k < block_edge; ++k, ++node)
+        if (const float* block = blocks[(i >> 3) << 2 | (j >> 3) << 1 | k >> 3])
+          for (int c = 0; c < 3; ++c) sum[c][node] = block[node_offset(i & 7, j & 7, k & 7) + c];
+}
+
+// The sum of the levels above.
+void PyramidBuilder::coarse_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const {
+  if (level == 0) {
+    for (auto& component : sum) component.fill(0);
+    return;
+  }
+  NodeBlock coarse;
+  sum_block(level - 1, parent_of(leaf), coarse);
+  refine_block(coarse, octant_number(leaf), sum);
+}
+
+// Octants of untested leaves, except those whose residual says that the error is far below the tolerance.
+std::vector<LeafCoordinates> PyramidBuilder::octants_in_question(std::size_t level) const {
+  const Level& at = levels_[level];
+  Support unresolved;
+  unresolved.frame = support_.frame;
+  for (const BallCloud& cloud : support_.clouds)
+    if (cloud.radius < resolving_voxels_per_radius * at.lattice.voxel_size)
+      unresolved.clouds.push_back(cloud);
+  const LeafTable surprising(level == 0 ? std::vector<LeafCoordinates>{}
+                                        : band_leaves(unresolved, at.lattice));
+  const std::size_t first = at.tested;
+  const std::size_t count = at.leaves.size() - first;
+  std::vector<std::uint8_t> asked(count, 0);
+  parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
+    NodeBlock coarse;
+    for (std::size_t n = begin; n < end; ++n) {
+      const LeafCoordinates& leaf = at.leaves[first + n];
+      if (level == 0 || surprising.find(leaf) != no_leaf) {
+        asked[n] = 0xFF;
+        continue;
+      }
+      coarse_block(level, leaf, coarse);
+      const float* u = &at.samples[3 * leaf_nodes * (first + n)];
+      const double limit = options_.tolerance * options_.tolerance;
+      for (int i = 0; i < leaf_edge; ++i)
+        for (int j = 0; j < leaf_edge; ++j)
+          for (int k = 0; k < leaf_edge; ++k)
+            if (!(squared_residual(u, coarse, i, j, k) <= limit))
+              asked[n] |= static_cast<std::uint8_t>(1 << ((i >> 2) << 2 | (j >> 2) << 1 | k >> 2));
+    }
+  });
+  std::vector<LeafCoordinates> octants;
+  for (std::size_t n = 0; n < count; ++n)
+    for (int octant = 0; octant < 8; ++octant)
+      if (asked[n] >> octant & 1) {
+        const LeafCoordinates& leaf = at.leaves[first + n];
+        octants.push_back(
+            moved({2 * leaf[0], 2 * leaf[1], 2 * leaf[2]}, octant >> 2 & 1, octant >> 1 & 1, octant & 1));
+      }
+  return octants;
+}
+
+std::vector<LeafCoordinates> PyramidBuilder::octants_to_refine(std::size_t level) {
+  std::vector<LeafCoordinates> octants = octants_in_question(level);
+  levels_[level].tested = levels_[level].leaves.size();
+  if (level + 1 < levels_.size())
+    std::erase_if(
+        octants, [&](const LeafCoordinates& leaf) { return levels_[level + 1].table.find(leaf) != no_leaf; });
+  const Lattice& coarse = levels_[level].lattice;
+  const Lattice fine{coarse.origin, coarse.voxel_size / 2};
+  std::vector<double> error(octants.size());
+  for (std::size_t first = 0; first < octants.size(); first += points_per_call / tested_nodes) {
+    const std::size_t count = std::min(points_per_call / tested_nodes, octants.size() - first);
+    progress_.check();
+    Points x(3, static_cast<Eigen::Index>(count * tested_nodes));
+    for (std::size_t n = 0; n < count; ++n)
+      for (int number = 0; number < tested_nodes; ++number) {
+        const std::array<int, 3> node = tested_node(number);
+        for (int axis = 0; axis < 3; ++axis)
+          x(axis, static_cast<Eigen::Index>(n * tested_nodes) + number) =
+              fine.origin[axis] + fine.voxel_size * (leaf_edge * octants[first + n][axis] + node[axis]);
+      }
+    const Points u = map_.displacement(x);
+    parallel_for(count, 16, [&](std::size_t begin, std::size_t end) {
+      NodeBlock sum, refined;
+      for (std::size_t n = begin; n < end; ++n) {
+        const LeafCoordinates& octant = octants[first + n];
+        sum_block(level, parent_of(octant), sum);
+        refine_block(sum, octant_number(octant), refined);
+        for (int number = 0; number < tested_nodes; ++number)
+          error[first + n] =
+              std::max(error[first + n], (u.col(static_cast<Eigen::Index>(n * tested_nodes) + number) -
+                                          value_at(refined, tested_node(number)))
+                                             .norm());
+      }
+    });
+    evaluated_points_ += count * tested_nodes;
+  }
+  std::vector<LeafCoordinates> refined;
+  for (std::size_t n = 0; n < octants.size(); ++n) {
+    missed_[level] = std::max(missed_[level], error[n]);
+    if (!(error[n] <= test_margin * options_.tolerance)) refined.push_back(octants[n]);
+  }
+  return refined;
+}
+
+// Leaves that are missing beside a leaf whose residual is too large on that side.
+std::vector<LeafCoordinates> PyramidBuilder::rim_neighbours(std::size_t level) const {
+  const Level& at = levels_[level];
+  const double limit = std::min(options_.tolerance, rim_gradient * at.lattice.voxel_size);
+  std::vector<std::vector<LeafCoordinates>> found(at.leaves.size());
+  parallel_for(at.leaves.size(), 16, [&](std::size_t begin, std::size_t end) {
+    NodeBlock coarse;
+    for (std::size_t n = begin; n < end; ++n) {
+      bool known = false;
+      for (int side = 0; side < 27; ++side) {
+        const std::array<int, 3> step = {side / 9 - 1, side / 3 % 3 - 1, side % 3 - 1};
+        const LeafCoordinates neighbour = moved(at.leaves[n], step[0], step[1], step[2]);
+        if (at.table.find(neighbour) != no_leaf) continue;
+        if (!known) coarse_block(level, at.leaves[n], coarse);
+        known = true;
+        const auto from = [&](int axis) { return step[axis] > 0 ? leaf_edge - 1 : 0; };
+        const auto to = [&](int axis) { return step[axis] < 0 ? 0 : leaf_edge - 1; };
+        double largest = 0;
+        for (int i = from(0); i <= to(0); ++i)
+          for (int j = from(1); j <= to(1); ++j)
+            for (int k = from(2); k <= to(2); ++k)
+              largest = std::max(largest, squared_residual(&at.samples[3 * leaf_nodes * n], coarse, i, j, k));
+        if (!(largest <= limit * limit)) found[n].push_back(neighbour);
+      }
+    }
+  });
+  std::vector<LeafCoordinates> neighbours;
+  for (const auto& part : found) neighbours.insert(neighbours.end(), part.begin(), part.end());
+  sort_unique(neighbours);
+  return neighbours;
+}
+
+void PyramidBuilder::close_rims() {
+  for (std::size_t level = 1; level < levels_.size(); ++level) {
+    if (levels_[level].rims_known) continue;
+    levels_[level].rims_known = true;
+    const std::vector<LeafCoordinates> neighbours = rim_neighbours(level);
+    if (neighbours.empty()) continue;
+    add(level, neighbours);
+    level = 0;  // what was added may change the rims of every level
+  }
+}
+
+void PyramidBuilder::refine() {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    if (levels_[level].tested == levels_[level].leaves.size()) continue;
+    progress_.check();
+    if (level + 1 >= static_cast<std::size_t>(options_.max_levels)) {
+      levels_[level].tested = levels_[level].leaves.size();
+      continue;
+    }
+    const std::vector<LeafCoordinates> octants = octants_to_refine(level);
+    if (!octants.empty()) add(level + 1, octants);
+    close_rims();
+    level = static_cast<std::size_t>(-1);  // rims may have added leaves at any level
+  }
+}
+
+std::size_t PyramidBuilder::refine_at(const Points& x) {
+  std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    for (std::size_t level = levels_.size(); level-- > 0;) {
+      const Lattice& lattice = levels_[level].lattice;
+      const Eigen::Vector3i octant =
+          ((x.col(i) - lattice.origin) / (lattice.voxel_size * leaf_edge / 2)).array().floor().cast<int>();
+      const LeafCoordinates child = {octant.x(), octant.y(), octant.z()};
+      if (levels_[level].table.find(parent_of(child)) == no_leaf) continue;
+      if (level + 1 < static_cast<std::size_t>(options_.max_levels)) wanted[level + 1].push_back(child);
+      break;
+    }
+  std::size_t before = 0, after = 0;
+  for (const Level& level : levels_) before += level.leaves.size();
+  for (std::size_t level = 1; level < wanted.size(); ++level)
+    if (!wanted[level].empty()) add(level, wanted[level]);
+  close_rims();
+  for (const Level& level : levels_) after += level.leaves.size();
+  return after - before;
+}
+
+Pyramid PyramidBuilder::pyramid() const {
+  Pyramid result;
+  result.origin = coarsest_.origin;
+  result.levels.resize(levels_.size());
+  LeafTable finer;
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    const Level& from = levels_[level];
+    std::vector<std::size_t> order(from.leaves.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return from.leaves[a] < from.leaves[b]; });
+    PyramidLevel& to = result.levels[level];
+    to.voxel_size = from.lattice.voxel_size;
+    to.values.resize(from.samples.size());
+    to.leaves.resize(from.leaves.size());
+    parallel_for(order.size(), 16, [&](std::size_t begin, std::size_t end) {
+      NodeBlock coarse;
+      for (std::size_t n = begin; n < end; ++n) {
+        to.leaves[n] = from.leaves[order[n]];
+        coarse_block(level, to.leaves[n], coarse);
+        const float* u = &from.samples[3 * leaf_nodes * order[n]];
+        float* value = &to.values[3 * leaf_nodes * n];
+        for (int node = 0; node < leaf_nodes; ++node) {
+          const int in_block = (node / 64 * block_edge + node / 8 % 8) * block_edge + node % 8;
+          for (int c = 0; c < 3; ++c)
+            value[3 * node + c] = static_cast<float>(u[3 * node + c] - coarse[c][in_block]);
+        }
+      }
+    });
+    const auto has_child = [&](const LeafCoordinates& leaf) {
+      for (int octant = 0; octant < 8; ++octant)
+        if (finer.find(moved({2 * leaf[0], 2 * leaf[1], 2 * leaf[2]}, octant >> 2 & 1, octant >> 1 & 1,
+                             octant & 1)) != no_leaf)
+          return true;
+      return false;
+    };
+    keep_leaves(to, [&](const LeafCoordinates& leaf, bool zero) { return !zero || has_child(leaf); });
+    finer = LeafTable(to.leaves);
+  }
+  while (!result.levels.empty() && result.levels.back().leaves.empty()) result.levels.pop_back();
+  return result;
+}
+
+}  // namespace bespoke

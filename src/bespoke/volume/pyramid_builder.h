@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+#include "bespoke/volume/finest_cells.h"
+#include "bespoke/volume/leaf_table.h"
+#include "bespoke/volume/sampling.h"
+
+namespace bespoke {
+
+struct RefinementOptions {
+  double tolerance = 0;        ///< wanted largest |baked − exact|, > 0, mesh units
+  std::size_t max_memory = 0;  ///< bytes
+  int max_levels = 14;
+};
+
+/// Grows the nested pyramid of a map (DESIGN, step 5). An octant of a leaf gets a leaf of the next level
+/// where the sum so far misses u by more than the tolerance. Where a level ends, the residual of its
+/// outermost nodes drops to zero within one cell, which adds a gradient of about |r| / h: so neighbours are
+/// added until |r| ≤ min(tolerance, 0.3 h) at every rim.
+class PyramidBuilder {
+ public:
+  /// The band at the coarsest level. `map` must outlive the builder. Throws MemoryLimitError.
+  PyramidBuilder(const ElasticMap& map, const RefinementOptions& options, const Progress& progress);
+
+  /// Adds leaves until every octant passes. Throws MemoryLimitError, naming the tolerance that would fit.
+  void refine();
+
+  /// Gives the finest leaf around each point one below it, whatever its error. Points outside all leaves are
+  /// left alone. Returns the number of leaves added; call refine() afterwards.
+  std::size_t refine_at(const Points& x);
+
+  Pyramid pyramid() const;
+
+  /// Coarsest level of the band.
+  const Lattice& coarsest() const { return coarsest_; }
+  const std::vector<LeafCoordinates>& band() const { return band_; }
+  std::size_t evaluated_points() const { return evaluated_points_; }
+  /// What the leaves so far need, values and samples.
+  std::size_t byte_count() const;
+
+ private:
+  struct Level {
+    Lattice lattice;
+    std::vector<LeafCoordinates> leaves;  // in the order they came
+    std::vector<float> samples;           // u, not residuals: these change whenever a coarser leaf comes
+    LeafTable table;
+    std::size_t tested = 0;   // leaves whose octants were looked at
+    bool rims_known = false;  // no rim has changed since they were looked at
+  };
+
+  void add(std::size_t level, std::vector<LeafCoordinates> leaves);
+  Level& make_level(std::size_t level);
+  std::vector<LeafCoordinates> octants_to_refine(std::size_t level);
+  std::vector<LeafCoordinates> octants_in_question(std::size_t level) const;
+  std::vector<LeafCoordinates> rim_neighbours(std::size_t level) const;
+  void close_rims();
+  void sum_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const;
+  void coarse_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const;
+  void require_room(std::size_t level, std::size_t leaves) const;
+
+  const ElasticMap& map_;
+  RefinementOptions options_;
+  const Progress& progress_;
+  Support support_;
+  Lattice coarsest_;
+  std::vector<LeafCoordinates> band_;
+  std::vector<Level> levels_;
+  std::vector<double> missed_;  // largest error seen, one a level
+  std::size_t evaluated_points_ = 0;
+};
+
+}  // namespace bespoke

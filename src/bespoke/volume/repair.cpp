@@ -1,0 +1,113 @@
+#include "bespoke/volume/repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "bespoke/volume/baked_map.h"
+#include "bespoke/volume/leaf_table.h"
+#include "bespoke/volume/pyramid_index.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int largest_number_of_rounds = 24;
+constexpr int sweeps_per_round = 4;
+// Rounds after which the next ring of nodes may move too: a fold squeezes what it takes from around it.
+constexpr int rounds_per_ring = 3;
+
+using Node = std::array<int, 3>;
+
+// Nodes of one level that may move, by their place in the level's values.
+using MovableNodes = std::map<std::pair<int, Node>, std::size_t>;
+
+class Repair {
+ public:
+  Repair(Pyramid& pyramid, const AffineMap& affine) : pyramid_(pyramid), affine_(affine) {
+    for (const PyramidLevel& level : pyramid.levels) tables_.emplace_back(level.leaves);
+  }
+
+  void add_corners(const FoldedCell& cell) {
+    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+    const Vector3 lattice = (cell.center - pyramid_.origin) / voxel_size;
+    for (int corner = 0; corner < 8; ++corner)
+      add_node(cell.level, {static_cast<int>(std::floor(lattice.x())) + (corner >> 2 & 1),
+                            static_cast<int>(std::floor(lattice.y())) + (corner >> 1 & 1),
+                            static_cast<int>(std::floor(lattice.z())) + (corner & 1)});
+  }
+
+  void grow() {
+    const MovableNodes inner = nodes_;
+    for (const auto& [place, offset] : inner)
+      for (int side = 0; side < 27; ++side)
+        add_node(place.first, {place.second[0] + side / 9 - 1, place.second[1] + side / 3 % 3 - 1,
+                               place.second[2] + side % 3 - 1});
+  }
+
+  // Every movable node goes to the mean of its six neighbours.
+  void sweep() {
+    Points x(3, static_cast<Eigen::Index>(7 * nodes_.size()));
+    Eigen::Index column = 0;
+    for (const auto& [place, offset] : nodes_) {
+      const double voxel_size = pyramid_.levels[static_cast<std::size_t>(place.first)].voxel_size;
+      const Vector3 node(place.second[0], place.second[1], place.second[2]);
+      x.col(column++) = pyramid_.origin + voxel_size * node;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double step : {-1.0, 1.0})
+          x.col(column++) = pyramid_.origin + voxel_size * (node + step * Vector3::Unit(axis));
+    }
+    const Points u = BakedMap(affine_, pyramid_).displacement(x);
+    column = 0;
+    for (const auto& [place, offset] : nodes_) {
+      const Vector3 change = u.middleCols(column + 1, 6).rowwise().mean() - u.col(column);
+      column += 7;
+      float* value = &pyramid_.levels[static_cast<std::size_t>(place.first)].values[offset];
+      Vector3& moved = moved_.try_emplace(place, Vector3::Zero()).first->second;
+      moved += change;
+      for (int c = 0; c < 3; ++c) value[c] += static_cast<float>(change[c]);
+    }
+  }
+
+  double largest_change() const {
+    double largest = 0;
+    for (const auto& [place, change] : moved_) largest = std::max(largest, change.norm());
+    return largest;
+  }
+
+ private:
+  void add_node(int level, const Node& node) {
+    const int leaf =
+        tables_[static_cast<std::size_t>(level)].find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
+    if (leaf == no_leaf) return;
+    nodes_[{level, node}] = std::size_t{3} * leaf_nodes * static_cast<std::size_t>(leaf) +
+                            static_cast<std::size_t>(node_offset(node[0] & 7, node[1] & 7, node[2] & 7));
+  }
+
+  Pyramid& pyramid_;
+  AffineMap affine_;
+  std::vector<LeafTable> tables_;
+  MovableNodes nodes_;
+  std::map<std::pair<int, Node>, Vector3> moved_;
+};
+
+}  // namespace
+
+RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress) {
+  RepairSummary summary;
+  Certificate certificate = certify(pyramid, affine, 1, progress);
+  summary.cells = summary.folded = certificate.folded + certificate.undecided;
+  if (summary.cells == 0 || !(certificate.affine_determinant > 0)) return summary;
+  Repair repair(pyramid, affine);
+  for (int round = 0; round < largest_number_of_rounds && summary.folded > 0; ++round) {
+    for (const FoldedCell& cell : certificate.places) repair.add_corners(cell);
+    if (round % rounds_per_ring == rounds_per_ring - 1) repair.grow();
+    for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
+    certificate = certify(pyramid, affine, 1, progress);
+    summary.folded = certificate.folded + certificate.undecided;
+  }
+  summary.largest_change = repair.largest_change();
+  return summary;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+#include "bespoke/progress.h"
+#include "bespoke/volume/certificate.h"
+
+namespace bespoke {
+
+struct RepairSummary {
+  std::size_t cells = 0;      ///< that folded before
+  std::size_t folded = 0;     ///< that fold or are undecided after
+  double largest_change = 0;  ///< of u at a node, mesh units
+};
+
+/// Moves nodes of folded cells towards the mean of their neighbours, sweep by sweep and over a growing
+/// neighbourhood, until every cell is certified or `largest_number_of_sweeps` is reached. Only values change,
+/// no leaf is added; nodes far from a fold keep theirs. Folds of the affine part cannot be repaired.
+RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress = {});
+
+}  // namespace bespoke
