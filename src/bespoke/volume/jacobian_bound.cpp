@@ -54,8 +54,8 @@ inline void dot(const RowVector& a, const RowVector& b, Row& result) {
 struct RowCoefficients {
   std::array<Row, 27> values;
 
-  __attribute__((always_inline)) inline void compute(const NodeBlock& sum, int node, const Matrix3& linear,
-                                                     double scale) {
+  [[gnu::always_inline]] inline void compute(const NodeBlock& sum, int node, const Matrix3& linear,
+                                             double scale) {
     Edges x, y, z;
     for (int first = 0; first < 2; ++first)
       for (int second = 0; second < 2; ++second) {
@@ -112,12 +112,8 @@ double largest_component(const NodeBlock& sum, const Matrix3& linear, double sca
   return linear.cwiseAbs().maxCoeff() + 2 * std::abs(scale) * largest;
 }
 
-}  // namespace
-
-__attribute__((target_clones("avx512f", "avx2", "default"))) void bound_block(
-    const NodeBlock& sum, const Matrix3& linear, double scale, double scaled_error, JacobianBlock& block) {
-  const double largest = largest_component(sum, linear, scale);
-  block.margin = rounding_margin(largest, 2 * scaled_error + 8 * unit_roundoff * largest);
+[[gnu::always_inline]] inline void bound_rows(const NodeBlock& sum, const Matrix3& linear, double scale,
+                                              JacobianBlock& block) {
   RowCoefficients row;
   for (int i = 0; i < leaf_edge; ++i)
     for (int j = 0; j < leaf_edge; ++j) {
@@ -132,6 +128,38 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) void bound_block(
         }
       for (int n = 0; n < lanes; ++n) bound[n] -= block.margin;
     }
+}
+
+using BoundRows = void (*)(const NodeBlock&, const Matrix3&, double, JacobianBlock&);
+
+// Chosen by a pointer rather than by target_clones, whose resolvers run before the sanitizers are ready. All
+// give the same bits: no contraction, and no sum is reordered.
+void bound_rows_anywhere(const NodeBlock& sum, const Matrix3& linear, double scale, JacobianBlock& block) {
+  bound_rows(sum, linear, scale, block);
+}
+
+#if defined(__x86_64__)
+__attribute__((target("avx2"))) void bound_rows_avx2(const NodeBlock& sum, const Matrix3& linear,
+                                                     double scale, JacobianBlock& block) {
+  bound_rows(sum, linear, scale, block);
+}
+#endif
+
+BoundRows fastest_bound_rows() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2")) return bound_rows_avx2;
+#endif
+  return bound_rows_anywhere;
+}
+
+}  // namespace
+
+void bound_block(const NodeBlock& sum, const Matrix3& linear, double scale, double scaled_error,
+                 JacobianBlock& block) {
+  static const BoundRows fastest = fastest_bound_rows();
+  const double largest = largest_component(sum, linear, scale);
+  block.margin = rounding_margin(largest, 2 * scaled_error + 8 * unit_roundoff * largest);
+  fastest(sum, linear, scale, block);
 }
 
 BezierDeterminant bezier_coefficients(const NodeBlock& sum, int cell, const Matrix3& linear, double scale) {
