@@ -84,7 +84,7 @@ std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, A
   if (asset.exact_map.empty())
     throw InvalidInput(arguments.map + ": holds no exact map; make it with `bespoke fit --keep-exact`");
   try {
-    return read_exact_map(asset.exact_map);
+    return parse_exact_map(asset.exact_map);
   } catch (const FormatError& error) {
     throw FormatError(arguments.map + ": " + error.what());
   }

@@ -3,192 +3,187 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
-#include "bespoke/rbf/multiscale.h"
 
 namespace bespoke {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the bytes of an exact map are little endian");
+constexpr std::string_view magic = "BSPKEXCT";
+constexpr std::uint32_t version = 1;
 
-constexpr std::uint64_t magic = 0x3150414d54435845;  // "EXCTMAP1"
-
-enum class Kind : std::uint64_t { csrbf = 1, multiscale = 2, pffd = 3 };
+enum class Type : std::uint32_t { csrbf = 1, pffd = 3 };
 
 class Writer {
  public:
-  explicit Writer(Kind kind) {
-    put(magic);
-    put(static_cast<std::uint64_t>(kind));
+  template <class Unsigned>
+  void integer(Unsigned value) {
+    static_assert(std::is_unsigned_v<Unsigned>);
+    for (std::size_t byte = 0; byte < sizeof value; ++byte)
+      bytes_ += static_cast<char>(value >> (8 * byte) & 0xFF);
   }
-  void put(std::uint64_t value) { append(&value, sizeof value); }
-  void put(double value) { append(&value, sizeof value); }
+  void number(double value) { integer(std::bit_cast<std::uint64_t>(value)); }
+  void count(Eigen::Index value) { integer(static_cast<std::uint64_t>(value)); }
+
   template <class Matrix>
-  void put_columns(const Matrix& matrix) {
-    put(static_cast<std::uint64_t>(matrix.cols()));
-    append(matrix.data(), sizeof(typename Matrix::Scalar) * static_cast<std::size_t>(matrix.size()));
+  void numbers(const Matrix& values) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column)
+      for (Eigen::Index row = 0; row < values.rows(); ++row) number(values(row, column));
   }
-  void put(const AffineMap& affine) {
-    append(affine.linear.data(), sizeof(double) * 9);
-    append(affine.offset.data(), sizeof(double) * 3);
+  void points(const Points& values) {
+    count(values.cols());
+    numbers(values);
   }
+  void affine(const AffineMap& map) {
+    numbers(map.linear);
+    numbers(map.offset);
+  }
+  void text(std::string_view value) { bytes_ += value; }
+
   std::string take() { return std::move(bytes_); }
 
  private:
-  void append(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
-
   std::string bytes_;
 };
 
+[[noreturn]] void reject(const std::string& reason) {
+  throw FormatError("exact map: " + reason + "; the asset was damaged or written by another version");
+}
+
 class Reader {
  public:
-  explicit Reader(const std::string& bytes) : bytes_(bytes) {
-    require(unsigned_integer() == magic, "does not begin as one");
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+
+  std::string_view text(std::size_t size) {
+    if (bytes_.size() < size) reject("ends " + std::to_string(size - bytes_.size()) + " bytes too early");
+    const std::string_view result = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return result;
   }
-  std::uint64_t unsigned_integer() {
-    std::uint64_t value = 0;
-    copy(&value, sizeof value);
+  template <class Unsigned>
+  Unsigned integer() {
+    Unsigned value = 0;
+    const std::string_view read = text(sizeof value);
+    for (std::size_t byte = 0; byte < sizeof value; ++byte)
+      value |= static_cast<Unsigned>(static_cast<unsigned char>(read[byte])) << (8 * byte);
     return value;
   }
-  double positive_length() {
-    double value = 0;
-    copy(&value, sizeof value);
-    require(value > 0 && std::isfinite(value), "has a length that is not positive");
+  double number(const char* what) {
+    const auto value = std::bit_cast<double>(integer<std::uint64_t>());
+    if (!std::isfinite(value)) reject(std::string(what) + " is not finite");
     return value;
+  }
+  double positive(const char* what) {
+    const double value = number(what);
+    if (!(value > 0)) reject(std::string(what) + " is not above 0");
+    return value;
+  }
+  /// How many items of at least `bytes_each` follow; never more than there are bytes for.
+  Eigen::Index count(std::size_t bytes_each, const char* what) {
+    const auto value = integer<std::uint64_t>();
+    if (value > bytes_.size() / bytes_each)
+      reject(std::to_string(value) + " " + what + " do not fit into the " + std::to_string(bytes_.size()) +
+             " bytes that follow");
+    return static_cast<Eigen::Index>(value);
   }
   template <class Matrix>
-  Matrix columns() {
-    const std::uint64_t count = unsigned_integer();
-    constexpr std::size_t column_bytes = 3 * sizeof(typename Matrix::Scalar);
-    require(count <= (bytes_.size() - position_) / column_bytes, "ends early");
-    Matrix matrix(3, static_cast<Eigen::Index>(count));
-    copy(matrix.data(), count * column_bytes);
-    return matrix;
+  void numbers(Matrix& values, const char* what) {
+    for (Eigen::Index column = 0; column < values.cols(); ++column)
+      for (Eigen::Index row = 0; row < values.rows(); ++row) values(row, column) = number(what);
   }
-  Points points() {
-    Points found = columns<Points>();
-    require(found.allFinite(), "has a value that is not finite");
-    return found;
+  Points points(const char* what) {
+    Points values(3, count(3 * sizeof(double), what));
+    numbers(values, what);
+    return values;
   }
   AffineMap affine() {
-    AffineMap found;
-    copy(found.linear.data(), sizeof(double) * 9);
-    copy(found.offset.data(), sizeof(double) * 3);
-    require(found.linear.allFinite() && found.offset.allFinite(), "has a value that is not finite");
-    return found;
+    AffineMap map;
+    numbers(map.linear, "the affine part");
+    numbers(map.offset, "the affine part");
+    return map;
   }
-  void require_end() const { require(position_ == bytes_.size(), "has bytes after its end"); }
-  static void require(bool holds, const char* trouble) {
-    if (!holds) throw FormatError(std::string("the stored exact map ") + trouble);
+  void end() const {
+    if (!bytes_.empty()) reject(std::to_string(bytes_.size()) + " bytes too many");
   }
 
  private:
-  void copy(void* to, std::size_t size) {
-    require(size <= bytes_.size() - position_, "ends early");
-    if (size > 0) std::memcpy(to, bytes_.data() + position_, size);
-    position_ += size;
-  }
-
-  const std::string& bytes_;
-  std::size_t position_ = 0;
+  std::string_view bytes_;
 };
 
-std::string write_multiscale(const MultiscaleMap& map) {
-  Writer writer(Kind::multiscale);
-  writer.put(map.affine());
-  writer.put(std::uint64_t{map.composed()});
-  writer.put(std::uint64_t{map.layers().size()});
-  for (const RbfLayer& layer : map.layers()) {
-    writer.put(layer.lambda);
-    writer.put_columns(layer.centers);
-    writer.put_columns(layer.coefficients);
-  }
-  return writer.take();
-}
-
-std::shared_ptr<const ElasticMap> read_csrbf(Reader& reader) {
+std::shared_ptr<const ElasticMap> parse_csrbf(Reader& reader) {
   const AffineMap affine = reader.affine();
-  const double lambda = reader.positive_length();
-  Points centers = reader.points();
-  Points coefficients = reader.points();
-  Reader::require(centers.cols() == coefficients.cols(), "has centres without coefficients");
-  reader.require_end();
+  const double lambda = reader.positive("lambda");
+  Points centers = reader.points("centres");
+  Points coefficients = reader.points("coefficients");
+  reader.end();
+  if (centers.cols() != coefficients.cols()) reject("as many coefficients as centres are needed");
   return std::make_shared<CsrbfMap>(std::move(centers), std::move(coefficients), affine, lambda);
 }
 
-std::shared_ptr<const ElasticMap> read_multiscale(Reader& reader) {
-  const AffineMap affine = reader.affine();
-  const bool composed = reader.unsigned_integer() != 0;
-  const std::uint64_t count = reader.unsigned_integer();
-  std::vector<RbfLayer> layers;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    RbfLayer layer;
-    layer.lambda = reader.positive_length();
-    layer.centers = reader.points();
-    layer.coefficients = reader.points();
-    Reader::require(layer.centers.cols() == layer.coefficients.cols(), "has centres without coefficients");
-    layers.push_back(std::move(layer));
-  }
-  reader.require_end();
-  return std::make_shared<MultiscaleMap>(affine, std::move(layers), composed);
-}
-
-std::shared_ptr<const ElasticMap> read_pffd(Reader& reader) {
-  const double lambda = reader.positive_length();
+std::shared_ptr<const ElasticMap> parse_pffd(Reader& reader) {
+  const double lambda = reader.positive("lambda");
   TriangleMesh source;
-  source.vertices = reader.points();
-  source.faces = reader.columns<Faces>();
-  const Points fitted = reader.points();
-  reader.require_end();
-  const auto vertices = static_cast<int>(source.vertices.cols());
-  Reader::require(fitted.cols() == vertices, "has vertices without fitted positions");
-  Reader::require(
-      source.faces.size() > 0 && source.faces.minCoeff() >= 0 && source.faces.maxCoeff() < vertices,
-      "has a face without vertices");
+  source.vertices = reader.points("source vertices");
+  const Points fitted = reader.points("fitted vertices");
+  source.faces.resize(3, reader.count(3 * sizeof(std::uint32_t), "faces"));
+  for (Eigen::Index i = 0; i < source.faces.size(); ++i) {
+    const auto vertex = reader.integer<std::uint32_t>();
+    if (!(vertex < source.vertices.cols())) reject("a face uses vertex " + std::to_string(vertex));
+    source.faces(i) = static_cast<int>(vertex);
+  }
+  reader.end();
   return std::make_shared<PffdMap>(source, fitted, lambda);
 }
 
 }  // namespace
 
-std::string write_exact_map(const ElasticMap& map, const TriangleMesh& source, const Points& fitted_vertices,
-                            double lambda) {
-  if (const auto* layers = dynamic_cast<const MultiscaleMap*>(&map)) return write_multiscale(*layers);
+std::string serialize_exact_map(const ElasticMap& map) {
+  Writer writer;
+  writer.text(magic);
+  writer.integer(version);
+  const auto type = [&](Type value) { writer.integer(static_cast<std::uint32_t>(value)); };
   if (const auto* csrbf = dynamic_cast<const CsrbfMap*>(&map)) {
-    Writer writer(Kind::csrbf);
-    writer.put(csrbf->affine());
-    writer.put(csrbf->lambda());
-    writer.put_columns(csrbf->centers());
-    writer.put_columns(csrbf->coefficients());
-    return writer.take();
+    type(Type::csrbf);
+    writer.affine(csrbf->affine());
+    writer.number(csrbf->lambda());
+    writer.points(csrbf->centers());
+    writer.points(csrbf->coefficients());
+  } else if (const auto* pffd = dynamic_cast<const PffdMap*>(&map)) {
+    type(Type::pffd);
+    writer.number(pffd->lambda());
+    writer.points(pffd->source().vertices);
+    writer.points(pffd->fitted());
+    writer.count(pffd->source().faces.cols());
+    for (Eigen::Index i = 0; i < pffd->source().faces.size(); ++i)
+      writer.integer(static_cast<std::uint32_t>(pffd->source().faces(i)));
+  } else {
+    throw InvalidInput("an elastic map of this type is not exact: it cannot be kept for apply --exact");
   }
-  if (dynamic_cast<const PffdMap*>(&map)) {
-    Writer writer(Kind::pffd);
-    writer.put(lambda);
-    writer.put_columns(source.vertices);
-    writer.put_columns(source.faces);
-    writer.put_columns(fitted_vertices);
-    return writer.take();
-  }
-  throw InvalidInput("only csrbf, multiscale, diffeomorphic and pffd maps can be stored exactly");
+  return writer.take();
 }
 
-std::shared_ptr<const ElasticMap> read_exact_map(const std::string& bytes) {
+std::shared_ptr<const ElasticMap> parse_exact_map(std::string_view bytes) {
   Reader reader(bytes);
-  switch (static_cast<Kind>(reader.unsigned_integer())) {
-    case Kind::csrbf:
-      return read_csrbf(reader);
-    case Kind::multiscale:
-      return read_multiscale(reader);
-    case Kind::pffd:
-      return read_pffd(reader);
+  if (reader.text(magic.size()) != magic) reject("does not begin as one");
+  if (const auto found = reader.integer<std::uint32_t>(); found != version)
+    reject("version " + std::to_string(found) + ", only " + std::to_string(version) + " is known");
+  const auto type = reader.integer<std::uint32_t>();
+  try {
+    switch (static_cast<Type>(type)) {
+      case Type::csrbf:
+        return parse_csrbf(reader);
+      case Type::pffd:
+        return parse_pffd(reader);
+    }
+  } catch (const InvalidInput& error) {
+    reject(error.what());
   }
-  throw FormatError("the stored exact map is of an unknown kind");
+  reject("unknown type " + std::to_string(type));
 }
 
 }  // namespace bespoke

@@ -2,18 +2,20 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
-#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/mapping/elastic_map.h"
 
 namespace bespoke {
 
-/// The bytes from which read_exact_map makes the same map again: centres and coefficients of the radial
-/// methods, the two meshes of p-FFD (which its map is made of: `source`, `fitted_vertices`, `lambda`). Little
-/// endian, doubles as they are. Throws InvalidInput for a map of another type.
-std::string write_exact_map(const ElasticMap& map, const TriangleMesh& source, const Points& fitted_vertices,
-                            double lambda);
+/// The bytes of an exact elastic map, so that an asset can carry it beside its grids (`--keep-exact`) and
+/// anybody can measure what baking cost. Little-endian: magic, version, type (csrbf, multiscale, p-FFD), then
+/// what its constructor takes, all numbers as doubles or 32/64-bit integers. The same map gives the same
+/// bytes. Throws InvalidInput for a map of any other type (a baked one, for instance).
+std::string serialize_exact_map(const ElasticMap& map);
 
-/// Throws FormatError when the bytes are not what write_exact_map makes.
-std::shared_ptr<const ElasticMap> read_exact_map(const std::string& bytes);
+/// The map again: displacement and gradient have the same bits as before. Throws FormatError for bytes that
+/// serialize_exact_map did not write, before any size in them is trusted.
+std::shared_ptr<const ElasticMap> parse_exact_map(std::string_view bytes);
 
 }  // namespace bespoke

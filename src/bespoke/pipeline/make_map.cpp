@@ -91,9 +91,7 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   asset.pyramid = std::move(baked.pyramid);
   asset.certificate = certify(asset.pyramid, asset.affine, 1, progress);
   asset.record = make_record(input, options, made.fit, made.bake);
-  if (options.keep_exact)
-    asset.exact_map =
-        write_exact_map(*made.fit.elastic, input.source, made.fit.fitted_vertices, options.fit.lambda);
+  if (options.keep_exact) asset.exact_map = serialize_exact_map(*made.fit.elastic);
 
   progress.check();
   const auto start = std::chrono::steady_clock::now();
