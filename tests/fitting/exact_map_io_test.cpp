@@ -9,6 +9,7 @@
 #include "bespoke/error.h"
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
+#include "bespoke/rbf/multiscale.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -23,7 +24,11 @@ AffineMap some_affine() {
 
 std::vector<std::shared_ptr<const ElasticMap>> maps() {
   const TriangleMesh sphere = shapes::icosphere(1);
+  std::vector<RbfLayer> layers = {{0.7, random_points(9, 1), 0.05 * random_points(9, 2)},
+                                  {0.3, random_points(20, 3), 0.02 * random_points(20, 4)}};
   return {std::make_shared<CsrbfMap>(random_points(30, 5), random_points(30, 6), some_affine(), 0.6),
+          std::make_shared<MultiscaleMap>(some_affine(), layers, false),
+          std::make_shared<MultiscaleMap>(some_affine(), layers, true),
           std::make_shared<PffdMap>(sphere, sphere.vertices + 0.1 * random_points(sphere.vertices.cols(), 8),
                                     0.4)};
 }

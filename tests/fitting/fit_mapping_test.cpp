@@ -82,6 +82,19 @@ TEST(FitMapping, CarriesTheSourceOntoTheTarget) {
   }
 }
 
+TEST(FitMapping, MeetsTheFitToleranceByTheMultiscaleMaps) {
+  for (const ElasticMethod method : {ElasticMethod::multiscale, ElasticMethod::diffeomorphic}) {
+    Pair pair;
+    pair.options.elastic = method;
+    pair.options.fit_tolerance = 1e-3;
+    const FittedMapping fit = pair.fit();
+    EXPECT_LT(fit.vertex_residuals.p95, 1e-3);
+    const auto json = nlohmann::json::parse(fit.stages[3].json);
+    EXPECT_EQ(json["method"], method == ElasticMethod::multiscale ? "multiscale" : "diffeomorphic");
+    EXPECT_GE(json["within_tolerance"], 0.95 * 642);
+  }
+}
+
 TEST(FitMapping, RecoversARigidMotionExactly) {
   Pair pair;
   pair.target = pair.source;

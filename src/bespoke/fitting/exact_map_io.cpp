@@ -10,6 +10,7 @@
 #include "bespoke/error.h"
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
+#include "bespoke/rbf/multiscale.h"
 
 namespace bespoke {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 constexpr std::string_view magic = "BSPKEXCT";
 constexpr std::uint32_t version = 1;
 
-enum class Type : std::uint32_t { csrbf = 1, pffd = 3 };
+enum class Type : std::uint32_t { csrbf = 1, multiscale = 2, pffd = 3 };
 
 class Writer {
  public:
@@ -125,6 +126,23 @@ std::shared_ptr<const ElasticMap> parse_csrbf(Reader& reader) {
   return std::make_shared<CsrbfMap>(std::move(centers), std::move(coefficients), affine, lambda);
 }
 
+std::shared_ptr<const ElasticMap> parse_multiscale(Reader& reader) {
+  const AffineMap affine = reader.affine();
+  const auto composed = reader.integer<std::uint32_t>();
+  if (composed > 1) reject("neither composed nor summed");
+  constexpr std::size_t smallest_layer = sizeof(double) + 2 * sizeof(std::uint64_t);
+  std::vector<RbfLayer> layers(static_cast<std::size_t>(reader.count(smallest_layer, "layers")));
+  for (RbfLayer& layer : layers) {
+    layer.lambda = reader.positive("lambda");
+    layer.centers = reader.points("centres");
+    layer.coefficients = reader.points("coefficients");
+    if (layer.centers.cols() != layer.coefficients.cols())
+      reject("as many coefficients as centres are needed");
+  }
+  reader.end();
+  return std::make_shared<MultiscaleMap>(affine, std::move(layers), composed == 1);
+}
+
 std::shared_ptr<const ElasticMap> parse_pffd(Reader& reader) {
   const double lambda = reader.positive("lambda");
   TriangleMesh source;
@@ -153,6 +171,16 @@ std::string serialize_exact_map(const ElasticMap& map) {
     writer.number(csrbf->lambda());
     writer.points(csrbf->centers());
     writer.points(csrbf->coefficients());
+  } else if (const auto* multiscale = dynamic_cast<const MultiscaleMap*>(&map)) {
+    type(Type::multiscale);
+    writer.affine(multiscale->affine());
+    writer.integer(std::uint32_t{multiscale->composed()});
+    writer.count(static_cast<Eigen::Index>(multiscale->layers().size()));
+    for (const RbfLayer& layer : multiscale->layers()) {
+      writer.number(layer.lambda);
+      writer.points(layer.centers);
+      writer.points(layer.coefficients);
+    }
   } else if (const auto* pffd = dynamic_cast<const PffdMap*>(&map)) {
     type(Type::pffd);
     writer.number(pffd->lambda());
@@ -177,6 +205,8 @@ std::shared_ptr<const ElasticMap> parse_exact_map(std::string_view bytes) {
     switch (static_cast<Type>(type)) {
       case Type::csrbf:
         return parse_csrbf(reader);
+      case Type::multiscale:
+        return parse_multiscale(reader);
       case Type::pffd:
         return parse_pffd(reader);
     }

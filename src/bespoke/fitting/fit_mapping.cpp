@@ -12,6 +12,7 @@
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
 #include "bespoke/rbf/global_rbf.h"
+#include "bespoke/rbf/multiscale.h"
 #include "bespoke/rigid/rigid_alignment.h"
 
 namespace bespoke {
@@ -144,6 +145,23 @@ ElasticFit fit_elastic_csrbf(const PlacePairs& pairs, const FitOptions& options,
            {"center_residual_max", fit.summary.residual}}};
 }
 
+ElasticFit fit_elastic_multiscale(const PlacePairs& pairs, const FitOptions& options,
+                                  const Progress& progress) {
+  MultiscaleOptions multiscale;
+  multiscale.lambda = options.lambda;
+  multiscale.tolerance = options.fit_tolerance;
+  multiscale.composed = options.elastic == ElasticMethod::diffeomorphic;
+  MultiscaleFit fit = fit_multiscale(pairs.sources, pairs.targets, multiscale, progress);
+  const char* method = multiscale.composed ? "diffeomorphic" : "multiscale";
+  return {std::move(fit.map),
+          std::string(method) + ": " + to_string(fit.summary),
+          {{"method", method},
+           {"lambdas", fit.summary.lambdas},
+           {"centers", fit.summary.centers},
+           {"gradient_bounds", fit.summary.gradient_bounds},
+           {"within_tolerance", fit.summary.within_tolerance}}};
+}
+
 ElasticFit fit_elastic_pffd(const TriangleMesh& source, const Points& fitted, const FitOptions& options) {
   auto map = std::make_shared<const PffdMap>(source, fitted, options.lambda);
   return {std::move(map), "pffd: " + std::to_string(source.faces.cols()) + " faces", {{"method", "pffd"}}};
@@ -156,7 +174,7 @@ ElasticFit fit_elastic(const TriangleMesh& source, const Points& fitted, const P
       return fit_elastic_csrbf(pairs, options, progress);
     case ElasticMethod::multiscale:
     case ElasticMethod::diffeomorphic:
-      throw InvalidInput("this elastic method is not built in; use csrbf or pffd");
+      return fit_elastic_multiscale(pairs, options, progress);
     case ElasticMethod::pffd:
       return fit_elastic_pffd(source, fitted, options);
   }

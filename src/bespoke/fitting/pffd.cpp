@@ -52,7 +52,8 @@ Matrix3 corners(const TriangleMesh& mesh, const Points& vertices, Eigen::Index f
 
 /// A source face and what carries it onto the fitted one.
 struct FaceFrame {
-  Vector3 a, ab, ac;
+  Vector3 a, ab, ac, normal;
+  double bb, bc, cc, det;  ///< dot products of the edges and their Gram determinant
   double area;
   Vector3 shift;   ///< the face's affine map minus the background map, at a
   Matrix3 linear;  ///< the same difference's linear part
@@ -67,7 +68,11 @@ FaceFrame make_frame(const Matrix3& from, const Matrix3& to, const AffineMap& af
   frame.ac = from.col(2) - from.col(0);
   const Vector3 fitted_ab = to.col(1) - to.col(0);
   const Vector3 fitted_ac = to.col(2) - to.col(0);
-  const Vector3 normal = frame.ab.cross(frame.ac);
+  frame.bb = frame.ab.squaredNorm();
+  frame.bc = frame.ab.dot(frame.ac);
+  frame.cc = frame.ac.squaredNorm();
+  frame.det = frame.bb * frame.cc - frame.bc * frame.bc;
+  const Vector3& normal = frame.normal = frame.ab.cross(frame.ac);
   const Vector3 fitted_normal = fitted_ab.cross(fitted_ac);
   frame.area = normal.norm() / 2;
   // Unit normals times the square root of each face's area: as long as a typical edge, on both sides.
@@ -85,17 +90,13 @@ FaceFrame make_frame(const Matrix3& from, const Matrix3& to, const AffineMap& af
 /// From the closest point of the face to x.
 Vector3 arm_from_face(const FaceFrame& face, const Vector3& x) {
   const Vector3 p = x - face.a;
-  const double bb = face.ab.squaredNorm(), cc = face.ac.squaredNorm(), bc = face.ab.dot(face.ac);
   const double pb = face.ab.dot(p), pc = face.ac.dot(p);
-  const double det = bb * cc - bc * bc;
-  const double b = cc * pb - bc * pc, c = bb * pc - bc * pb;
-  if (b >= 0 && c >= 0 && b + c <= det) {
-    const Vector3 normal = face.ab.cross(face.ac);
-    return normal * (normal.dot(p) / normal.squaredNorm());
-  }
+  const double b = face.cc * pb - face.bc * pc, c = face.bb * pc - face.bc * pb;
+  if (b >= 0 && c >= 0 && b + c <= face.det)
+    return face.normal * (face.normal.dot(p) / face.normal.squaredNorm());
   // Outside, the closest point lies on an edge; the nearest of the three is cheap and free of cases.
-  const Vector3 on_b = p - face.ab * std::clamp(pb / bb, 0.0, 1.0);
-  const Vector3 on_c = p - face.ac * std::clamp(pc / cc, 0.0, 1.0);
+  const Vector3 on_b = p - face.ab * std::clamp(pb / face.bb, 0.0, 1.0);
+  const Vector3 on_c = p - face.ac * std::clamp(pc / face.cc, 0.0, 1.0);
   const Vector3 edge = face.ac - face.ab, q = p - face.ab;
   const Vector3 on_edge = q - edge * std::clamp(edge.dot(q) / edge.squaredNorm(), 0.0, 1.0);
   const double d_b = on_b.squaredNorm(), d_c = on_c.squaredNorm(), d_edge = on_edge.squaredNorm();
@@ -182,57 +183,54 @@ struct Near {
   double s;     ///< (distance / λ)²
 };
 
+/// u at a point, with what its gradient needs.
 struct Blend {
   Vector3 displacement = Vector3::Zero();
-  Matrix3 gradient = Matrix3::Zero();
+  double total_weight = 0;
+  double nearest = 1;  ///< s of the nearest face; 0: only the faces that touch the point count, evenly
 };
 
-Blend mean_of_touching(const std::vector<Near>& near, const Vector3& x) {
-  Blend blend;
-  double count = 0;
-  for (const Near& at : near) {
-    if (at.s > 0) continue;
-    blend.displacement += at.face->displacement(x);
-    blend.gradient += at.face->linear;
-    ++count;
-  }
-  blend.displacement /= count;
-  blend.gradient /= count;
-  return blend;
+double weight(const Near& at, const Blend& blend) {
+  if (!(blend.nearest > 0)) return at.s > 0 ? 0 : 1;
+  const double ratio = blend.nearest / at.s, fade = 1 - at.s;
+  return at.face->area * ratio * ratio * fade * fade * fade;
 }
 
 Blend blend_faces(const std::vector<Near>& near, const Vector3& x, double lambda) {
-  double nearest = 1;
-  for (const Near& at : near) nearest = std::min(nearest, at.s);
   Blend blend;
   if (near.empty()) return blend;
-  // A square below the smallest normal number would lose all its digits.
-  if (!(nearest > 1e-150)) return mean_of_touching(near, x);
+  for (const Near& at : near) blend.nearest = std::min(blend.nearest, at.s);
   // Weights relative to 1/s² of the nearest face stay finite near the surface.
-  double total = background * lambda * lambda * nearest * nearest;
+  blend.total_weight = background * lambda * lambda * blend.nearest * blend.nearest;
   for (const Near& at : near) {
-    const double ratio = nearest / at.s, fade = 1 - at.s;
-    const double weight = at.face->area * ratio * ratio * fade * fade * fade;
-    blend.displacement += weight * at.face->displacement(x);
-    blend.gradient += weight * at.face->linear;
-    total += weight;
+    const double share = weight(at, blend);
+    blend.displacement += share * at.face->displacement(x);
+    blend.total_weight += share;
   }
-  blend.displacement /= total;
-  for (const Near& at : near) {
-    const double ratio = nearest / at.s, fade = 1 - at.s;
-    // d/ds (1 − s)³ / s² = −(1 − s)² (s + 2) / s³, and ∇s = 2 arm / λ².
-    const double slope = -at.face->area * ratio * ratio * fade * fade * (at.s + 2) / at.s;
-    const Vector3 off = at.face->displacement(x) - blend.displacement;
-    blend.gradient += off * (slope * 2 / (lambda * lambda) * at.arm).transpose();
-  }
-  blend.gradient /= total;
+  blend.displacement /= blend.total_weight;
   return blend;
+}
+
+Matrix3 blend_gradient(const std::vector<Near>& near, const Vector3& x, double lambda) {
+  Matrix3 gradient = Matrix3::Zero();
+  if (near.empty()) return gradient;
+  const Blend blend = blend_faces(near, x, lambda);
+  for (const Near& at : near) {
+    const double share = weight(at, blend);
+    gradient += share * at.face->linear;
+    if (!(blend.nearest > 0)) continue;
+    // d/ds (1 − s)³ / s² = −(1 − s)² (s + 2) / s³, and ∇s = 2 arm / λ².
+    const double slope = -share * (at.s + 2) / (at.s * (1 - at.s));
+    const Vector3 off = at.face->displacement(x) - blend.displacement;
+    gradient += off * (slope * 2 / (lambda * lambda) * at.arm).transpose();
+  }
+  return gradient / blend.total_weight;
 }
 
 }  // namespace
 
 template <class Take>
-void PffdMap::for_each_blend(const Points& x, const Take& take) const {
+void PffdMap::for_each_neighbourhood(const Points& x, const Take& take) const {
   parallel_for(static_cast<std::size_t>(x.cols()), 32, [&](std::size_t begin, std::size_t end) {
     std::vector<Near> near;
     for (std::size_t i = begin; i < end; ++i) {
@@ -245,21 +243,24 @@ void PffdMap::for_each_blend(const Points& x, const Take& take) const {
         const double s = arm.squaredNorm() / (lambda_ * lambda_);
         if (s < 1) near.push_back({&face, arm, s});
       });
-      take(column, blend_faces(near, at, lambda_));
+      take(column, near, at);
     }
   });
 }
 
 Points PffdMap::displacement(const Points& x) const {
   Points result(3, x.cols());
-  for_each_blend(x, [&](Eigen::Index i, const Blend& blend) { result.col(i) = blend.displacement; });
+  for_each_neighbourhood(x, [&](Eigen::Index i, const std::vector<Near>& near, const Vector3& at) {
+    result.col(i) = blend_faces(near, at, lambda_).displacement;
+  });
   return result;
 }
 
 Points PffdMap::displacement_gradient(const Points& x) const {
   Points result(3, 3 * x.cols());
-  for_each_blend(x,
-                 [&](Eigen::Index i, const Blend& blend) { result.middleCols<3>(3 * i) = blend.gradient; });
+  for_each_neighbourhood(x, [&](Eigen::Index i, const std::vector<Near>& near, const Vector3& at) {
+    result.middleCols<3>(3 * i) = blend_gradient(near, at, lambda_);
+  });
   return result;
 }
 

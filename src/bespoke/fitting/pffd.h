@@ -32,7 +32,7 @@ class PffdMap : public ElasticMap {
  private:
   struct Frames;
   template <class Take>
-  void for_each_blend(const Points& x, const Take& take) const;
+  void for_each_neighbourhood(const Points& x, const Take& take) const;
 
   TriangleMesh source_;
   Points fitted_;

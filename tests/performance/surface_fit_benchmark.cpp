@@ -1,0 +1,36 @@
+#include <benchmark/benchmark.h>
+
+#include "bespoke/fitting/surface_fit.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+/// A surface with bumps, about as far from the source as a coarse warp leaves it.
+TriangleMesh bumpy_sphere(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    const Vector3 x = mesh.vertices.col(i);
+    mesh.vertices.col(i) *= 1 + 0.03 * std::sin(4 * x.x()) * std::cos(3 * x.y()) + 0.01 * std::sin(9 * x.z());
+  }
+  return mesh;
+}
+
+/// 2,562 nodes onto 10,242, then 10,242 onto 40,962.
+void fit_laplacian(benchmark::State& state) {
+  const auto levels = static_cast<int>(state.range(0));
+  const TriangleMesh source = shapes::icosphere(levels);
+  TriangleMesh target = bumpy_sphere(levels + 1);
+  target.vertices =
+      Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized()).toRotationMatrix() * target.vertices;
+  const Eigen::VectorXd no_weights(0);
+  SurfaceFit fit;
+  for (auto _ : state)
+    fit = fit_surface({source, source.vertices, target, Points(3, 0), Points(3, 0), no_weights}, {});
+  state.counters["iterations"] = fit.summary.iterations;
+  state.counters["nodes"] = static_cast<double>(source.vertices.cols());
+}
+BENCHMARK(fit_laplacian)->Arg(4)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace bespoke
