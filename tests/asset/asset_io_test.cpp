@@ -117,6 +117,11 @@ TEST_F(AssetIo, RefusesToWriteWhatIsNotValid) {
   refuses([&](Asset& a) { a.affine.linear(0, 0) = nan; }, "affine part");
   refuses([&](Asset& a) { a.pyramid.levels[1].values[7] = std::numeric_limits<float>::infinity(); },
           "level 1");
+  refuses(
+      [](Asset& a) {
+        a.pyramid.levels = {test::wavy_level({0, 0, 0}, 1e-5, {{0, 0, 0}}, 1e-6)};
+      },
+      "smaller unit");
   refuses([&](Asset& a) { a.record.lambda = nan; }, "lambda");
   refuses([&](Asset& a) { a.record.anchors[0].weight = 0; }, "weight");
   refuses([&](Asset& a) { a.record.source.box.setEmpty(); }, "source bounding box");

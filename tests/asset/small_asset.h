@@ -75,9 +75,11 @@ inline Asset small_asset() {
   asset.target_from_source.translation = {0.5, -0.25, 1.0 / 3};
   asset.affine.linear << 1.1, 0.02, 0, -0.01, 0.95, 0.03, 0, 0, 1.05;
   asset.affine.offset = {0.1, 0.2, -0.3};
-  asset.pyramid.origin = {-1, -1.1, -0.9};
-  asset.pyramid.levels = {wavy_level(asset.pyramid.origin, 0.125, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
-                          wavy_level(asset.pyramid.origin, 0.0625, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
+  asset.pyramid.origin = {-1.0 / 3, -1.1, -0.9};
+  const double voxel_size = 0.012369952865891319 * 10;  // neither it nor its sums with the origin are exact
+  asset.pyramid.levels = {
+      wavy_level(asset.pyramid.origin, voxel_size, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
+      wavy_level(asset.pyramid.origin, voxel_size / 2, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
   asset.certificate.certified = 12345;
   asset.certificate.least_determinant = 0.0625;
   asset.certificate.affine_determinant = asset.affine.linear.determinant();

@@ -56,6 +56,7 @@ void require_valid(const Asset& asset) {
   require(asset.affine.linear.allFinite() && asset.affine.offset.allFinite(),
           "the affine part is not finite");
   require_valid(asset.pyramid);
+  for (const PyramidLevel& level : asset.pyramid.levels) require_storable(level.voxel_size, "pyramid");
   require(std::isfinite(asset.certificate.least_determinant) &&
               std::isfinite(asset.certificate.affine_determinant),
           "the certificate's determinants are not finite");

@@ -129,9 +129,10 @@ openvdb::GridBase::Ptr to_vdb(const StoredGrid& stored) {
   const auto grid =
       stored.components == 3 ? to_vdb<openvdb::Vec3SGrid>(stored) : to_vdb<openvdb::FloatGrid>(stored);
   grid->setName(stored.name);
-  grid->setTransform(openvdb::math::Transform::Ptr(
-      new openvdb::math::Transform(openvdb::math::MapBase::Ptr(new openvdb::math::UniformScaleTranslateMap(
-          stored.voxel_size, openvdb::Vec3d(stored.origin.x(), stored.origin.y(), stored.origin.z()))))));
+  // Transform's constructor from a map would recompute the voxel size from rounded positions.
+  const auto transform = openvdb::math::Transform::createLinearTransform(stored.voxel_size);
+  transform->postTranslate(openvdb::Vec3d(stored.origin.x(), stored.origin.y(), stored.origin.z()));
+  grid->setTransform(transform);
   insert(*grid, stored.metadata);
   return grid;
 }
@@ -140,6 +141,7 @@ void require(bool holds, const openvdb::GridBase& grid, const std::string& what)
   if (!holds) throw FormatError("grid " + grid.getName() + ": " + what);
 }
 
+// Not parallel: this also runs in a forked child, where only the forking thread lives on.
 void read_leaves(const openvdb::GridBase& base, auto& grid, StoredGrid& stored) {
   using Grid = std::decay_t<decltype(grid)>;
   using Leaf = typename Grid::TreeType::LeafNodeType;

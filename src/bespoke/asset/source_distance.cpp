@@ -60,7 +60,8 @@ StoredGrid source_distance_preview(const TriangleMesh& source) {
   grid.origin = bounding_box(source.vertices).min();
 
   const IndexSpaceMesh mesh{source, grid.origin, grid.voxel_size};
-  const auto transform = openvdb::math::Transform::createLinearTransform(grid.voxel_size);
+  // Distances in voxels: OpenVDB refuses transforms of small voxel sizes.
+  const auto transform = openvdb::math::Transform::createLinearTransform(1);
   const bool closed = inspect_mesh(source).boundary_edges == 0;
   const auto voxel = static_cast<float>(grid.voxel_size);
   grid.background = band_voxels * voxel;
@@ -75,8 +76,9 @@ StoredGrid source_distance_preview(const TriangleMesh& source) {
                                                          openvdb::tools::UNSIGNED_DISTANCE_FIELD)
             ->tree(),
         grid);
-    for (float& value : grid.values) value = std::min(value - voxel, grid.background);
+    for (float& value : grid.values) value = std::min(value - 1, band_voxels);
   }
+  for (float& value : grid.values) value *= voxel;
   grid.metadata["bespoke:meaning"] =
       std::string(closed ? "signed distance to the source model"
                          : "unsigned distance to the source model, which is open, minus one voxel: a shell");

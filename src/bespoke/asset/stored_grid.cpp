@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <sstream>
 #include <type_traits>
 
 #include "bespoke/error.h"
@@ -117,13 +119,21 @@ Metadata read_metadata(ByteReader& reader) {
 
 }  // namespace
 
+void require_storable(double voxel_size, const std::string& what) {
+  if (std::isfinite(voxel_size) && voxel_size >= least_voxel_size) return;
+  std::ostringstream message;
+  message
+      << what << ": voxel size " << voxel_size << " is below " << least_voxel_size
+      << ", the least that OpenVDB stores; give the models in a smaller unit, for instance mm instead of m";
+  throw InvalidInput(message.str());
+}
+
 void require_valid(const StoredGrid& grid) {
   const auto require = [&](bool holds, const std::string& what) {
     if (!holds) throw InvalidInput("grid " + grid.name + ": " + what);
   };
   require(grid.components == 1 || grid.components == 3, "neither Vec3S nor Float");
-  require(std::isfinite(grid.voxel_size) && grid.voxel_size > 0,
-          "voxel size " + std::to_string(grid.voxel_size) + " is not positive");
+  require_storable(grid.voxel_size, "grid " + grid.name);
   require(grid.origin.allFinite(), "its origin is not finite");
   require(std::isfinite(grid.background), "its background is not finite");
   require(!grid.leaves.empty(), "holds no values");

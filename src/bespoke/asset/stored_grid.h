@@ -35,13 +35,19 @@ struct StoredGrid {
   Metadata metadata;                    ///< of this grid, keys start with "bespoke:"
 };
 
+/// OpenVDB takes a smaller one (its cube below 3e-15) for a degenerate transform. Mesh units.
+inline constexpr double least_voxel_size = 1.5e-5;
+
+/// Throws InvalidInput, naming `what`, for a voxel size that OpenVDB cannot hold.
+void require_storable(double voxel_size, const std::string& what);
+
 /// What the OpenVDB part of an asset holds.
 struct StoredFile {
   Metadata metadata;
   std::vector<StoredGrid> grids;
 };
 
-/// The grids' common promises: known number of components, positive finite voxel size, finite origin and
+/// The grids' common promises: known number of components, storable voxel size, finite origin and
 /// values, at least one leaf, sizes that fit each other, leaves in order. Throws InvalidInput naming the
 /// grid.
 void require_valid(const StoredGrid& grid);
