@@ -1,8 +1,11 @@
 #include "bespoke/report/inspection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iomanip>
 #include <sstream>
+#include <vector>
 
 #include "bespoke/pipeline/method_names.h"
 #include "bespoke/pipeline/summary_json.h"
@@ -27,7 +30,7 @@ std::string rows(const Matrix3& matrix) {
 }
 
 std::string model(const ModelRecord& record) {
-  return record.hash.substr(0, 16) + ", box " + tuple(record.box.min()) + " to " + tuple(record.box.max());
+  return record.hash + ", box " + tuple(record.box.min()) + " to " + tuple(record.box.max());
 }
 
 Json to_json(const PyramidLevel& level) {
@@ -47,14 +50,18 @@ Json to_json(const AnchorRecord& anchor) {
   return json;
 }
 
-/// The three conditions that make Ψ a bijection of space, each with its value.
+Json embedded(const std::string& json) { return json.empty() ? Json() : Json::parse(json); }
+
+/// Why the map is a bijection, with the value of each condition; or which of them fails.
 std::string certificate_text(const Certificate& certificate) {
   std::ostringstream text;
   if (certificate.is_bijection()) {
-    text << "the map is a bijection of space: it is continuous, det of its gradient is at least "
-         << number(certificate.least_determinant) << " in all " << certificate.certified
-         << " finest cells, and outside them it is affine with det "
-         << number(certificate.affine_determinant);
+    text
+        << "proved to be a bijection of all of space: continuous, trilinear in every finest cell with det of "
+           "its gradient at least "
+        << number(certificate.least_determinant) << " in all " << certificate.certified
+        << " of them, and affine with det " << number(certificate.affine_determinant)
+        << " outside; such a map is a local homeomorphism of degree 1";
   } else {
     text << "not proved to be a bijection: " << certificate.certified << " cells certified, "
          << certificate.undecided << " undecided, " << certificate.folded
@@ -65,12 +72,30 @@ std::string certificate_text(const Certificate& certificate) {
   return text.str();
 }
 
+std::string anchor_table(const std::vector<AnchorRecord>& anchors) {
+  std::ostringstream text;
+  text << "anchors      " << anchors.size() << '\n';
+  if (anchors.empty()) return text.str();
+  std::size_t width = 4;
+  for (const AnchorRecord& anchor : anchors) width = std::max(width, anchor.name.size());
+  const auto row = [&](std::string name, const std::string& weight, const std::string& residual) {
+    name.resize(width, ' ');
+    text << "  " << name << "  " << std::setw(12) << weight << "  " << std::setw(12) << residual << '\n';
+  };
+  row("name", "weight", "residual");
+  for (const AnchorRecord& anchor : anchors)
+    row(anchor.name.empty() ? "-" : anchor.name, std::isinf(anchor.weight) ? "exact" : number(anchor.weight),
+        number(anchor.residual));
+  return text.str();
+}
+
 }  // namespace
 
 std::string inspection_text(const Asset& asset) {
   const AssetRecord& record = asset.record;
   std::ostringstream text;
-  text << "map          points of the source to points of the target, unit " << record.unit << '\n'
+  text << "map          maps points a to b: of the source's space to the target's, unit " << record.unit
+       << '\n'
        << "method       surface fitting " << record.surface_fit_method << ", elastic "
        << record.elastic_method << ", effective distance " << number(record.lambda) << '\n'
        << "rotation     " << rows(asset.target_from_source.rotation) << ", path "
@@ -89,10 +114,7 @@ std::string inspection_text(const Asset& asset) {
        << "target       " << model(record.target) << '\n'
        << "exact map    "
        << (asset.exact_map.empty() ? "not stored" : std::to_string(asset.exact_map.size()) + " bytes") << '\n'
-       << "anchors      " << record.anchors.size() << '\n';
-  for (const AnchorRecord& anchor : record.anchors)
-    text << "  " << (anchor.name.empty() ? "(no name)" : anchor.name) << "  residual "
-         << number(anchor.residual) << '\n';
+       << anchor_table(record.anchors);
   return text.str();
 }
 
@@ -102,7 +124,7 @@ std::string inspection_json(const Asset& asset) {
   for (const PyramidLevel& level : asset.pyramid.levels) levels.push_back(to_json(level));
   Json anchors = Json::array();
   for (const AnchorRecord& anchor : record.anchors) anchors.push_back(to_json(anchor));
-  const Json json = {{"direction", "maps points of the source to points of the target"},
+  const Json json = {{"direction", "maps points a to b"},
                      {"unit", record.unit},
                      {"rotation", bespoke::to_json(asset.target_from_source.rotation)},
                      {"translation", bespoke::to_json(asset.target_from_source.translation)},
@@ -121,8 +143,8 @@ std::string inspection_json(const Asset& asset) {
                      {"source", to_json(record.source)},
                      {"target", to_json(record.target)},
                      {"anchors", std::move(anchors)},
-                     {"options", Json::parse(record.options_json)},
-                     {"stages", Json::parse(record.stages_json)}};
+                     {"options", embedded(record.options_json)},
+                     {"stages", embedded(record.stages_json)}};
   return json.dump(2) + "\n";
 }
 
