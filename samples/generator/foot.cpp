@@ -9,18 +9,11 @@ namespace {
 constexpr double shin_end = 21;
 constexpr double heel_height = 3.6;
 
-// Lofts run along y; this one lays them along z, their front up.
-Eigen::Affine3d lying() {
-  Eigen::Affine3d swap = Eigen::Affine3d::Identity();
-  swap.linear() << 1, 0, 0, 0, 0, 1, 0, 1, 0;
-  return swap;
-}
-
-Solid foot_solid(const FootBuild& build) {
+// From the heel to the roots of the toes.
+Solid arch(const FootBuild& build) {
   const double w = build.width;
   const double l = build.length;
   const double h = build.instep;
-  const double a = build.ankle;
   Solid lengthwise;
   lengthwise.add(Loft({{-4.6 * l, 0, 2.4, 2.4 * w, 1.9, 2.2},
                        {-2.5 * l, 0, 2.7, 3.0 * w, 3.0, 2.7},
@@ -34,6 +27,14 @@ Solid foot_solid(const FootBuild& build) {
                  0.0);
   Solid solid;
   solid.add(lengthwise, lying(), 0.0);
+  return solid;
+}
+
+Solid foot_solid(const FootBuild& build) {
+  const double w = build.width;
+  const double l = build.length;
+  const double a = build.ankle;
+  Solid solid = arch(build);
   solid.add(Loft({{3.5, 0.1, -1.2, 2.6 * a, 3.2, 3.2},
                   {6, 0.1, -1.3, 2.7 * a, 3.2 * a, 3.2 * a},
                   {8.5, 0.1, -1.5, 2.7 * a, 2.9 * a, 3.2 * a},
@@ -60,6 +61,22 @@ Solid foot_solid(const FootBuild& build) {
 }
 
 }  // namespace
+
+Eigen::Affine3d lying() {
+  Eigen::Affine3d swap = Eigen::Affine3d::Identity();
+  swap.linear() << 1, 0, 0, 0, 0, 1, 0, 1, 0;
+  return swap;
+}
+
+Solid stockinged_foot(const FootBuild& build) {
+  const double w = build.width;
+  const double l = build.length;
+  Solid solid = arch(build);
+  solid.add(RoundCone{{{-1.9 * w, 1.3, 12 * l}, 1.5}, {{-1.8 * w, 1.0, 16.3 * l}, 1.25}}, 1.5);
+  solid.add(RoundCone{{{0.4 * w, 1.2, 12 * l}, 1.4}, {{0.1 * w, 0.9, 16.4 * l}, 1.1}}, 1.5);
+  solid.add(RoundCone{{{2.6 * w, 1.1, 11 * l}, 1.3}, {{2.2 * w, 0.9, 14.2 * l}, 1.1}}, 1.5);
+  return solid;
+}
 
 double heel_lift(const FootBuild& build, double z) {
   const double s = std::clamp((11.5 - z / build.length) / 15.0, 0.0, 1.0);

@@ -12,6 +12,12 @@ struct FootBuild {
   double ankle = 1;   // thickness
 };
 
+// Lofts run along y; this lays them along z, their front up.
+Eigen::Affine3d lying();
+
+// A left foot flat on y = 0 with its toes in one, below the ankle; the shin's axis meets the origin.
+Solid stockinged_foot(const FootBuild& build);
+
 // How far the foot is lifted off the ground z cm before the ankle: it stands as in a shoe with a heel.
 double heel_lift(const FootBuild& build, double z);
 

@@ -43,7 +43,7 @@ double inside_neckline(const Vector3& p, double half_width, double front_depth) 
 // Without it cloth would follow the body between the breasts and under them.
 Solid bodice_bridge(const MannequinBuild& build) {
   Solid bridge;
-  bridge.add(Ellipsoid{{0, 116.5, 5.0 * build.bust}, {11.0 * build.bust, 6.0, 5.0 * build.bust}}, 0.0);
+  bridge.add(Ellipsoid{{0, 118.5, 4.0 * build.bust}, {12.5 * build.bust, 9.0, 6.4 * build.bust}}, 0.0);
   return bridge;
 }
 

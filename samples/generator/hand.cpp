@@ -65,9 +65,6 @@ Solid hand_solid(const HandBuild& build) {
               thumb ? 1.4 : 0.45);
     solid.add(RoundCone{{finger.joints[1], finger.radii[1]}, {finger.joints[2], finger.radii[2]}}, 0.3);
     solid.add(RoundCone{{finger.joints[2], finger.radii[2]}, {finger.joints[3], finger.radii[3]}}, 0.3);
-    // Joints are a little thicker than the bones between them.
-    solid.add(Sphere{finger.joints[1], 1.04 * finger.radii[1]}, 0.5);
-    solid.add(Sphere{finger.joints[2], 1.04 * finger.radii[2]}, 0.5);
     if (!thumb) solid.add(Ellipsoid{finger.joints[0] + Vector3(0, -0.2, -0.65 * t), {0.75, 0.9, 0.6}}, 0.8);
   }
   return solid;

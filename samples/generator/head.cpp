@@ -11,15 +11,15 @@ void add_face(Solid& head, const HeadBuild& build) {
   const double h = build.face;
   head.add(Loft({{-10.2 * h, 0, 5.9, 1.9 * j, 2.0, 3.0},
                  {-9.0 * h, 0, 5.0, 3.0 * j, 3.1, 4.4},
-                 {-6.3 * h, 0, 3.0, 4.7 * j, 4.9, 5.0},
-                 {-3.0 * h, 0, 2.0, 5.7 * w, 5.9, 6.0},
+                 {-6.3 * h, 0, 3.0, 4.9 * j, 4.9, 5.0},
+                 {-3.0 * h, 0, 2.0, 6.0 * w, 5.9, 6.0},
                  {0, 0, 1.5, 6.5 * w, 6.3, 7.0},
                  {3, 0, 1.0, 6.5 * w, 6.5, 7.0},
                  {6, 0, 0.5, 5.6 * w, 5.8, 6.5}},
                 0.9, 2.0, 2.15),
            2.5);
-  head.add_both(RoundCone{{{1.4 * j, -9.1 * h, 5.9}, 1.4}, {{4.5 * j, -5.9 * h, 0.2}, 1.4}}, 2.5);
-  head.add_both(RoundCone{{{4.5 * j, -5.9 * h, 0.2}, 1.4}, {{5.4 * w, -0.5, -1.2}, 1.3}}, 2.5);
+  head.add_both(RoundCone{{{1.3 * j, -9.0 * h, 5.9}, 1.4}, {{4.2 * j, -5.9 * h, 0.2}, 1.35}}, 2.5);
+  head.add_both(RoundCone{{{4.2 * j, -5.9 * h, 0.2}, 1.35}, {{5.4 * w, -0.5, -1.2}, 1.3}}, 2.5);
   head.add_both(Ellipsoid{{4.3 * w, -1.0 * h, 5.0}, {2.0, 1.3, 1.8}}, 2.5);
 }
 
@@ -59,14 +59,14 @@ void add_ears(Solid& head, const HeadBuild& build) {
   ear.add(Ellipsoid{{0, 0, 0}, {0.55, 3.1, 1.75}}, 0.0);
   ear.carve(Ellipsoid{{0.75, 0.3, 0.15}, {0.75, 2.1, 1.05}}, 0.35);
   ear.add(RoundCone{{{0.3, 1.4, -0.8}, 0.28}, {{0.25, -1.2, -0.35}, 0.25}}, 0.3);
-  ear.add(Ellipsoid{{0.05, -2.5, 0.5}, {0.5, 0.8, 0.7}}, 0.4);
+  ear.add(Ellipsoid{{0.1, -2.4, 0.3}, {0.5, 0.8, 0.7}}, 0.9);
   Eigen::Affine3d head_from_ear = Eigen::Affine3d::Identity();
   head_from_ear.translate(Vector3(7.25 * build.width, -0.6, -1.6));
-  head_from_ear.rotate(Eigen::AngleAxisd(0.38, Vector3::UnitY()));
+  head_from_ear.rotate(Eigen::AngleAxisd(-0.32, Vector3::UnitY()));
   head_from_ear.rotate(Eigen::AngleAxisd(-0.12, Vector3::UnitX()));
   head_from_ear.scale(build.ears);
-  head.add(ear, head_from_ear, 0.5);
-  head.add(ear, Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0)) * head_from_ear, 0.5);
+  head.add(ear, head_from_ear, 1.0);
+  head.add(ear, Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0)) * head_from_ear, 1.0);
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ Anatomy display_head(const HeadBuild& build) {
   mark_both("ear_root", {3, 2.6 * build.ears - 0.6, -0.6}, left);
   const Vector3 ear(7.25 * w, -0.6, -1.6);
   mark_both("ear_top", ear + Vector3(0, 2.6 * build.ears, -0.3), {0, 1, -0.1});
-  mark_both("ear_lobe", ear + Vector3(0.05, -2.5 * build.ears, 0.5), {0, -1, 0});
+  mark_both("ear_lobe", ear + Vector3(0.1, -2.4 * build.ears, 0.3), {0, -1, 0});
   mark_both("neck_side", {0, -14, -3}, left);
   mark_both("base_side", {0, -18, -3.4}, left);
   return head;

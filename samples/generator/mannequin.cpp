@@ -1,5 +1,6 @@
 #include "mannequin.h"
 
+#include "foot.h"
 #include "head.h"
 
 #include <cmath>
@@ -11,7 +12,7 @@ namespace {
 constexpr double standard_height = 165;
 constexpr double standard_hip_height = 84;
 
-const Vector3 shoulder(16.0, 130.6, -1.6);
+const Vector3 shoulder(15.8, 130.2, -1.6);
 const Vector3 wrist(44.0, 89.5, 1.2);
 
 void add_torso(Solid& body, const MannequinBuild& build) {
@@ -33,7 +34,7 @@ void add_torso(Solid& body, const MannequinBuild& build) {
                  {133.5, 0, -1.7, 14.2 * s, 5.8, 7.0},
                  {136.5, 0, -2.0, 10.2 * s, 5.0, 6.0},
                  {139.5, 0, -2.0, 6.6, 4.7, 5.4},
-                 {143, 0, -1.6, 5.0, 4.6, 5.0}},
+                 {143, 0, -1.4, 4.7, 4.3, 4.6}},
                 3, 3, 2.3),
            0.0);
   body.add_both(Ellipsoid{{7.6 * h, 83.0, -6.2 * h}, {6.6 * h, 7.2, 5.6 * h}}, 5.0);
@@ -43,7 +44,7 @@ void add_torso(Solid& body, const MannequinBuild& build) {
 }
 
 void add_neck_and_head(Solid& body) {
-  body.add(RoundCone{{{0, 136, -2.2}, 5.6}, {{0, 148, 0.0}, 5.0}}, 3.0);
+  body.add(RoundCone{{{0, 136, -2.2}, 5.0}, {{0, 148, 0.2}, 4.7}}, 3.0);
   Eigen::Affine3d body_from_head = Eigen::Affine3d::Identity();
   body_from_head.translate(Vector3(0, 154.3, 1.3));
   body_from_head.scale(0.93);
@@ -61,8 +62,8 @@ Solid mannequin_hand() {
                  {0, 0, 0, 1.9, 2.5, 2.5}},
                 1.9, 2.0),
            0.0);
-  hand.add(RoundCone{{{-0.3, -2.2, 1.9}, 1.4}, {{-0.8, -5.3, 4.5}, 1.15}}, 1.8);
-  hand.add(RoundCone{{{-0.8, -5.3, 4.5}, 1.15}, {{-1.2, -8.6, 6.3}, 0.9}}, 1.0);
+  hand.add(RoundCone{{{-0.3, -2.2, 1.9}, 1.4}, {{-0.8, -5.3, 4.5}, 1.3}}, 1.8);
+  hand.add(RoundCone{{{-0.8, -5.3, 4.5}, 1.3}, {{-1.2, -8.4, 6.3}, 1.1}}, 1.0);
   return hand;
 }
 
@@ -99,34 +100,42 @@ void add_arms(Solid& body, const MannequinBuild& build) {
                 {-0.18 * length, 0.2, -0.2, 4.5 * l, 4.9 * l, 4.8 * l},
                 {-3, 0.3, 0, 4.6 * l, 5.1 * l, 5.1 * l},
                 {0, 0, 0, 4.2 * l, 4.8 * l, 4.8 * l}},
-               1, 3.4),
+               1, 2.6),
           0.0);
   arm.add(mannequin_hand(), arm_from_hand(), 1.0);
-  body.add(arm, body_from_arm(build), 6.0);
-  body.add(arm, Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0)) * body_from_arm(build), 6.0);
+  body.add(arm, body_from_arm(build), 7.0);
+  body.add(arm, Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0)) * body_from_arm(build), 7.0);
+}
+
+// The left foot's own frame: ankle above the origin, toes to z.
+Eigen::Affine3d body_from_foot() {
+  Eigen::Affine3d frame = Eigen::Affine3d::Identity();
+  frame.translate(Vector3(8.0, 0, -2.2));
+  frame.rotate(Eigen::AngleAxisd(0.12, Vector3::UnitY()));
+  frame.scale(0.98);
+  return frame;
 }
 
 void add_legs(Solid& body, const MannequinBuild& build) {
   const double l = build.limbs;
   const double h = build.hips;
   const double t = 0.5 * (l + h);
-  body.add_both(Loft({{4, 8.6, -2.6, 3.0 * l, 3.3, 3.4},
-                      {9, 8.7, -2.6, 2.9 * l, 3.1 * l, 3.6 * l},
-                      {14, 8.8, -2.5, 3.2 * l, 3.4 * l, 3.8 * l},
-                      {24, 9.1, -2.4, 4.7 * l, 4.3 * l, 5.2 * l},
-                      {32, 9.2, -2.2, 5.3 * l, 4.7 * l, 6.2 * l},
-                      {40, 9.0 + 1.5 * (t - 1), -1.4, 4.8 * l, 4.9 * l, 5.3 * l},
-                      {46, 8.8 + 2 * (t - 1), -0.6, 4.9 * l, 5.4 * l, 4.8 * l},
-                      {53, 9.0 + 4 * (t - 1), -0.4, 5.8 * t, 6.4 * t, 5.8 * t},
-                      {64, 7.5 * t + 2.0, -0.3, 7.5 * t, 8.0 * t, 7.4 * t},
-                      {74, 8.5 * h + 1.1, -0.3, 8.5 * h, 8.9 * h, 8.8 * h},
-                      {82, 8.2 * h + 0.9, -0.3, 8.0 * h, 8.5 * h, 8.8 * h}},
+  body.add_both(Loft({{5, 8.0, -3.2, 2.6 * l, 3.3 * l, 3.2 * l},
+                      {10, 8.1, -3.0, 2.75 * l, 3.0 * l, 3.4 * l},
+                      {15, 8.2, -2.8, 3.2 * l, 3.3 * l, 3.9 * l},
+                      {25, 8.4, -2.4, 4.7 * l, 4.2 * l, 5.5 * l},
+                      {33, 8.5, -2.0, 5.2 * l, 4.7 * l, 6.1 * l},
+                      {40, 8.4 + 1.5 * (t - 1), -1.2, 4.8 * l, 5.0 * l, 5.2 * l},
+                      {46, 8.3 + 2 * (t - 1), -0.5, 4.9 * l, 5.4 * l, 4.8 * l},
+                      {53, 8.5 + 4 * (t - 1), -0.2, 5.7 * t, 6.3 * t, 5.8 * t},
+                      {64, 7.1 * t + 1.8, -0.1, 7.1 * t, 7.8 * t, 7.4 * t},
+                      {74, 7.8 * h + 1.2, -0.2, 7.8 * h, 8.6 * h, 8.7 * h},
+                      {82, 7.9 * h + 0.8, -0.3, 7.9 * h, 8.4 * h, 8.8 * h}},
                      3, 7),
                 4.0);
-  body.add_both(RoundCone{{{8.5, 8.0, -2.4}, 3.1}, {{9.6, 2.7, 10.5}, 2.2}}, 2.0);
-  body.add_both(Ellipsoid{{8.6, 2.6, -4.3}, {3.3, 3.1, 3.6}}, 2.0);
-  body.add_both(Loft({{0, 9.2, 3.0, 3.5, 11, 9}, {2.2, 9.2, 2.5, 3.6, 10.5, 8}}, 1.0, 1.0), 2.0);
-  body.add_both(Ellipsoid{{9.6, 1.6, 10.5}, {4.5, 2.0, 6.8}}, 1.5);
+  const Solid foot = stockinged_foot({1, l, 1, l});
+  body.add(foot, body_from_foot(), 2.5);
+  body.add(foot, Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0)) * body_from_foot(), 2.5);
 }
 
 void add_landmarks(Anatomy& body, const MannequinBuild& build) {
@@ -164,12 +173,12 @@ void add_landmarks(Anatomy& body, const MannequinBuild& build) {
   mark_both("elbow_outside", joint + 0.53 * arm, across);
   mark_both("wrist_outside", joint + 0.97 * arm, across);
   mark_both("fingertip", body_from_arm(build) * arm_from_hand() * middle_fingertip, arm);
-  mark_both("knee_front", {8.9, 46, 0}, front);
-  mark_both("knee_back", {8.9, 46, -1}, -front);
-  mark_both("ankle_outside", {8.7, 9, -2.5}, left);
-  mark_both("ankle_inside", {8.7, 9, -2.5}, -left);
-  mark_both("heel", {8.6, 2.6, -4}, -front);
-  mark_both("toe", {9.6, 1.6, 10}, front);
+  mark_both("knee_front", {8.3, 46, 0}, front);
+  mark_both("knee_back", {8.3, 46, -1}, -front);
+  mark_both("ankle_outside", {8.0, 9, -3}, left);
+  mark_both("ankle_inside", {8.0, 9, -3}, -left);
+  mark_both("heel", body_from_foot() * Vector3(0, 2.4, -3), body_from_foot().linear() * -front);
+  mark_both("toe", body_from_foot() * Vector3(-0.8, 1.1, 14), body_from_foot().linear() * front);
 }
 
 }  // namespace

@@ -98,10 +98,10 @@ Sample glasses_sample() {
   const Anatomy source = display_head(first);
   const Anatomy target = display_head(second);
   Sample sample{"glasses",
-                tessellate(source, std::nullopt, limb_tessellation(0.5, 0, {0.3, 1.4, 0.02, 8})),
+                tessellate(source, std::nullopt, limb_tessellation(0.4, 0, {0.3, 1.4, 0.02, 8})),
                 {{"frame", glasses_frame(first, source)}, {"lenses", glasses_lenses(first)}},
                 {}};
-  add_target(sample, "", source, target, limb_tessellation(0.5, 33, {0.3, 1.1, 0.015, 8}),
+  add_target(sample, "", source, target, limb_tessellation(0.4, 33, {0.3, 1.1, 0.015, 8}),
              posed(-28, -7, {36, 2, -8}));
   return sample;
 }

@@ -8,29 +8,35 @@ namespace bespoke {
 namespace {
 
 constexpr double sole_top = -0.2;      // cm, from the underside of the foot
-constexpr double sole_bottom = -0.75;  // at the ball, where the shoe touches the floor
+constexpr double upright_below = 0.9;  // cm
+constexpr double sole_bottom = -0.65;  // at the ball, where the shoe touches the floor
 
 // The foot with the lift of its heel undone.
 Vector3 flattened(const FootBuild& build, const Vector3& p) {
   return {p.x(), p.y() - heel_lift(build, p.z()), p.z()};
 }
 
-// Closed, without toes, cut flat below; in flattened coordinates.
+// Closed, without toes, its walls upright near the sole; in flattened coordinates.
 Field last(const FootBuild& build, const Anatomy& foot) {
   const double w = build.width;
   const double l = build.length;
   Solid toe_box;
-  toe_box.add(RoundCone{{{-2.0 * w, 1.5, 11.5 * l}, 1.75}, {{-1.75 * w, 1.25, 17.2 * l}, 1.5}}, 0.0);
-  toe_box.add(RoundCone{{{2.3 * w, 1.3, 10.8 * l}, 1.7}, {{-0.6 * w, 1.15, 17.4 * l}, 1.4}}, 1.5);
-  toe_box.add(RoundCone{{{2.6 * w, 1.2, 11.2 * l}, 1.6}, {{2.3 * w, 1.05, 14.4 * l}, 1.35}}, 1.5);
-  return [build, toe_box, inner = foot.field](const Vector3& flat) {
-    const Vector3 p(flat.x(), flat.y() + heel_lift(build, flat.z()), flat.z());
-    return smooth_min(inner(p) - 0.28, toe_box(flat), 1.2);
+  toe_box.add(Loft({{7 * l, 0.2, 1.6, 4.2 * w, 2.6 * build.instep, 1.6},
+                    {10.5 * l, 0.05, 1.5, 4.95 * w, 2.5, 1.5},
+                    {13 * l, -0.1, 1.4, 4.9 * w, 2.05, 1.5},
+                    {15.5 * l, -0.5, 1.3, 4.2 * w, 1.65, 1.4},
+                    {17.4 * l, -1.0, 1.2, 2.9 * w, 1.3, 1.3},
+                    {18.0 * l, -1.15, 1.1, 2.2 * w, 1.1, 1.2}},
+                   1.0, 1.5, 2.1),
+              0.0);
+  Solid lying_toe_box;
+  lying_toe_box.add(toe_box, lying(), 0.0);
+  return [build, lying_toe_box, inner = foot.field](const Vector3& flat) {
+    const Vector3 raised(flat.x(), smooth_max(flat.y(), upright_below, 0.6), flat.z());
+    const Vector3 p(raised.x(), raised.y() + heel_lift(build, raised.z()), raised.z());
+    return smooth_min(inner(p) - 0.28, lying_toe_box(raised), 2.0);
   };
 }
-
-// Distance from the outline of the tread, whatever the height.
-double tread(const Field& shape, const Vector3& flat) { return shape({flat.x(), 1.0, flat.z()}); }
 
 Box roomy(const Anatomy& foot) {
   Box box = foot.box;
@@ -47,7 +53,7 @@ TriangleMesh shoe_upper(const FootBuild& build, const Anatomy& foot) {
   Anatomy upper;
   upper.field = [build, shape](const Vector3& p) {
     const Vector3 flat = flattened(build, p);
-    return smooth_max(shape(flat), sole_top - 0.05 - flat.y(), 0.4);
+    return smooth_max(shape(flat), sole_top - 0.05 - flat.y(), 0.2);
   };
   upper.inside = Vector3(0, 1.5, 11 * l);
   upper.box = roomy(foot);
@@ -71,9 +77,9 @@ TriangleMesh shoe_sole(const FootBuild& build, const Anatomy& foot) {
   Anatomy sole;
   sole.field = [build, shape, l](const Vector3& p) {
     const Vector3 flat = flattened(build, p);
-    const double outline = tread(shape, flat);
+    const double outline = shape({flat.x(), 0, flat.z()});
     const double slab =
-        smooth_max(outline - 0.25,
+        smooth_max(outline - 0.22,
                    std::abs(flat.y() - 0.5 * (sole_top + sole_bottom)) - 0.5 * (sole_top - sole_bottom), 0.3);
     const double height = p.y() - sole_bottom;
     const double front = flat.z() + 0.6 * l + 0.18 * (4 - height);

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_io.h"
 #include "mannequin.h"
 #include "samples.h"
 
@@ -16,6 +19,7 @@ namespace bespoke {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 double volume(const TriangleMesh& mesh) {
@@ -195,6 +199,39 @@ TEST(MakeSample, GivesTheSameBytesTwice) {
   for (std::size_t i = 0; i < first.targets[0].anchors.size(); ++i) {
     EXPECT_EQ(first.targets[0].anchors[i].b, second.targets[0].anchors[i].b);
   }
+}
+
+TEST(WriteSample, WritesWhatReadsBack) {
+  TriangleMesh triangle;
+  triangle.vertices = Points::Identity(3, 3);
+  triangle.faces = Eigen::Vector3i(0, 1, 2);
+  const AnchorPair pair{"tip", Vector3(0.1, 1.0 / 3, 2), Vector3(-1e-7, 4, 5e6)};
+  const Sample sample{
+      "folder", triangle, {{"hat", triangle}}, {{"", triangle, {pair}}, {"94", triangle, {pair}}}};
+  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "write_sample";
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : write_sample(sample, directory)) {
+    EXPECT_EQ(path.parent_path(), directory / "folder");
+    names.push_back(path.filename().string());
+    if (path.extension() == ".obj") {
+      EXPECT_EQ(read_triangle_mesh(path).vertices, triangle.vertices);
+      continue;
+    }
+    const Anchors anchors = read_anchors(path);
+    EXPECT_EQ(anchors.unit, "cm");
+    ASSERT_EQ(anchors.pairs.size(), 1u);
+    EXPECT_EQ(anchors.pairs[0].name, pair.name);
+    EXPECT_EQ(anchors.pairs[0].a, pair.a);
+    EXPECT_EQ(anchors.pairs[0].b, pair.b);
+  }
+  EXPECT_THAT(names, ElementsAre("source.obj", "hat.obj", "target.obj", "anchors.json", "target_94.obj",
+                                 "anchors_94.json"));
+}
+
+TEST(WriteSample, RefusesADirectoryThatIsAFile) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "not_a_directory";
+  std::ofstream(file) << "text";
+  EXPECT_THROW(write_sample({"folder", {}, {}, {}}, file), FileError);
 }
 
 TEST(MakeSample, ListsTheNamesForAnUnknownOne) {
