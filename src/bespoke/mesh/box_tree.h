@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -31,6 +33,10 @@ struct BoxTree {
 /// at most 40 levels of three waiting nodes. `boxes` must not be empty, nor any of its elements.
 BoxTree build_box_tree(const std::vector<Box>& boxes);
 
+/// Calls visit(index) for every box that meets `box`, and perhaps for a few more, in the order of the tree.
+template <class Visit>
+void for_each_overlapping(const BoxTree& tree, const Box& box, const Visit& visit);
+
 /// The largest float at most x, and the least at least x; infinite beyond a float's range.
 inline float round_down(double x) {
   const auto rounded = static_cast<float>(x);
@@ -39,6 +45,30 @@ inline float round_down(double x) {
 inline float round_up(double x) {
   const auto rounded = static_cast<float>(x);
   return rounded >= x ? rounded : std::nextafterf(rounded, std::numeric_limits<float>::infinity());
+}
+
+template <class Visit>
+void for_each_overlapping(const BoxTree& tree, const Box& box, const Visit& visit) {
+  std::array<int, BoxTree::stack_size> stack;
+  std::size_t top = 0;
+  stack[top++] = 0;
+  std::array<float, 3> low, high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = round_down(box.min()(static_cast<Eigen::Index>(axis)));
+    high[axis] = round_up(box.max()(static_cast<Eigen::Index>(axis)));
+  }
+  while (top > 0) {
+    const BoxTree::Node& node = tree.nodes[static_cast<std::size_t>(stack[--top])];
+    for (int i = 0; i < BoxTree::width; ++i) {
+      bool meets = node.count[i] >= 0;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        meets = meets && node.low[axis][i] <= high[axis] && low[axis] <= node.high[axis][i];
+      if (!meets) continue;
+      if (node.count[i] == 0) stack[top++] = node.child[i];
+      for (int k = node.child[i]; k < node.child[i] + node.count[i]; ++k)
+        visit(tree.order[static_cast<std::size_t>(k)]);
+    }
+  }
 }
 
 }  // namespace bespoke

@@ -29,7 +29,7 @@ struct Triangle {
 
 struct Hit {
   Vector3 point = Vector3::Zero();
-  double b = 0, c = 0;  ///< weights
+  Vector3 weights = Vector3::Zero();  ///< of a, b, c; exactly 0 off an edge's or corner's own
   double squared_distance = std::numeric_limits<double>::infinity();
 };
 
@@ -78,22 +78,22 @@ Hit closest_on(const Triangle& t, const Vector3& x) {
   const double b = t.dual_b.dot(p), c = t.dual_c.dot(p);
   const bool below_ab = !(c >= 0), below_ac = !(b >= 0), beyond_bc = !(1 - b - c >= 0);
   Hit best;
-  const auto offer = [&](const Vector3& point, double at_b, double at_c) {
+  const auto offer = [&](const Vector3& point, double at_a, double at_b, double at_c) {
     const double squared_distance = (x - point).squaredNorm();
-    if (squared_distance < best.squared_distance) best = {point, at_b, at_c, squared_distance};
+    if (squared_distance < best.squared_distance) best = {point, {at_a, at_b, at_c}, squared_distance};
   };
-  if (!below_ab && !below_ac && !beyond_bc) offer(t.a + (b * (t.b - t.a) + c * (t.c - t.a)), b, c);
+  if (!below_ab && !below_ac && !beyond_bc) offer(t.a + (b * (t.b - t.a) + c * (t.c - t.a)), 1 - b - c, b, c);
   if (below_ab || t.sliver) {
     const EdgePoint at = closest_on_edge(t.a, t.b, t.inverse_ab, x);
-    offer(at.point, at.share, 0);
+    offer(at.point, 1 - at.share, at.share, 0);
   }
   if (below_ac || t.sliver) {
     const EdgePoint at = closest_on_edge(t.a, t.c, t.inverse_ac, x);
-    offer(at.point, 0, at.share);
+    offer(at.point, 1 - at.share, 0, at.share);
   }
   if (beyond_bc || t.sliver) {
     const EdgePoint at = closest_on_edge(t.b, t.c, t.inverse_bc, x);
-    offer(at.point, 1 - at.share, at.share);
+    offer(at.point, 0, 1 - at.share, at.share);
   }
   return best;
 }
@@ -192,8 +192,8 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
   result.point = best.point;
   result.face = nearest->face;
   result.squared_distance = best.squared_distance;
-  const double weights[3] = {std::max(0.0, 1 - best.b - best.c), best.b, best.c};
-  for (std::size_t k = 0; k < 3; ++k) result.barycentric(nearest->corner[k]) = weights[k];
+  for (std::size_t k = 0; k < 3; ++k)
+    result.barycentric(nearest->corner[k]) = best.weights(static_cast<Eigen::Index>(k));
   return result;
 }
 

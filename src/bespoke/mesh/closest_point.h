@@ -12,7 +12,8 @@ namespace bespoke {
 struct SurfacePoint {
   Vector3 point;  ///< mesh units
   int face = 0;
-  Vector3 barycentric;  ///< weights of the face's three vertices, ≥ 0, sum 1
+  /// Weights of the face's three vertices, ≥ 0, sum 1. On an edge or at a corner the others are exactly 0.
+  Vector3 barycentric;
   double squared_distance = std::numeric_limits<double>::infinity();  ///< from the query
 };
 

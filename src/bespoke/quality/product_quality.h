@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "bespoke/quality/distortion.h"
+#include "bespoke/quality/signed_distance.h"
+
+namespace bespoke {
+
+/// Where a product lies inside of the body that it is worn on.
+struct Penetration {
+  std::size_t vertices = 0;  ///< deeper than the tolerance
+  double area_share = 0;     ///< of the product's surface, in [0, 1], from samples
+  double deepest = 0;        ///< of vertices and samples, mesh units, ≥ 0
+};
+
+/// What carrying a product across did to it and to its fit.
+struct ProductQuality {
+  std::size_t vertices = 0;
+  std::size_t faces = 0;  ///< triangles
+  MeshDistortion distortion;
+  /// Signed distance of the vertices from the body, mesh units, positive outside, over those whose side is
+  /// known before and after.
+  Spread clearance_before;      ///< from the source
+  Spread clearance_after;       ///< from the target
+  Statistics clearance_change;  ///< |after − before|: kept within p95 for 95 % of the vertices, and so on
+  std::size_t unsided_vertices = 0;  ///< nearest to a boundary of the body before or after, so left out
+  Penetration penetration_before;
+  Penetration penetration_after;
+  std::size_t self_intersections_before = 0;  ///< pairs of faces, see self_intersections
+  std::size_t self_intersections_after = 0;
+};
+
+struct ProductQualityOptions {
+  std::size_t samples = 50000;  ///< on the product's surface
+  /// What counts as inside, as a fraction of the body's bounding-box diagonal: below it, rounding of the
+  /// files' floats decides.
+  double inside_tolerance = 1e-6;
+};
+
+/// The two bodies that a product is measured against.
+struct Bodies {
+  const TriangleMesh& source;
+  const TriangleMesh& target;
+  const SignedDistance& from_source;  ///< of `source`
+  const SignedDistance& from_target;  ///< of `target`
+};
+
+/// `before`: the product on the source; `after`: 3×n, its vertices on the target, target frame. A product
+/// without faces has no distortion, samples or self-intersections. Throws InvalidInput when the sizes differ
+/// or a value is not finite.
+ProductQuality product_quality(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+                               const ProductQualityOptions& options = {});
+
+}  // namespace bespoke

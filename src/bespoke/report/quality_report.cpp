@@ -1,0 +1,120 @@
+#include "bespoke/report/quality_report.h"
+
+#include <cassert>
+#include <cstdio>
+
+#include "bespoke/pipeline/summary_json.h"
+
+namespace bespoke {
+namespace {
+
+Json to_json(const Spread& spread) {
+  return {{"count", spread.count},   {"min", spread.min}, {"p1", spread.p1},
+          {"median", spread.median}, {"p99", spread.p99}, {"max", spread.max}};
+}
+
+Json to_json(const Penetration& penetration) {
+  return {{"vertices", penetration.vertices},
+          {"area_share", penetration.area_share},
+          {"deepest", penetration.deepest}};
+}
+
+Json to_json(const ProductQuality& product) {
+  return {{"vertices", product.vertices},
+          {"faces", product.faces},
+          {"edge_length_ratio", to_json(product.distortion.edge_length)},
+          {"angle_change_degrees", bespoke::to_json(product.distortion.angle)},
+          {"left_out_edges", product.distortion.left_out_edges},
+          {"left_out_faces", product.distortion.left_out_faces},
+          {"clearance_before", to_json(product.clearance_before)},
+          {"clearance_after", to_json(product.clearance_after)},
+          {"clearance_change", bespoke::to_json(product.clearance_change)},
+          {"unsided_vertices", product.unsided_vertices},
+          {"penetration_before", to_json(product.penetration_before)},
+          {"penetration_after", to_json(product.penetration_after)},
+          {"self_intersections_before", product.self_intersections_before},
+          {"self_intersections_after", product.self_intersections_after}};
+}
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string penetration_text(const Penetration& penetration) {
+  return std::to_string(penetration.vertices) + " vertices, " + number(100 * penetration.area_share) +
+         " % of the area, deepest " + number(penetration.deepest);
+}
+
+std::string product_text(const std::string& name, const ProductQuality& product) {
+  const Statistics& change = product.clearance_change;
+  std::string text = name + ": " + std::to_string(product.vertices) + " vertices, " +
+                     std::to_string(product.faces) + " triangles\n";
+  text += "  edge lengths after/before: " + to_string(product.distortion.edge_length) + "\n";
+  text += "  angles change by degrees:  " + to_string(product.distortion.angle) + "\n";
+  text += "  clearance before:          " + to_string(product.clearance_before) + "\n";
+  text += "  clearance after:           " + to_string(product.clearance_after) + "\n";
+  text += "  clearance kept within " + number(change.median) + " for 50 %, " + number(change.p95) +
+          " for 95 %, " + number(change.p99) + " for 99 % of " + std::to_string(change.count) +
+          " vertices, " + number(change.max) + " for all";
+  if (product.unsided_vertices > 0)
+    text += " (" + std::to_string(product.unsided_vertices) + " lie beyond the body's boundary)";
+  text += "\n  inside the body before:    " + penetration_text(product.penetration_before) + "\n";
+  text += "  inside the body after:     " + penetration_text(product.penetration_after) + "\n";
+  text += "  self-intersecting pairs of faces: " + std::to_string(product.self_intersections_before) +
+          " before, " + std::to_string(product.self_intersections_after) + " after\n";
+  return text;
+}
+
+}  // namespace
+
+std::string quality_text(const MappingQuality& quality, const std::vector<std::string>& names,
+                         const std::string& unit) {
+  assert(names.size() == quality.products.size());
+  const MapDistortion& map = quality.distortion;
+  std::string text = "lengths in mesh units (" + unit + ")\n";
+  text += "anchor residuals:    " + to_string(quality.anchor_residuals) + "\n";
+  text += "source to target:    " + to_string(quality.surfaces.a_to_b) + "\n";
+  text += "target to source:    " + to_string(quality.surfaces.b_to_a) + "\n";
+  text += "Hausdorff distance:  " + number(quality.surfaces.hausdorff) + "\n";
+  text += "conformal s1/s3:     " + to_string(map.conformal) + "\n";
+  text += "area s1 s2:          " + to_string(map.area) + "\n";
+  text += "volume det:          " + to_string(map.volume) + "\n";
+  text += "flips: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
+          " points of the band, " + std::to_string(quality.flipped_faces) + " of " +
+          std::to_string(quality.source_faces) + " source faces; least det " + number(map.least_determinant) +
+          "\n";
+  for (std::size_t i = 0; i < names.size(); ++i) text += product_text(names[i], quality.products[i]);
+  return text;
+}
+
+std::string quality_json(const MappingQuality& quality, const std::vector<std::string>& names,
+                         const std::string& unit) {
+  assert(names.size() == quality.products.size());
+  const MapDistortion& map = quality.distortion;
+  Json products = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Json product = {{"name", names[i]}};
+    product.update(to_json(quality.products[i]));
+    products.push_back(std::move(product));
+  }
+  const Json json = {{"unit", unit},
+                     {"anchor_residuals", bespoke::to_json(quality.anchor_residuals)},
+                     {"source_to_target", bespoke::to_json(quality.surfaces.a_to_b)},
+                     {"target_to_source", bespoke::to_json(quality.surfaces.b_to_a)},
+                     {"hausdorff", quality.surfaces.hausdorff},
+                     {"distortion",
+                      {{"samples", map.samples},
+                       {"conformal", to_json(map.conformal)},
+                       {"area", to_json(map.area)},
+                       {"volume", to_json(map.volume)},
+                       {"least_determinant", map.least_determinant},
+                       {"flips", map.flips}}},
+                     {"source_faces", quality.source_faces},
+                     {"flipped_faces", quality.flipped_faces},
+                     {"products", std::move(products)}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace bespoke
