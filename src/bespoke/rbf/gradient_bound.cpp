@@ -38,7 +38,7 @@ double norm_from_above(const Matrix3& gradient) {
   if (!(scale > 0)) return 0;
   Matrix3 power = (gradient / scale).transpose() * (gradient / scale);
   for (int doubling = 0; doubling < 3; ++doubling) power = (power * power).eval();
-  return scale * std::pow(power.trace(), 1.0 / 16);
+  return scale * std::sqrt(std::sqrt(std::sqrt(std::sqrt(power.trace()))));
 }
 
 using Cell = std::array<int, 3>;
@@ -69,102 +69,148 @@ std::vector<Cell> cells_in_reach(const RbfLayer& layer, double edge) {
   return cells;
 }
 
-/// Bounds one layer cell by cell.
-class CellBounds {
+constexpr double half_diagonal = 0.8660254037844387;  // of a unit cube
+
+}  // namespace
+
+/// Bounds one layer cube by cube.
+class GradientBound::Search {
  public:
-  explicit CellBounds(const RbfLayer& layer)
+  Search(const RbfLayer& layer, double enough, Closeness closeness)
       : layer_(layer),
+        enough_(enough),
+        closeness_(closeness),
         sizes_(layer.coefficients.colwise().norm()),
         grid_(layer.centers, layer.lambda),
         evaluator_(layer.centers, layer.coefficients, layer.lambda, Wendland::c2) {}
 
-  /// Σ |cⱼ| max |φ'| / λ over the ball around `center`.
-  double coarse(const Vector3& center, double radius) const {
+  bool feels(const Vector3& low, double edge, const std::vector<char>& changed) const {
+    bool result = false;
+    grid_.for_each_within(low + Vector3::Constant(edge / 2), layer_.lambda + half_diagonal * edge,
+                          [&](int j, double) { result = result || changed[std::size_t(j)]; });
+    return result;
+  }
+
+  void look(const Vector3& low, double edge, Found& found, std::vector<int>& scratch) const {
+    const double coarse = bound_from_sizes(low, edge);
+    if (coarse <= enough_) {
+      found.largest = std::max(found.largest, coarse);
+      return;
+    }
+    // Cubes this small are left to the lattice.
+    if (edge <= layer_.lambda / 4) return look_closely(low, edge, found, scratch);
+    for (int octant = 0; octant < 8; ++octant)
+      look(low + edge / 2 * Vector3(octant % 2, octant / 2 % 2, octant / 4), edge / 2, found, scratch);
+  }
+
+ private:
+  /// Σ |cⱼ| max |φ'| / λ over the ball around the cube.
+  double bound_from_sizes(const Vector3& low, double edge) const {
+    const double radius = half_diagonal * edge;
     double sum = 0;
-    grid_.for_each_within(center, layer_.lambda + radius, [&](int j, double squared) {
-      sum += sizes_[j] * steepest_beyond((std::sqrt(squared) - radius) / layer_.lambda);
-    });
+    grid_.for_each_within(low + Vector3::Constant(edge / 2), layer_.lambda + radius,
+                          [&](int j, double squared) {
+                            sum += sizes_[j] * steepest_beyond((std::sqrt(squared) - radius) / layer_.lambda);
+                          });
     return sum / layer_.lambda;
   }
 
   /// The gradient's trilinear interpolant on a lattice of spacing δ takes its largest norm at a node, and
-  /// misses the gradient by at most 3 δ²/8 Σ |cⱼ| ‖D³φ‖ / λ³.
-  double fine(const Vector3& low, double edge, std::vector<int>& scratch) const {
-    double largest = 0;
-    constexpr int parts = 2;
-    for (int part = 0; part < parts * parts * parts; ++part) {
-      const double part_edge = edge / parts;
-      const Vector3 part_low =
-          low + part_edge * Vector3(part % parts, part / parts % parts, part / (parts * parts));
-      largest =
-          std::max(largest, remainder(part_low, part_edge) + largest_at_nodes(part_low, part_edge, scratch));
+  /// misses the gradient by at most 3 δ²/8 Σ |cⱼ| ‖D³φ‖ / λ³. The lattice is refined until the second part is
+  /// small.
+  void look_closely(const Vector3& low, double edge, Found& found, std::vector<int>& scratch) const {
+    const double curvature = curvature_from_sizes(low, edge);
+    constexpr int coarsest = 2;
+    constexpr int finest = 8;
+    for (int intervals = coarsest;; intervals *= 2) {
+      const double spacing = edge / intervals;
+      const double remainder = 3 * spacing * spacing / 8 * curvature;
+      const bool last = intervals == finest || remainder <= 0.1 * enough_;
+      if (remainder >= enough_ && !last) continue;
+      const double sampled = largest_at_nodes(low, spacing, intervals + 1, scratch);
+      const bool steep = sampled > enough_ && closeness_ == Closeness::rough;
+      if (sampled + remainder > enough_ && !last && !steep) continue;
+      found.largest = std::max(found.largest, sampled + remainder);
+      if (sampled + remainder > enough_)
+        found.steep.push_back({low + Vector3::Constant(edge / 2), half_diagonal * edge,
+                               sampled + std::min(remainder, 0.1 * sampled)});
+      return;
     }
-    return largest;
   }
 
- private:
-  static constexpr int nodes = 3;  // along an edge of a part
-
-  double remainder(const Vector3& low, double edge) const {
-    const double spacing = edge / (nodes - 1);
-    const double radius = std::sqrt(3.0) / 2 * edge;
+  double curvature_from_sizes(const Vector3& low, double edge) const {
+    const double radius = half_diagonal * edge;
     double sum = 0;
     grid_.for_each_within(
         low + Vector3::Constant(edge / 2), layer_.lambda + radius, [&](int j, double squared) {
           sum += sizes_[j] * third_derivative_beyond((std::sqrt(squared) - radius) / layer_.lambda);
         });
-    return 3 * spacing * spacing / 8 * sum / (layer_.lambda * layer_.lambda * layer_.lambda);
+    return sum / (layer_.lambda * layer_.lambda * layer_.lambda);
   }
 
-  double largest_at_nodes(const Vector3& low, double edge, std::vector<int>& scratch) const {
-    constexpr int count = nodes * nodes * nodes;
+  double largest_at_nodes(const Vector3& low, double spacing, int nodes, std::vector<int>& scratch) const {
     constexpr int lanes = LayerEvaluator::lanes;
-    constexpr int blocks = (count + lanes - 1) / lanes;
-    LayerEvaluator::Block block[blocks];
-    for (int slot = 0; slot < blocks * lanes; ++slot) {
+    const int count = nodes * nodes * nodes;
+    std::vector<LayerEvaluator::Block> blocks(std::size_t(count + lanes - 1) / lanes);
+    for (int slot = 0; slot < int(blocks.size()) * lanes; ++slot) {
       const int node = std::min(slot, count - 1);
       const int index[3] = {node % nodes, node / nodes % nodes, node / (nodes * nodes)};
       for (int axis = 0; axis < 3; ++axis)
-        block[slot / lanes].x[axis][slot % lanes] = low[axis] + edge * index[axis] / (nodes - 1);
+        blocks[std::size_t(slot / lanes)].x[axis][slot % lanes] = low[axis] + spacing * index[axis];
     }
-    evaluator_.evaluate(block, blocks, LayerEvaluator::Order::gradient, scratch);
+    evaluator_.evaluate(blocks.data(), blocks.size(), LayerEvaluator::Order::gradient, scratch);
     double largest = 0;
     for (int node = 0; node < count; ++node) {
       Matrix3 gradient;
-      for (int i = 0; i < 9; ++i) gradient(i / 3, i % 3) = block[node / lanes].gradient[i][node % lanes];
-      largest = std::max(largest, norm_from_above(gradient));
+      for (int i = 0; i < 9; ++i)
+        gradient(i / 3, i % 3) = blocks[std::size_t(node / lanes)].gradient[i][node % lanes];
+      // The Frobenius norm is never the smaller one.
+      if (gradient.squaredNorm() > largest * largest) largest = std::max(largest, norm_from_above(gradient));
     }
     return largest;
   }
 
   const RbfLayer& layer_;
+  double enough_;
+  Closeness closeness_;
   Eigen::RowVectorXd sizes_;
   PointGrid grid_;
   LayerEvaluator evaluator_;
 };
 
-}  // namespace
-
-double gradient_bound(const RbfLayer& layer, double enough) {
-  if (layer.centers.cols() == 0) return 0;
-  const double edge = layer.lambda / 2;
-  const std::vector<Cell> cells = cells_in_reach(layer, edge);
-  const CellBounds bounds(layer);
-  const auto largest = [&](std::size_t begin, std::size_t end) {
-    double result = 0;
+void GradientBound::update(const RbfLayer& layer, double enough, Closeness closeness,
+                           const std::vector<char>& changed) {
+  const double edge = layer.lambda;
+  if (changed.empty()) {
+    cells_ = cells_in_reach(layer, edge);
+    found_.assign(cells_.size(), {});
+  }
+  if (cells_.empty()) return;
+  const Search search(layer, enough, closeness);
+  parallel_for(cells_.size(), 4, [&](std::size_t begin, std::size_t end) {
     std::vector<int> scratch;
     for (std::size_t c = begin; c < end; ++c) {
-      const Vector3 low = edge * Vector3(cells[c][0], cells[c][1], cells[c][2]);
-      double bound = bounds.coarse(low + Vector3::Constant(edge / 2), std::sqrt(3.0) / 2 * edge);
-      if (!(bound <= enough)) bound = std::min(bound, bounds.fine(low, edge, scratch));
-      result = std::max(result, bound);
+      const Vector3 low = edge * Vector3(cells_[c][0], cells_[c][1], cells_[c][2]);
+      const bool settled = found_[c].steep.empty() || closeness == Closeness::rough;
+      if (!changed.empty() && settled && !search.feels(low, edge, changed)) continue;
+      found_[c] = {};
+      search.look(low, edge, found_[c], scratch);
     }
-    return result;
-  };
+  });
+}
+
+double GradientBound::largest() const {
+  double result = 0;
+  for (const Found& found : found_) result = std::max(result, found.largest);
   // Far above the rounding errors of the sums.
   constexpr double margin = 1 + 1e-9;
-  return margin *
-         parallel_reduce(cells.size(), 32, 0.0, largest, [](double a, double b) { return std::max(a, b); });
+  return margin * result;
+}
+
+std::vector<GradientBound::SteepPlace> GradientBound::steep_places() const {
+  std::vector<SteepPlace> result;
+  for (const Found& found : found_) result.insert(result.end(), found.steep.begin(), found.steep.end());
+  return result;
 }
 
 }  // namespace bespoke

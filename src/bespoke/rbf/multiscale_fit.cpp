@@ -17,10 +17,12 @@ namespace {
 
 // Of a composed layer: residuals are clipped to this fraction of λ_k, …
 constexpr double largest_step = 0.3;
-// … its gradient is scaled to this bound, …
-constexpr double largest_gradient = 0.8;
-// … and a scale takes so many layers at most while clipping or scaling keeps one from finishing.
+// … its gradient is held below this bound, …
+constexpr double largest_gradient = 0.9;
+// … and a scale takes so many layers at most while clipping or damping keeps one from finishing.
 constexpr int most_layers_per_scale = 6;
+// λ_k in tolerances below which a layer could repair next to nothing.
+constexpr double least_radius = 4;
 
 void require_usable(const Points& sources, const Points& targets, const MultiscaleOptions& options) {
   if (sources.cols() != targets.cols())
@@ -65,6 +67,42 @@ AffineMap least_squares_affine(const Points& sources, const Points& targets) {
   return map;
 }
 
+/// Damps the layer's coefficients around places where its gradient may exceed the bound, then scales what is
+/// left. Answers the bound that holds now, and whether the layer met it untouched.
+struct LimitedLayer {
+  double bound = 0;
+  bool untouched = true;
+};
+
+LimitedLayer limit_gradient(RbfLayer& layer) {
+  constexpr int dampings = 4;
+  // Damping varies from place to place, which adds to the gradient.
+  constexpr double aim = 0.85;
+  const PointGrid grid(layer.centers, 2 * layer.lambda);
+  GradientBound bound;
+  std::vector<char> changed;
+  for (int pass = 0; pass < dampings; ++pass) {
+    bound.update(layer, largest_gradient, GradientBound::Closeness::rough, changed);
+    if (bound.largest() <= largest_gradient) return {bound.largest(), pass == 0};
+    Eigen::RowVectorXd factors = Eigen::RowVectorXd::Ones(layer.centers.cols());
+    for (const auto& [center, radius, estimate] : bound.steep_places()) {
+      const double factor = aim * largest_gradient / std::max(estimate, largest_gradient);
+      const double reach = layer.lambda + radius;
+      grid.for_each_within(center, reach + layer.lambda, [&](int j, double squared) {
+        const double ramp = std::clamp((std::sqrt(squared) - reach) / layer.lambda, 0.0, 1.0);
+        factors[j] = std::min(factors[j], factor + (1 - factor) * ramp);
+      });
+    }
+    layer.coefficients.array().rowwise() *= factors.array();
+    changed.resize(std::size_t(factors.size()));
+    for (std::size_t j = 0; j < changed.size(); ++j) changed[j] = factors[Eigen::Index(j)] < 1;
+  }
+  bound.update(layer, largest_gradient, GradientBound::Closeness::tight, changed);
+  if (bound.largest() <= largest_gradient) return {bound.largest(), false};
+  layer.coefficients *= largest_gradient / bound.largest();
+  return {largest_gradient, false};
+}
+
 class Fitter {
  public:
   Fitter(const Points& sources, const Points& targets, const MultiscaleOptions& options,
@@ -78,7 +116,9 @@ class Fitter {
 
   MultiscaleFit run() {
     double lambda = options_.lambda;
-    for (int level = 0; level < options_.max_levels && worst() > options_.tolerance; ++level, lambda /= 2) {
+    for (int level = 0; level < options_.max_levels && worst() > options_.tolerance &&
+                        lambda > least_radius * options_.tolerance;
+         ++level, lambda /= 2) {
       progress_.step("elastic", std::size_t(level), std::size_t(options_.max_levels));
       if (options_.composed)
         compose_scale(lambda);
@@ -106,13 +146,9 @@ class Fitter {
         finished = false;
       }
       RbfLayer layer = solve_layer(centers, residuals_at_centers_, lambda, options_.tolerance / 10);
-      double bound = gradient_bound(layer, largest_gradient);
-      if (bound > largest_gradient) {
-        layer.coefficients *= largest_gradient / bound;
-        bound = largest_gradient;
-        finished = false;
-      }
-      summary_.gradient_bounds.push_back(bound);
+      const LimitedLayer limited = limit_gradient(layer);
+      if (!limited.untouched) finished = false;
+      summary_.gradient_bounds.push_back(limited.bound);
       add(std::move(layer));
       constexpr double least_progress = 0.9;
       if (finished || worst() <= options_.tolerance) return;
