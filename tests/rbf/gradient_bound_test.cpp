@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "bespoke/rbf/kernels.h"
-#include "bespoke/rbf/layer_evaluator.h"
+#include "bespoke/rbf/layer_stack.h"
 #include "support/random_points.h"
 
 namespace bespoke {

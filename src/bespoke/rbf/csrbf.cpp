@@ -12,7 +12,7 @@
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/front_cholesky.h"
 #include "bespoke/rbf/kernels.h"
-#include "bespoke/rbf/layer_evaluator.h"
+#include "bespoke/rbf/layer_stack.h"
 
 namespace bespoke {
 namespace {

@@ -158,9 +158,11 @@ class GradientBound::Search {
       for (int axis = 0; axis < 3; ++axis)
         blocks[std::size_t(slot / lanes)].x[axis][slot % lanes] = low[axis] + spacing * index[axis];
     }
+    for (LayerEvaluator::Block& block : blocks) block.update_bounds();
     evaluator_.evaluate(blocks.data(), blocks.size(), LayerEvaluator::Order::gradient, scratch);
     double largest = 0;
     for (int node = 0; node < count; ++node) {
+      if (!blocks[std::size_t(node / lanes)].reached) continue;
       Matrix3 gradient;
       for (int i = 0; i < 9; ++i)
         gradient(i / 3, i % 3) = blocks[std::size_t(node / lanes)].gradient[i][node % lanes];

@@ -7,8 +7,6 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/parallel.h"
-#include "bespoke/rbf/spatial_order.h"
 
 namespace bespoke {
 namespace {
@@ -118,37 +116,25 @@ AddUp fastest(Wendland function, Order order) {
   return table[function == Wendland::c4][order == Order::gradient];
 }
 
-void clear(Block& block, Order order) {
-  for (auto& row : block.value) std::fill(std::begin(row), std::end(row), 0.0);
-  if (order == Order::gradient)
-    for (auto& row : block.gradient) std::fill(std::begin(row), std::end(row), 0.0);
-}
+using Bounds = LayerEvaluator::Bounds;
 
-template <class Bounds>
-Bounds bounds_of(const Block* blocks, std::size_t count) {
-  Bounds bounds;
-  for (int axis = 0; axis < 3; ++axis) {
-    double low = blocks[0].x[axis][0];
-    double high = low;
-    for (std::size_t b = 0; b < count; ++b)
-      for (const double value : blocks[b].x[axis]) {
-        low = std::min(low, value);
-        high = std::max(high, value);
-      }
-    bounds.low[axis] = low;
-    bounds.high[axis] = high;
-  }
+Bounds join(const Block* blocks, std::size_t count) {
+  Bounds bounds = blocks[0].bounds;
+  for (std::size_t b = 1; b < count; ++b)
+    for (int axis = 0; axis < 3; ++axis) {
+      bounds.low[axis] = std::min(bounds.low[axis], blocks[b].bounds.low[axis]);
+      bounds.high[axis] = std::max(bounds.high[axis], blocks[b].bounds.high[axis]);
+    }
   return bounds;
 }
 
-template <class Bounds>
 double extent(const Bounds& bounds) {
   double result = 0;
   for (int axis = 0; axis < 3; ++axis) result = std::max(result, bounds.high[axis] - bounds.low[axis]);
   return result;
 }
 
-template <class Bounds, class Center>
+template <class Center>
 bool reaches(const Bounds& bounds, const Center& center, double squared_lambda) {
   double squared = 0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -217,6 +203,10 @@ bool LayerEvaluator::within_reach(const Bounds& bounds) const {
     first[axis] = static_cast<int>(std::max(from, 0.0));
     last[axis] = static_cast<int>(std::min(to, double(reach_cells_[axis] - 1)));
   }
+  // A look at very many cells costs more than it may save.
+  constexpr double most_cells = 256;
+  if (double(last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1) > most_cells)
+    return true;
   for (int k = first[2]; k <= last[2]; ++k)
     for (int j = first[1]; j <= last[1]; ++j)
       for (int i = first[0]; i <= last[0]; ++i) {
@@ -257,153 +247,66 @@ void LayerEvaluator::narrow(const Bounds& bounds, const std::vector<int>& candid
 }
 
 void LayerEvaluator::sum(Block& block, Order order, const int* nearby, int count) const {
+  block.reached = count > 0;
   fastest(function_, order)({sorted_.empty() ? nullptr : sorted_.front().z, nearby, count, 1 / lambda_},
                             block);
 }
 
+void LayerEvaluator::Block::update_bounds() {
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds.low[axis] = *std::min_element(std::begin(x[axis]), std::end(x[axis]));
+    bounds.high[axis] = *std::max_element(std::begin(x[axis]), std::end(x[axis]));
+  }
+}
+
 void LayerEvaluator::evaluate(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const {
   if (count == 0) return;
-  const auto bounds = bounds_of<Bounds>(blocks, count);
-  if (sorted_.empty()) {
-    for (std::size_t b = 0; b < count; ++b) clear(blocks[b], order);
+  const Bounds bounds = join(blocks, count);
+  if (sorted_.empty() || !within_reach(bounds)) {
+    for (std::size_t b = 0; b < count; ++b) blocks[b].reached = false;
     return;
   }
   // Groups no wider than λ share one list of candidates; wider ones would drag along too many.
-  if (!(extent(bounds) <= lambda_)) return evaluate_split(blocks, count, order, nearby);
-  if (!within_reach(bounds)) {
-    for (std::size_t b = 0; b < count; ++b) clear(blocks[b], order);
-    return;
-  }
-  std::vector<int> candidates;
-  candidates.swap(nearby);
-  collect(bounds, candidates);
+  if (extent(bounds) <= lambda_) return evaluate_together(blocks, count, bounds, order, nearby);
+  if (count == 1) return evaluate_lanes(*blocks, order, nearby);
+  evaluate(blocks, count / 2, order, nearby);
+  evaluate(blocks + count / 2, count - count / 2, order, nearby);
+}
+
+void LayerEvaluator::evaluate_together(Block* blocks, std::size_t count, const Bounds& bounds, Order order,
+                                       std::vector<int>& nearby) const {
+  collect(bounds, nearby);
+  if (count == 1) return sum(*blocks, order, nearby.data(), int(nearby.size()));
+  const std::vector<int> candidates = nearby;
   for (std::size_t b = 0; b < count; ++b) {
-    narrow(bounds_of<Bounds>(blocks + b, 1), candidates, nearby);
+    narrow(blocks[b].bounds, candidates, nearby);
     sum(blocks[b], order, nearby.data(), int(nearby.size()));
   }
 }
 
-void LayerEvaluator::evaluate_split(Block* blocks, std::size_t count, Order order,
-                                    std::vector<int>& nearby) const {
-  if (count > 1) {
-    evaluate(blocks, count / 2, order, nearby);
-    evaluate(blocks + count / 2, count - count / 2, order, nearby);
-    return;
-  }
-  evaluate_lanes(*blocks, order, nearby);
-}
-
 void LayerEvaluator::evaluate_lanes(Block& block, Order order, std::vector<int>& nearby) const {
-  const auto bounds = bounds_of<Bounds>(&block, 1);
   // Up to this width one list for all lanes is cheaper than one each.
   constexpr double widest_shared_list = 2;
-  if (extent(bounds) <= widest_shared_list * lambda_) {
-    collect(bounds, nearby);
+  if (extent(block.bounds) <= widest_shared_list * lambda_) {
+    collect(block.bounds, nearby);
     return sum(block, order, nearby.data(), int(nearby.size()));
   }
-  clear(block, order);
+  block.reached = false;
   for (int lane = 0; lane < lanes; ++lane) {
     Block single;
     for (int axis = 0; axis < 3; ++axis)
       std::fill(std::begin(single.x[axis]), std::end(single.x[axis]), block.x[axis][lane]);
-    const auto place = bounds_of<Bounds>(&single, 1);
-    if (!within_reach(place)) continue;
-    collect(place, nearby);
-    if (nearby.empty()) continue;
+    single.update_bounds();
+    if (!within_reach(single.bounds)) continue;
+    collect(single.bounds, nearby);
     sum(single, order, nearby.data(), int(nearby.size()));
+    if (!single.reached) continue;
+    if (!block.reached) sum(block, order, nearby.data(), 0);
+    block.reached = true;
     for (int i = 0; i < 3; ++i) block.value[i][lane] = single.value[i][0];
     if (order == Order::gradient)
       for (int i = 0; i < 9; ++i) block.gradient[i][lane] = single.gradient[i][0];
   }
-}
-
-LayerStack::LayerStack(std::vector<LayerEvaluator> layers, Stacking stacking)
-    : layers_(std::move(layers)), stacking_(stacking) {}
-
-Points LayerStack::displacement(const Points& x) const { return evaluate(x, Order::value); }
-
-Points LayerStack::gradient(const Points& x) const { return evaluate(x, Order::gradient); }
-
-namespace {
-
-/// What a stack has summed for the points of one block so far.
-struct Total {
-  double value[3][lanes] = {};
-  double gradient[9][lanes] = {};  // of y − x
-};
-
-void add_gradient(const Block& block, Stacking stacking, Total& total) {
-  for (int lane = 0; lane < lanes; ++lane) {
-    Matrix3 layer;
-    Matrix3 before;
-    for (int i = 0; i < 9; ++i) {
-      layer(i / 3, i % 3) = block.gradient[i][lane];
-      before(i / 3, i % 3) = total.gradient[i][lane];
-    }
-    // (I + G)(I + J) − I for composed layers; plain addition for summed ones.
-    Matrix3 after = before + layer;
-    if (stacking == Stacking::composed) after += layer * before;
-    for (int i = 0; i < 9; ++i) total.gradient[i][lane] = after(i / 3, i % 3);
-  }
-}
-
-void add_value(const Block& block, Total& total) {
-  for (int i = 0; i < 3; ++i)
-    for (int lane = 0; lane < lanes; ++lane) total.value[i][lane] += block.value[i][lane];
-}
-
-}  // namespace
-
-Points LayerStack::evaluate(const Points& x, Order order) const {
-  const std::vector<int> places = spatial_order(x);
-  Points result(3, order == Order::value ? x.cols() : 3 * x.cols());
-  constexpr std::size_t grain = 64 * lanes;
-  parallel_for(places.size(), grain, [&](std::size_t begin, std::size_t end) {
-    const std::size_t block_count = (end - begin + lanes - 1) / lanes;
-    std::vector<Block> blocks(block_count);
-    std::vector<Total> totals(block_count);
-    std::vector<int> nearby;
-    // The last block repeats the last point.
-    const auto place = [&](std::size_t block, int lane) {
-      return places[std::min(begin + block * lanes + std::size_t(lane), end - 1)];
-    };
-    const auto load = [&](std::size_t b) {
-      for (int lane = 0; lane < lanes; ++lane)
-        for (int axis = 0; axis < 3; ++axis) {
-          // NaN would hide the other points of the block; an infinite point is out of every reach.
-          const double coordinate = x(axis, place(b, lane));
-          blocks[b].x[axis][lane] =
-              std::isnan(coordinate) ? std::numeric_limits<double>::infinity() : coordinate;
-          if (stacking_ == Stacking::composed) blocks[b].x[axis][lane] += totals[b].value[axis][lane];
-        }
-    };
-    for (const LayerEvaluator& layer : layers_) {
-      for (std::size_t b = 0; b < block_count; ++b) load(b);
-      layer.evaluate(blocks.data(), block_count, order, nearby);
-      for (std::size_t b = 0; b < block_count; ++b) {
-        add_value(blocks[b], totals[b]);
-        if (order == Order::gradient) add_gradient(blocks[b], stacking_, totals[b]);
-      }
-    }
-    for (std::size_t b = 0; b < block_count; ++b)
-      for (int lane = 0; lane < lanes; ++lane) {
-        const int index = place(b, lane);
-        const bool undefined = x.col(index).hasNaN();
-        if (undefined) {
-          result
-              .middleCols(order == Order::value ? index : 3 * Eigen::Index(index),
-                          order == Order::value ? 1 : 3)
-              .setConstant(std::numeric_limits<double>::quiet_NaN());
-          continue;
-        }
-        if (order == Order::value)
-          for (int i = 0; i < 3; ++i) result(i, index) = totals[b].value[i][lane];
-        else
-          for (int i = 0; i < 9; ++i)
-            result(i / 3, 3 * Eigen::Index(index) + i % 3) = totals[b].gradient[i][lane];
-      }
-  });
-  return result;
 }
 
 }  // namespace bespoke

@@ -12,12 +12,6 @@ namespace bespoke {
 /// Which of kernels.h a layer sums.
 enum class Wendland { c2, c4 };
 
-/// How the layers of a stack act on a point.
-enum class Stacking {
-  summed,    ///< y = x + Σ u_k(x)
-  composed,  ///< y = (id + u_n) ∘ … ∘ (id + u_1) (x)
-};
-
 /// u(x) = Σ cⱼ φ(|x − zⱼ| / λ), prepared for blocks of nearby points.
 class LayerEvaluator {
  public:
@@ -27,11 +21,21 @@ class LayerEvaluator {
   /// Points whose sums are formed side by side.
   static constexpr int lanes = 8;
 
+  /// An axis-aligned box, mesh units.
+  struct Bounds {
+    double low[3];
+    double high[3];
+  };
+
   /// Coordinates (mesh units) and sums of `lanes` points.
   struct Block {
     double x[3][lanes];
+    Bounds bounds;              ///< of x; the caller's business, by update_bounds()
+    bool reached = false;       ///< whether any centre is near; the sums below are filled only then
     double value[3][lanes];     ///< u
     double gradient[9][lanes];  ///< row-major ∂uᵢ/∂xⱼ; only when asked for
+
+    void update_bounds();
   };
 
   /// Which sums a call forms.
@@ -45,11 +49,8 @@ class LayerEvaluator {
     double z[3];
     double c[3];
   };
-  struct Bounds {
-    double low[3];
-    double high[3];
-  };
-  void evaluate_split(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const;
+  void evaluate_together(Block* blocks, std::size_t count, const Bounds& bounds, Order order,
+                         std::vector<int>& nearby) const;
   void evaluate_lanes(Block& block, Order order, std::vector<int>& nearby) const;
   bool within_reach(const Bounds& bounds) const;
   void collect(const Bounds& bounds, std::vector<int>& nearby) const;
@@ -66,26 +67,6 @@ class LayerEvaluator {
   Vector3 reach_origin_ = Vector3::Zero();
   double reach_inverse_edge_ = 0;
   Eigen::Array3i reach_cells_ = Eigen::Array3i::Zero();
-};
-
-/// Layers one after another. Sums run in an order that depends on centres and points alone, in `double`
-/// without contraction, so results have the same bits on every instruction set and at any thread count.
-class LayerStack {
- public:
-  LayerStack(std::vector<LayerEvaluator> layers, Stacking stacking);
-
-  /// y − x at the columns of x (3×n, mesh units); exactly zero where no layer reaches. Any order of points;
-  /// they are sorted by place first.
-  Points displacement(const Points& x) const;
-
-  /// ∇(y − x) at the columns of x: 3×3n, three columns per point, no unit.
-  Points gradient(const Points& x) const;
-
- private:
-  Points evaluate(const Points& x, LayerEvaluator::Order order) const;
-
-  std::vector<LayerEvaluator> layers_;
-  Stacking stacking_;
 };
 
 }  // namespace bespoke

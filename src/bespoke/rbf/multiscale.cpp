@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "bespoke/rbf/layer_evaluator.h"
+#include "bespoke/rbf/layer_stack.h"
 
 namespace bespoke {
 

@@ -7,8 +7,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rbf/gradient_bound.h"
-#include "bespoke/rbf/layer_evaluator.h"
 #include "bespoke/rbf/layer_solver.h"
+#include "bespoke/rbf/layer_stack.h"
 #include "bespoke/rbf/multiscale.h"
 #include "bespoke/rbf/point_grid.h"
 

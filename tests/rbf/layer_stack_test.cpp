@@ -1,4 +1,4 @@
-#include "bespoke/rbf/layer_evaluator.h"
+#include "bespoke/rbf/layer_stack.h"
 
 #include <gtest/gtest.h>
 
