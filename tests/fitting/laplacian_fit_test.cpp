@@ -174,6 +174,21 @@ TEST(FitSurfaceLaplacian, KeepsExactAnchors) {
   EXPECT_EQ(scene.fit().vertices.col(3), scene.anchor_targets.col(0));
 }
 
+TEST(FitSurfaceLaplacian, TurnsNoFaceOver) {
+  // Four source vertices a target face, and bumps that no displacement field of one step can follow.
+  TriangleMesh bumpy = shapes::icosphere(3);
+  for (Eigen::Index i = 0; i < bumpy.vertices.cols(); ++i) {
+    const Vector3 x = bumpy.vertices.col(i);
+    bumpy.vertices.col(i) *= 1 + 0.1 * std::sin(9 * x.x()) * std::cos(8 * x.y());
+  }
+  const TriangleMesh source = shapes::icosphere(4);
+  const SurfaceFit fit = Scene{source, bumpy}.fit();
+  const Points normals = face_normals({fit.vertices, source.faces});
+  for (Eigen::Index face = 0; face < normals.cols(); ++face)
+    EXPECT_GT(normals.col(face).dot(fit.vertices.col(source.faces(0, face))), 0);
+  EXPECT_LT(fit.summary.after.p95, 1e-9);
+}
+
 TEST(FitSurfaceLaplacian, DoesNotPileUpOnTheBoundaryOfAShorterTarget) {
   TriangleMesh strip = shapes::square_grid(20);
   TriangleMesh shorter = strip;

@@ -136,7 +136,7 @@ ElasticFit fit_elastic_csrbf(const PlacePairs& pairs, const FitOptions& options,
   CsrbfFit fit = fit_csrbf(pairs.sources, pairs.targets, csrbf, progress);
   const CsrbfEstimate& estimate = fit.summary.estimate;
   return {std::move(fit.map),
-          "csrbf: " + to_string(fit.summary),
+          to_string(fit.summary),
           {{"method", "csrbf"},
            {"centers", estimate.centers},
            {"entries_per_row", estimate.entries_per_row},

@@ -172,17 +172,43 @@ Statistics distances(const ClosestPointTree& target, const Points& vertices) {
   return summarize(std::move(result));
 }
 
-/// Moves the matched vertices onto their counterparts, and those that are exact anchors onto theirs.
-void snap(const Correspondence& found, const SurfaceAnchors& anchors, Points& vertices) {
-  for (Eigen::Index i = 0; i < vertices.cols(); ++i)
-    if (found.matched[static_cast<std::size_t>(i)]) vertices.col(i) = found.points.col(i);
+/// Matched vertices on their counterparts, exact anchors on theirs. A vertex whose snap would turn a face
+/// over stays where the smooth displacements brought it.
+Points snapped(const Correspondence& found, const SurfaceAnchors& anchors, const TriangleMesh& smooth) {
+  TriangleMesh result = smooth;
+  for (Eigen::Index i = 0; i < found.points.cols(); ++i)
+    if (found.matched[static_cast<std::size_t>(i)]) result.vertices.col(i) = found.points.col(i);
   constexpr double at_vertex = 1 - 1e-6;
+  std::vector<char> anchored(static_cast<std::size_t>(found.points.cols()), 0);
   for (std::size_t k = 0; k < anchors.places.size(); ++k) {
     const DisplacementAnchor& place = anchors.places[k];
-    for (int corner = 0; corner < 3; ++corner)
-      if (anchors.exact[k] && place.barycentric[corner] > at_vertex)
-        vertices.col(place.vertices[corner]) = anchors.targets.col(static_cast<Eigen::Index>(k));
+    for (int corner = 0; corner < 3; ++corner) {
+      const int vertex = place.vertices[corner];
+      if (!anchors.exact[k] || !(place.barycentric[corner] > at_vertex)) continue;
+      result.vertices.col(vertex) = anchors.targets.col(static_cast<Eigen::Index>(k));
+      anchored[static_cast<std::size_t>(vertex)] = 1;
+    }
   }
+  // Taking a vertex back can turn a neighbouring face that was fine; few rounds settle that.
+  constexpr int most_rounds = 20;
+  const Points smooth_normals = face_normals(smooth);
+  for (int round = 0; round < most_rounds; ++round) {
+    const Points normals = face_normals(result);
+    bool taken_back = false;
+    for (Eigen::Index face = 0; face < normals.cols(); ++face) {
+      if (normals.col(face).dot(smooth_normals.col(face)) > 0) continue;
+      for (int corner = 0; corner < 3; ++corner) {
+        const int vertex = smooth.faces(corner, face);
+        if (anchored[static_cast<std::size_t>(vertex)] ||
+            result.vertices.col(vertex) == smooth.vertices.col(vertex))
+          continue;
+        result.vertices.col(vertex) = smooth.vertices.col(vertex);
+        taken_back = true;
+      }
+    }
+    if (!taken_back) break;
+  }
+  return std::move(result.vertices);
 }
 
 }  // namespace
@@ -226,7 +252,7 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
     }
   }
   const Correspondence found = target.closest(moving.vertices, vertex_normals(moving));
-  snap(found, anchors, moving.vertices);
+  moving.vertices = snapped(found, anchors, moving);
   fit.confidence.assign(found.matched.begin(), found.matched.end());
   summary.unmatched_vertices = found.unmatched;
   summary.after = distances(anywhere, moving.vertices);
