@@ -46,10 +46,10 @@ void add_nose(Solid& head, const HeadBuild& build) {
 
 void add_mouth(Solid& head, const HeadBuild& build) {
   const double h = build.face;
-  head.add(Ellipsoid{{0, -5.9 * h, 6.6}, {2.6, 1.7, 1.6}}, 1.5);
-  head.add_both(RoundCone{{{0.25, -5.4 * h, 8.15}, 0.34}, {{1.9, -5.75 * h, 7.35}, 0.2}}, 0.5);
-  head.add(RoundCone{{{-0.7, -6.35 * h, 8.0}, 0.42}, {{0.7, -6.35 * h, 8.0}, 0.42}}, 0.4);
-  head.add_both(RoundCone{{{0.7, -6.35 * h, 8.0}, 0.42}, {{1.9, -5.95 * h, 7.3}, 0.2}}, 0.5);
+  head.add(Ellipsoid{{0, -5.9 * h, 6.4}, {2.9, 1.7, 1.5}}, 1.8);
+  head.add_both(RoundCone{{{0.3, -5.45 * h, 8.0}, 0.33}, {{2.2, -5.8 * h, 7.15}, 0.2}}, 0.6);
+  head.add(RoundCone{{{-0.8, -6.35 * h, 7.85}, 0.42}, {{0.8, -6.35 * h, 7.85}, 0.42}}, 0.5);
+  head.add_both(RoundCone{{{0.8, -6.35 * h, 7.85}, 0.42}, {{2.2, -5.95 * h, 7.15}, 0.2}}, 0.6);
   head.carve(Ellipsoid{{0, -7.5 * h, 9.1}, {1.6, 0.55, 1.0}}, 1.2);
   head.add(Ellipsoid{{0, -9.5 * h, 6.6}, {1.6, 1.1, 1.5}}, 1.5);
 }

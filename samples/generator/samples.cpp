@@ -63,11 +63,11 @@ Sample dress_sample() {
   MannequinBuild full;
   full.height = 172;
   full.shoulders = 1.04;
-  full.bust = 1.16;
-  full.waist = 1.28;
-  full.hips = 1.14;
-  full.belly = 2.0;
-  full.limbs = 1.12;
+  full.bust = 1.2;
+  full.waist = 1.34;
+  full.hips = 1.18;
+  full.belly = 2.5;
+  full.limbs = 1.15;
   full.breasts = 1.12;
   const Anatomy source = mannequin(slim);
   const Anatomy target = mannequin(full);
@@ -94,7 +94,7 @@ Sample girths_sample() {
 
 Sample glasses_sample() {
   const HeadBuild first;
-  const HeadBuild second{1.09, 0.97, 1.1, 0.86, 1.08, 1.1};
+  const HeadBuild second{1.12, 0.98, 1.14, 0.8, 1.1, 1.12};
   const Anatomy source = display_head(first);
   const Anatomy target = display_head(second);
   Sample sample{"glasses",
@@ -108,7 +108,7 @@ Sample glasses_sample() {
 
 Sample glove_sample() {
   const HandBuild first;
-  const HandBuild second{1.04, 1.14, 0.92, 1.12, 1.5};
+  const HandBuild second{1.02, 1.18, 0.86, 1.15, 1.6};
   const Anatomy source = hand(first);
   const Anatomy target = hand(second);
   Sample sample{"glove",
@@ -122,7 +122,7 @@ Sample glove_sample() {
 
 Sample shoe_sample() {
   const FootBuild first;
-  const FootBuild second{1.08, 1.12, 1.1, 1.08};
+  const FootBuild second{1.1, 1.18, 1.15, 1.12};
   const Anatomy source = foot(first);
   const Anatomy target = foot(second);
   Sample sample{"shoe",
@@ -130,7 +130,7 @@ Sample shoe_sample() {
                 {{"upper", shoe_upper(first, source)}, {"sole", shoe_sole(first, source)}},
                 {}};
   add_target(sample, "", source, target, limb_tessellation(0.2, 35, {0.2, 0.85, 0.014, 8}),
-             posed(-24, 6, {22, 1, -4}));
+             posed(-24, 5, {22, 1, -4}));
   return sample;
 }
 
