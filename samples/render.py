@@ -128,6 +128,7 @@ def look():
     scene.collection.objects.link(eye)
     scene.camera = eye
     scene.render.resolution_x, scene.render.resolution_y = WIDTH, HEIGHT
+    scene.render.dither_intensity = 0
     scene.render.image_settings.color_mode = "RGB"
     scene.render.image_settings.compression = 100
     scene.render.filepath = str(PICTURE.resolve())
