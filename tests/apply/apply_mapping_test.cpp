@@ -70,6 +70,20 @@ TEST(ApplyMapping, CountsWhoTookTheAffineFallback) {
   EXPECT_THAT(to_string(summary), HasSubstr("4 points, 3 in the band, 1 by the affine part"));
 }
 
+TEST(ApplyMapping, OfManyPointsIsThatOfEach) {
+  const BumpMap map;
+  const Points x = 2 * Points::Random(3, 40000);
+  const AppliedPoints applied = apply_mapping(map, some_motion(), x, {0.3, 1});
+  EXPECT_LT((applied.frames[1] - some_motion() * map(x)).cwiseAbs().maxCoeff(), 1e-13);
+  std::size_t inside = 0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) inside += x.col(i).norm() < 1;
+  EXPECT_EQ(applied.summary.in_band, inside);
+  for (const Eigen::Index i : {0, 16383, 16384, 39999}) {
+    const Points alone = apply_mapping(map, some_motion(), Points(x.col(i)), {0.3}).frames[0];
+    EXPECT_LT((applied.frames[0].col(i) - alone.col(0)).norm(), 1e-13);
+  }
+}
+
 TEST(ApplyMapping, OfNothingIsNothing) {
   const AppliedPoints applied = apply_mapping(BumpMap(), some_motion(), Points(3, 0), {0.5});
   ASSERT_EQ(applied.frames.size(), 1u);

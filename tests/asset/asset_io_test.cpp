@@ -137,6 +137,11 @@ TEST_F(AssetIo, NamesTheFileThatCannotBeRead) {
               ThrowsMessage<FileError>(HasSubstr("not a regular file")));
 }
 
+TEST_F(AssetIo, NamesTheFileThatCannotBeWritten) {
+  EXPECT_THAT([&] { write_asset(directory_ / "absent" / "map.vdb", test::tiny_asset()); },
+              ThrowsMessage<FileError>(HasSubstr("absent")));
+}
+
 TEST_F(AssetIo, RejectsWhatIsNoAsset) {
   EXPECT_THAT([&] { read_bytes(""); }, ThrowsMessage<FormatError>(HasSubstr("not a bespoke asset")));
   EXPECT_THAT([&] { read_bytes(std::string(1000, 'x')); },

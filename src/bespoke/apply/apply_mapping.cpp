@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -24,15 +25,9 @@ void require_finite(const Points& x, const std::vector<double>& times) {
 }
 
 std::size_t count_nonzero(const Points& u) {
-  return parallel_reduce(
-      static_cast<std::size_t>(u.cols()), points_per_chunk, std::size_t{0},
-      [&](std::size_t begin, std::size_t end) {
-        std::size_t count = 0;
-        for (std::size_t i = begin; i < end; ++i)
-          count += (u.col(static_cast<Eigen::Index>(i)).array() != 0).any();
-        return count;
-      },
-      [](std::size_t a, std::size_t b) { return a + b; });
+  std::size_t count = 0;
+  for (Eigen::Index i = 0; i < u.cols(); ++i) count += (u.col(i).array() != 0).any();
+  return count;
 }
 
 }  // namespace
@@ -50,13 +45,26 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
   AppliedPoints applied;
   const auto start = std::chrono::steady_clock::now();
   const Points u = elastic.displacement(x);
-  // The same sum as ElasticMap::operator(), so that both give the same bits.
-  const Points image = elastic.affine() * x + u;
-  applied.summary.points = static_cast<std::size_t>(x.cols());
-  applied.summary.in_band = count_nonzero(u);
-  applied.summary.affine_only = applied.summary.points - applied.summary.in_band;
   applied.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  for (const double t : times) applied.frames.push_back(move_points(x, image, target_from_source, t, motion));
+
+  applied.frames.assign(times.size(), Points(3, x.cols()));
+  const AffineMap affine = elastic.affine();
+  const auto count = static_cast<std::size_t>(x.cols());
+  std::vector<std::size_t> in_band((count + points_per_chunk - 1) / points_per_chunk);
+  parallel_for(count, points_per_chunk, [&](std::size_t begin, std::size_t end) {
+    const auto first = static_cast<Eigen::Index>(begin);
+    const auto size = static_cast<Eigen::Index>(end - begin);
+    const Points chunk = x.middleCols(first, size);
+    const Points u_chunk = u.middleCols(first, size);
+    const Points image = affine * chunk + u_chunk;
+    in_band[begin / points_per_chunk] = count_nonzero(u_chunk);
+    for (std::size_t frame = 0; frame < times.size(); ++frame)
+      applied.frames[frame].middleCols(first, size) =
+          move_points(chunk, image, target_from_source, times[frame], motion);
+  });
+  applied.summary.points = count;
+  applied.summary.in_band = std::accumulate(in_band.begin(), in_band.end(), std::size_t{0});
+  applied.summary.affine_only = count - applied.summary.in_band;
   return applied;
 }
 
