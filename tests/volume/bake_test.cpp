@@ -94,6 +94,21 @@ TEST(Bake, MeetsTheTolerance) {
   }
 }
 
+TEST(Bake, NeedsFarFewerVoxelsThanOneLevelOfTheSameError) {
+  const AnalyticMap map(
+      {{Vector3::Zero(), 1.0, Vector3(0.1, 0.05, 0)}, {Vector3(0.6, 0.1, 0), 0.06, Vector3(0, 0.01, 0)}});
+  BakeOptions options;
+  options.tolerance = 5e-4;
+  options.error_points = 100000;
+  const Bake adaptive = bake(map, options);
+  EXPECT_TRUE(adaptive.summary.tolerance_met);
+  // Without the narrow bump's last halving one level misses the error.
+  const Bake one_level = bake(map, uniform(1.5 * adaptive.summary.levels.back().voxel_size));
+  EXPECT_GT(one_level.pyramid.voxel_count(), 15 * adaptive.pyramid.voxel_count())
+      << to_string(one_level.summary) << '\n'
+      << to_string(adaptive.summary);
+}
+
 TEST(Bake, FollowsTheFrameOfTheSupport) {
   AffineMap frame;
   frame.linear << 2, 0, 0, 0, 0.5, 0.1, 0, 0, 1;

@@ -19,6 +19,7 @@ namespace {
 constexpr std::uint64_t error_seed = 3;
 // Places where a finished pyramid misses the tolerance or folds are refined and the whole measured anew.
 constexpr int largest_number_of_rounds = 5;
+constexpr int rounds_against_folds = 2;
 
 bool is_empty(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
@@ -66,17 +67,30 @@ Points fresh_points(const PyramidBuilder& builder, const Pyramid& pyramid, const
   return all;
 }
 
-// Cells that fold although the map itself keeps its orientation there: finer leaves will mend them.
-Points needless_folds(const ElasticMap& map, const Certificate& certificate) {
-  Points centers(3, static_cast<Eigen::Index>(certificate.places.size()));
-  for (Eigen::Index i = 0; i < centers.cols(); ++i)
-    centers.col(i) = certificate.places[static_cast<std::size_t>(i)].center;
-  const Points gradient = map.displacement_gradient(centers);
+// Cells that fold although the map itself keeps its orientation in and around them: finer leaves will mend
+// them.
+Points needless_folds(const ElasticMap& map, const Pyramid& pyramid, const Certificate& certificate) {
+  constexpr Eigen::Index probes = 9;
+  Points x(3, probes * static_cast<Eigen::Index>(certificate.places.size()));
+  for (std::size_t i = 0; i < certificate.places.size(); ++i) {
+    const FoldedCell& cell = certificate.places[i];
+    const double reach = 2 * pyramid.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+    const auto first = probes * static_cast<Eigen::Index>(i);
+    x.col(first) = cell.center;
+    for (int corner = 0; corner < 8; ++corner)
+      x.col(first + 1 + corner) =
+          cell.center + reach * Vector3(corner & 4 ? 1 : -1, corner & 2 ? 1 : -1, corner & 1 ? 1 : -1);
+  }
+  const Points gradient = map.displacement_gradient(x);
+  Points needless(3, static_cast<Eigen::Index>(certificate.places.size()));
   Eigen::Index kept = 0;
-  for (Eigen::Index i = 0; i < centers.cols(); ++i)
-    if ((map.affine().linear + gradient.middleCols<3>(3 * i)).determinant() > 0)
-      centers.col(kept++) = Vector3(centers.col(i));
-  return centers.leftCols(kept);
+  for (Eigen::Index i = 0; i < needless.cols(); ++i) {
+    bool upright = true;
+    for (Eigen::Index probe = probes * i; probe < probes * (i + 1); ++probe)
+      upright = upright && (map.affine().linear + gradient.middleCols<3>(3 * probe)).determinant() > 0;
+    if (upright) needless.col(kept++) = x.col(probes * i);
+  }
+  return needless.leftCols(kept);
 }
 
 Points points_above(const Points& x, const std::vector<double>& errors, double tolerance) {
@@ -99,9 +113,9 @@ Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Pr
   for (int round = 0;; ++round) {
     result.pyramid = builder.pyramid();
     const bool last = round + 1 == largest_number_of_rounds;
-    const Certificate certificate = certify(result.pyramid, map.affine(), 1, progress);
-    const Points folds = needless_folds(map, certificate);
-    if (!last && folds.cols() > 0 && builder.refine_at(folds) > 0) {
+    const Certificate certificate = certify_listing_all(result.pyramid, map.affine(), 1, progress);
+    const Points folds = needless_folds(map, result.pyramid, certificate);
+    if (round < rounds_against_folds && folds.cols() > 0 && builder.refine_at(folds) > 0) {
       summary.refined_folds += static_cast<std::size_t>(folds.cols());
       builder.refine();
       continue;

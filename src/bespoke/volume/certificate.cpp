@@ -32,9 +32,7 @@ Found combine(Found a, const Found& b) {
   a.undecided += b.undecided;
   a.folded += b.folded;
   a.least = std::min(a.least, b.least);
-  const std::size_t room = largest_number_of_places - a.places.size();
-  a.places.insert(a.places.end(), b.places.begin(),
-                  b.places.begin() + static_cast<std::ptrdiff_t>(std::min(room, b.places.size())));
+  a.places.insert(a.places.end(), b.places.begin(), b.places.end());
   return a;
 }
 
@@ -91,8 +89,7 @@ class Certifier {
         continue;
       }
       ++(range.verdict == CellVerdict::folded ? found.folded : found.undecided);
-      if (found.places.size() < largest_number_of_places)
-        found.places.push_back({cells.level, center(cells, cell, voxel_size), range.value});
+      found.places.push_back({cells.level, center(cells, cell, voxel_size), range.value});
     }
   }
 
@@ -125,6 +122,14 @@ std::string to_string(const Certificate& certificate) {
 }
 
 Certificate certify(const Pyramid& pyramid, const AffineMap& affine, double t, const Progress& progress) {
+  Certificate certificate = certify_listing_all(pyramid, affine, t, progress);
+  if (certificate.places.size() > largest_number_of_places)
+    certificate.places.resize(largest_number_of_places);
+  return certificate;
+}
+
+Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine, double t,
+                                const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   require_valid(pyramid);
   if (!std::isfinite(t)) throw InvalidInput("the time t of a certificate is not finite");

@@ -40,4 +40,8 @@ std::string to_string(const Certificate& certificate);
 Certificate certify(const Pyramid& pyramid, const AffineMap& affine, double t = 1,
                     const Progress& progress = {});
 
+/// The same with every place, not only the first 1000.
+Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine, double t = 1,
+                                const Progress& progress = {});
+
 }  // namespace bespoke

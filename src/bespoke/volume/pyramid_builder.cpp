@@ -58,6 +58,27 @@ std::array<int, 3> tested_node(int number) {
   return {2 * cell[0] + (middle >> 2 & 1), 2 * cell[1] + (middle >> 1 & 1), 2 * cell[2] + (middle & 1)};
 }
 
+// Blocks around a leaf (numbered as octants) that hold a corner of one of its cells.
+bool reaches_block(const std::array<int, 3>& cell, int block) {
+  for (int axis = 0; axis < 3; ++axis)
+    if ((block >> (2 - axis) & 1) && cell[axis] != leaf_edge - 1) return false;
+  return true;
+}
+
+// A cell at a rim, where the error is the one that the leaf beyond was allowed to keep: a finer leaf on this
+// side would not mend it, and would have a rim of its own.
+bool touches(const std::bitset<8>& missing, const std::array<int, 3>& cell) {
+  for (int block = 1; block < 8; ++block)
+    if (missing[static_cast<std::size_t>(block)] && reaches_block(cell, block)) return true;
+  return false;
+}
+
+// The tested cell in its leaf.
+std::array<int, 3> cell_of_octant(const LeafCoordinates& octant, int number) {
+  return {4 * (octant[0] & 1) + number / 16, 4 * (octant[1] & 1) + number / 4 % 4,
+          4 * (octant[2] & 1) + number % 4};
+}
+
 Vector3 value_at(const NodeBlock& block, const std::array<int, 3>& node) {
   const int n = (node[0] * block_edge + node[1]) * block_edge + node[2];
   return {block[0][n], block[1][n], block[2][n]};
@@ -82,11 +103,13 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
   add(0, band_);
 }
 
-std::size_t PyramidBuilder::byte_count() const {
+std::size_t PyramidBuilder::leaf_count() const {
   std::size_t leaves = 0;
   for (const Level& level : levels_) leaves += level.leaves.size();
-  return fixed_bytes + bytes_per_leaf * leaves;
+  return leaves;
 }
+
+std::size_t PyramidBuilder::byte_count() const { return fixed_bytes + bytes_per_leaf * leaf_count(); }
 
 void PyramidBuilder::require_room(std::size_t level, std::size_t leaves) const {
   const std::size_t needed = byte_count() + bytes_per_leaf * leaves;
@@ -231,11 +254,14 @@ std::vector<LeafCoordinates> PyramidBuilder::octants_to_refine(std::size_t level
         const LeafCoordinates& octant = octants[first + n];
         sum_block(level, parent_of(octant), sum);
         refine_block(sum, octant_number(octant), refined);
-        for (int number = 0; number < tested_nodes; ++number)
+        const std::bitset<8> missing = missing_blocks(level, parent_of(octant));
+        for (int number = 0; number < tested_nodes; ++number) {
+          if (missing.any() && touches(missing, cell_of_octant(octant, number))) continue;
           error[first + n] =
               std::max(error[first + n], (u.col(static_cast<Eigen::Index>(n * tested_nodes) + number) -
                                           value_at(refined, tested_node(number)))
                                              .norm());
+        }
       }
     });
     evaluated_points_ += count * tested_nodes;
@@ -246,6 +272,17 @@ std::vector<LeafCoordinates> PyramidBuilder::octants_to_refine(std::size_t level
     if (!(error[n] <= test_margin * options_.tolerance)) refined.push_back(octants[n]);
   }
   return refined;
+}
+
+// Around a leaf, numbered as octants. Outside the band u is zero, so nothing is missing at the coarsest
+// level.
+std::bitset<8> PyramidBuilder::missing_blocks(std::size_t level, const LeafCoordinates& leaf) const {
+  std::bitset<8> missing;
+  if (level == 0) return missing;
+  for (int octant = 1; octant < 8; ++octant)
+    missing[static_cast<std::size_t>(octant)] =
+        levels_[level].table.find(moved(leaf, octant >> 2 & 1, octant >> 1 & 1, octant & 1)) == no_leaf;
+  return missing;
 }
 
 // Leaves that are missing beside a leaf whose residual is too large on that side.
@@ -308,23 +345,30 @@ void PyramidBuilder::refine() {
 
 std::size_t PyramidBuilder::refine_at(const Points& x) {
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (std::size_t level = levels_.size(); level-- > 0;) {
-      const Lattice& lattice = levels_[level].lattice;
-      const Eigen::Vector3i octant =
-          ((x.col(i) - lattice.origin) / (lattice.voxel_size * leaf_edge / 2)).array().floor().cast<int>();
-      const LeafCoordinates child = {octant.x(), octant.y(), octant.z()};
-      if (levels_[level].table.find(parent_of(child)) == no_leaf) continue;
-      if (level + 1 < static_cast<std::size_t>(options_.max_levels)) wanted[level + 1].push_back(child);
-      break;
-    }
-  std::size_t before = 0, after = 0;
-  for (const Level& level : levels_) before += level.leaves.size();
+  for (Eigen::Index i = 0; i < x.cols(); ++i) want_leaf_at(x.col(i), wanted);
+  const std::size_t before = leaf_count();
   for (std::size_t level = 1; level < wanted.size(); ++level)
     if (!wanted[level].empty()) add(level, wanted[level]);
   close_rims();
-  for (const Level& level : levels_) after += level.leaves.size();
-  return after - before;
+  return leaf_count() - before;
+}
+
+// In a cell at a rim the leaves beyond the rim, elsewhere a finer one.
+void PyramidBuilder::want_leaf_at(const Vector3& x, std::vector<std::vector<LeafCoordinates>>& wanted) const {
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    const Lattice& lattice = levels_[level].lattice;
+    const Eigen::Vector3i cell = ((x - lattice.origin) / lattice.voxel_size).array().floor().cast<int>();
+    const LeafCoordinates leaf = {cell.x() >> 3, cell.y() >> 3, cell.z() >> 3};
+    if (levels_[level].table.find(leaf) == no_leaf) continue;
+    const std::array<int, 3> in_leaf = {cell.x() & 7, cell.y() & 7, cell.z() & 7};
+    const std::bitset<8> missing = missing_blocks(level, leaf);
+    for (int block = 1; block < 8; ++block)
+      if (missing[static_cast<std::size_t>(block)] && reaches_block(in_leaf, block))
+        wanted[level].push_back(moved(leaf, block >> 2 & 1, block >> 1 & 1, block & 1));
+    if (!touches(missing, in_leaf) && level + 1 < static_cast<std::size_t>(options_.max_levels))
+      wanted[level + 1].push_back({cell.x() >> 2, cell.y() >> 2, cell.z() >> 2});
+    return;
+  }
 }
 
 Pyramid PyramidBuilder::pyramid() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <vector>
 
@@ -29,8 +30,9 @@ class PyramidBuilder {
   /// Adds leaves until every octant passes. Throws MemoryLimitError, naming the tolerance that would fit.
   void refine();
 
-  /// Gives the finest leaf around each point one below it, whatever its error. Points outside all leaves are
-  /// left alone. Returns the number of leaves added; call refine() afterwards.
+  /// Gives the finest leaf around each point one below it, whatever its error; where the point lies in a cell
+  /// at a rim, adds the leaves beyond the rim instead. Points outside all leaves are left alone. Returns the
+  /// number of leaves added; call refine() afterwards.
   std::size_t refine_at(const Points& x);
 
   Pyramid pyramid() const;
@@ -60,6 +62,9 @@ class PyramidBuilder {
   void close_rims();
   void sum_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const;
   void coarse_block(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const;
+  std::bitset<8> missing_blocks(std::size_t level, const LeafCoordinates& leaf) const;
+  void want_leaf_at(const Vector3& x, std::vector<std::vector<LeafCoordinates>>& wanted) const;
+  std::size_t leaf_count() const;
   void require_room(std::size_t level, std::size_t leaves) const;
 
   const ElasticMap& map_;

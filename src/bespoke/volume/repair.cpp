@@ -5,17 +5,17 @@
 #include <map>
 #include <utility>
 
-#include "bespoke/volume/baked_map.h"
 #include "bespoke/volume/leaf_table.h"
-#include "bespoke/volume/pyramid_index.h"
+#include "bespoke/volume/pyramid_lookup.h"
 
 namespace bespoke {
 namespace {
 
-constexpr int largest_number_of_rounds = 24;
+constexpr int largest_number_of_rounds = 36;
 constexpr int sweeps_per_round = 4;
-// Rounds after which the next ring of nodes may move too: a fold squeezes what it takes from around it.
-constexpr int rounds_per_ring = 3;
+// Nodes of a wide fold learn slowly from its surroundings: after so many rounds the nodes of the next coarser
+// level move instead, finer values riding on them.
+constexpr int rounds_per_level = 3;
 
 using Node = std::array<int, 3>;
 
@@ -24,17 +24,21 @@ using MovableNodes = std::map<std::pair<int, Node>, std::size_t>;
 
 class Repair {
  public:
-  Repair(Pyramid& pyramid, const AffineMap& affine) : pyramid_(pyramid), affine_(affine) {
+  explicit Repair(Pyramid& pyramid) : pyramid_(pyramid), index_(pyramid) {
     for (const PyramidLevel& level : pyramid.levels) tables_.emplace_back(level.leaves);
   }
 
-  void add_corners(const FoldedCell& cell) {
-    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+  void forget_nodes() { nodes_.clear(); }
+
+  // Of the cell that holds the folded one, `coarser` levels up.
+  void add_corners(const FoldedCell& cell, int coarser) {
+    const int level = std::max(0, cell.level - coarser);
+    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(level)].voxel_size;
     const Vector3 lattice = (cell.center - pyramid_.origin) / voxel_size;
     for (int corner = 0; corner < 8; ++corner)
-      add_node(cell.level, {static_cast<int>(std::floor(lattice.x())) + (corner >> 2 & 1),
-                            static_cast<int>(std::floor(lattice.y())) + (corner >> 1 & 1),
-                            static_cast<int>(std::floor(lattice.z())) + (corner & 1)});
+      add_node(level, {static_cast<int>(std::floor(lattice.x())) + (corner >> 2 & 1),
+                       static_cast<int>(std::floor(lattice.y())) + (corner >> 1 & 1),
+                       static_cast<int>(std::floor(lattice.z())) + (corner & 1)});
   }
 
   void grow() {
@@ -57,7 +61,7 @@ class Repair {
         for (const double step : {-1.0, 1.0})
           x.col(column++) = pyramid_.origin + voxel_size * (node + step * Vector3::Unit(axis));
     }
-    const Points u = BakedMap(affine_, pyramid_).displacement(x);
+    const Points u = look_up(pyramid_, index_, x);
     column = 0;
     for (const auto& [place, offset] : nodes_) {
       const Vector3 change = u.middleCols(column + 1, 6).rowwise().mean() - u.col(column);
@@ -85,7 +89,7 @@ class Repair {
   }
 
   Pyramid& pyramid_;
-  AffineMap affine_;
+  PyramidIndex index_;  // leaves stay where they are, so it sees every change of their values
   std::vector<LeafTable> tables_;
   MovableNodes nodes_;
   std::map<std::pair<int, Node>, Vector3> moved_;
@@ -95,15 +99,18 @@ class Repair {
 
 RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress) {
   RepairSummary summary;
-  Certificate certificate = certify(pyramid, affine, 1, progress);
+  Certificate certificate = certify_listing_all(pyramid, affine, 1, progress);
   summary.cells = summary.folded = certificate.folded + certificate.undecided;
   if (summary.cells == 0 || !(certificate.affine_determinant > 0)) return summary;
-  Repair repair(pyramid, affine);
+  Repair repair(pyramid);
+  const int levels = static_cast<int>(pyramid.levels.size());
   for (int round = 0; round < largest_number_of_rounds && summary.folded > 0; ++round) {
-    for (const FoldedCell& cell : certificate.places) repair.add_corners(cell);
-    if (round % rounds_per_ring == rounds_per_ring - 1) repair.grow();
+    repair.forget_nodes();
+    for (const FoldedCell& cell : certificate.places)
+      repair.add_corners(cell, round / rounds_per_level % levels);
+    if (round % rounds_per_level > 0) repair.grow();
     for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
-    certificate = certify(pyramid, affine, 1, progress);
+    certificate = certify_listing_all(pyramid, affine, 1, progress);
     summary.folded = certificate.folded + certificate.undecided;
   }
   summary.largest_change = repair.largest_change();

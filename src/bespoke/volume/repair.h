@@ -13,9 +13,9 @@ struct RepairSummary {
   double largest_change = 0;  ///< of u at a node, mesh units
 };
 
-/// Moves nodes of folded cells towards the mean of their neighbours, sweep by sweep and over a growing
-/// neighbourhood, until every cell is certified or `largest_number_of_sweeps` is reached. Only values change,
-/// no leaf is added; nodes far from a fold keep theirs. Folds of the affine part cannot be repaired.
+/// Moves nodes of folded cells towards the mean of their neighbours, finest level first, then coarser ones
+/// for folds that are wider than their cells, until every cell is certified or it gives up. Only values
+/// change, no leaf is added; nodes far from a fold keep theirs. Folds of the affine part cannot be repaired.
 RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress = {});
 
 }  // namespace bespoke
