@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   add_fit_command(app);
   add_apply_command(app);
   add_info_command(app);
+  add_measure_command(app);
   add_samples_command(app);
 
   remember_interruptions();

@@ -40,7 +40,8 @@ struct MapDistortion {
 };
 
 struct MapDistortionOptions {
-  std::size_t samples = 200000;  ///< about as many, spread evenly over the support, > 0
+  /// About as many are spread evenly over boxes around the support, > 0; those where u = 0 do not count.
+  std::size_t samples = 200000;
 };
 
 /// Throws InvalidInput when the options are not valid or the map's support is not finite.

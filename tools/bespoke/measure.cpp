@@ -1,0 +1,95 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/mesh/product_io.h"
+#include "bespoke/quality/mapping_quality.h"
+#include "bespoke/report/quality_report.h"
+#include "bespoke/volume/baked_map.h"
+#include "commands.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+namespace {
+
+struct MeasureArguments {
+  std::string map;
+  std::string source;
+  std::string target;
+  std::vector<std::string> products;
+  bool json = false;
+  bool untrusted = false;
+  RunOptions run;
+};
+
+/// Refuses a model that the map was not made of: its figures would say nothing about the map.
+void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
+                   const char* role) {
+  require_valid(mesh, path);
+  if (content_hash(mesh) != record.hash)
+    throw InvalidInput(path + ": is not the " + role + " that the map was made of (other vertices or faces)");
+}
+
+void run(const MeasureArguments& arguments, const Progress& progress) {
+  Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
+  const TriangleMesh source = read_triangle_mesh(arguments.source);
+  const TriangleMesh target = read_triangle_mesh(arguments.target);
+  require_model(arguments.source, source, asset.record.source, "source");
+  require_model(arguments.target, target, asset.record.target, "target");
+  std::vector<NamedProduct> products;
+  std::vector<std::string> names;
+  for (const std::string& path : arguments.products) {
+    const Product product = read_product(path);
+    names.push_back(std::filesystem::path(path).filename().string());
+    products.push_back({path, {product.vertices, triangulated(product)}});
+  }
+  const auto anchors = static_cast<Eigen::Index>(asset.record.anchors.size());
+  Points anchor_sources(3, anchors), anchor_targets(3, anchors);
+  for (Eigen::Index i = 0; i < anchors; ++i) {
+    anchor_sources.col(i) = asset.record.anchors[static_cast<std::size_t>(i)].a;
+    anchor_targets.col(i) = asset.record.anchors[static_cast<std::size_t>(i)].b;
+  }
+  const BakedMap elastic(asset.affine, std::move(asset.pyramid));
+  const MappingQuality quality = mapping_quality(
+      {source, target, elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
+      progress);
+  std::cout << (arguments.json ? quality_json(quality, names, asset.record.unit)
+                               : quality_text(quality, names, asset.record.unit));
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& app) {
+  auto arguments = std::make_shared<MeasureArguments>();
+  CLI::App* measure = app.add_subcommand("measure", "Put numbers on a map, and on what it does to products");
+  measure->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
+  measure->add_option("--source", arguments->source, "Model that the map leads from")
+      ->required()
+      ->type_name("MESH");
+  measure->add_option("--target", arguments->target, "Model that the map leads to")
+      ->required()
+      ->type_name("MESH");
+  measure
+      ->add_option("--product", arguments->products,
+                   "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+      ->type_name("MESH");
+  measure->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
+  measure->add_flag("--untrusted", arguments->untrusted,
+                    "Check the asset in a child process under limits first");
+  add_run_options(*measure, arguments->run);
+  measure->footer(
+      "Examples:\n"
+      "  bespoke measure map.vdb --source woman.obj --target man.obj\n"
+      "  bespoke measure map.vdb --source woman.obj --target man.obj --product dress.obj --product "
+      "shoes.obj\n"
+      "  bespoke measure map.vdb --source woman.obj --target man.obj --json | jq .distortion");
+  measure->callback([arguments] {
+    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  });
+}
+
+}  // namespace bespoke::command
