@@ -1,7 +1,10 @@
-"""Draws samples/picture.png: every sample's product on its source and, carried, on its targets.
+r"""Draws samples/picture.png: every sample's product on its source and, carried, on its targets.
 
     bespoke samples build/samples
-    ... bespoke fit and bespoke apply, OUT = build/carried/NAME[/GIRTH]/PRODUCT.obj
+    bespoke fit build/samples/dress/source.obj build/samples/dress/target.obj \
+            --anchors build/samples/dress/anchors.json --elastic diffeomorphic -o dress.vdb
+    bespoke apply dress.vdb build/samples/dress/dress.obj --out-dir build/carried/dress
+    (so for every sample; the tops and skirts of `girths` to build/carried/girths/94 and so on)
     xvfb-run -a blender -b --python samples/render.py -- build/samples build/carried samples/picture.png
 
 Needs Blender 3.4 or later; nothing in the build does. Targets are drawn turned back into the source's position.
