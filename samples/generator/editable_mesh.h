@@ -8,11 +8,11 @@
 
 namespace bespoke {
 
-// A triangle mesh whose edges can be split, collapsed and flipped. Manifold, with or without boundary; stays
-// so.
+/// A triangle mesh whose edges can be split, collapsed and flipped. Manifold, with or without boundary; stays
+/// so.
 class EditableMesh {
  public:
-  using Edge = std::pair<int, int>;  // first < second
+  using Edge = std::pair<int, int>;  ///< first < second
 
   explicit EditableMesh(const TriangleMesh& mesh);
 
@@ -27,14 +27,14 @@ class EditableMesh {
   bool on_boundary(Edge edge) const;
   bool on_boundary(int vertex) const;
 
-  // The vertices opposite to the edge in its one or two faces.
+  /// The vertices opposite to the edge in its one or two faces.
   std::vector<int> opposite(Edge edge) const;
 
   int split(Edge edge, const Vector3& at);
-  // Whether removing `gone` into `kept` leaves a manifold of the same topology.
+  /// Whether removing `gone` into `kept` leaves a manifold of the same topology.
   bool can_collapse(int kept, int gone) const;
   void collapse(int kept, int gone);
-  // The edge between two faces becomes the edge between their opposite vertices. Precondition: can_flip.
+  /// The edge between two faces becomes the edge between their opposite vertices. Precondition: can_flip.
   bool can_flip(Edge edge) const;
   void flip(Edge edge);
 
@@ -46,7 +46,7 @@ class EditableMesh {
   void remove_face(int index);
   void replace(int face, int from, int to);
 
-  std::vector<std::array<int, 3>> faces_;  // first index -1: removed
+  std::vector<std::array<int, 3>> faces_;  ///< first index -1: removed
   std::vector<std::vector<int>> vertex_faces_;
 };
 

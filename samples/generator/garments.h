@@ -5,15 +5,15 @@
 
 namespace bespoke {
 
-// Open surfaces around a mannequin, everywhere outside of it. `body` is the mannequin of `build`.
+/// Open surfaces around a mannequin, everywhere outside of it. `body` is the mannequin of `build`.
 
-// Sleeveless, scoop neck, fitted to the waist, with a flared skirt in soft folds.
+/// Sleeveless, scoop neck, fitted to the waist, with a flared skirt in soft folds.
 TriangleMesh dress(const MannequinBuild& build, const Anatomy& body);
 
-// Short-sleeved, to just below the waist; hangs outside the skirt.
+/// Short-sleeved, to just below the waist; hangs outside the skirt.
 TriangleMesh top(const MannequinBuild& build, const Anatomy& body);
 
-// From the waist to above the knee.
+/// From the waist to above the knee.
 TriangleMesh skirt(const MannequinBuild& build, const Anatomy& body);
 
 }  // namespace bespoke

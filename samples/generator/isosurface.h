@@ -6,17 +6,17 @@
 namespace bespoke {
 
 struct Lattice {
-  Box box;                                 // cm, contains the surface
-  double spacing = 1;                      // cm
-  Matrix3 rotation = Matrix3::Identity();  // of the lattice's axes
+  Box box;                                 ///< cm, contains the surface
+  double spacing = 1;                      ///< cm
+  Matrix3 rotation = Matrix3::Identity();  ///< of the lattice's axes
 };
 
-// The connected zero surface of the field that the +x ray from `inside` meets first: closed, manifold,
-// outward, with a vertex on each crossed edge of the lattice's tetrahedra. Throws InvalidInput if there is
-// none or if it leaves the box.
+/// The connected zero surface of the field that the +x ray from `inside` meets first: closed, manifold,
+/// outward, with a vertex on each crossed edge of the lattice's tetrahedra. Throws InvalidInput if there is
+/// none or if it leaves the box.
 TriangleMesh isosurface(const Field& field, const Vector3& inside, const Lattice& lattice);
 
-// The part of the mesh where `keep` is negative. Crossing triangles are cut; no vertex is left unreferenced.
+/// The part of the mesh where `keep` is negative. Crossing triangles are cut; no vertex is left unreferenced.
 TriangleMesh clip(const TriangleMesh& mesh, const Field& keep);
 
 }  // namespace bespoke

@@ -7,15 +7,15 @@
 
 namespace bespoke {
 
-// Shapes of which the samples are moulded, in centimetres and in coordinates of their own. `distance` is
-// negative inside, zero on the surface, and near the surface close to the signed distance.
+/// Shapes of which the samples are moulded, in centimetres and in coordinates of their own. `distance` is
+/// negative inside, zero on the surface, and near the surface close to the signed distance.
 
 struct Sphere {
   Eigen::Vector3d centre;
   double radius;
 };
 
-// Two spheres and the cone that touches both. Neither sphere may contain the other.
+/// Two spheres and the cone that touches both. Neither sphere may contain the other.
 struct RoundCone {
   Sphere from;
   Sphere to;
@@ -26,7 +26,7 @@ struct Ellipsoid {
   Eigen::Vector3d radii;
 };
 
-// One cross-section of a loft at height y: an oval about (x, z) with one half-width and two depths.
+/// One cross-section of a loft at height y: an oval about (x, z) with one half-width and two depths.
 struct Section {
   double y;
   double x;
@@ -36,8 +36,8 @@ struct Section {
   double back;
 };
 
-// A body along the y axis whose ovals run smoothly (monotone cubic) through the given sections, at least two
-// of them, y ascending. Both ends are closed by caps of the given heights.
+/// A body along the y axis whose ovals run smoothly (monotone cubic) through the given sections, at least two
+/// of them, y ascending. Both ends are closed by caps of the given heights.
 struct Loft {
   Loft(std::vector<Section> sections, double bottom_cap, double top_cap, double exponent = 2.0);
 
@@ -46,7 +46,7 @@ struct Loft {
   std::vector<Section> sections;
   double bottom_cap;
   double top_cap;
-  double exponent;  // 2: ellipse; larger: squarer
+  double exponent;  ///< 2: ellipse; larger: squarer
 
  private:
   std::vector<std::array<double, 5>> slopes_;
@@ -56,7 +56,7 @@ using Shape = std::variant<Sphere, RoundCone, Ellipsoid, Loft>;
 
 double distance(const Shape& shape, const Eigen::Vector3d& point);
 
-// A sphere that contains the shape.
+/// A sphere that contains the shape.
 Sphere bounding_sphere(const Shape& shape);
 
 }  // namespace bespoke
