@@ -1,0 +1,131 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/rbf/multiscale.h"
+#include "bespoke/rigid/rigid_alignment.h"
+#include "support/random_points.h"
+
+namespace bespoke {
+namespace {
+
+/// Source vertices, with their places on the target in the source frame.
+struct Correspondences {
+  Points sources;
+  Points targets;
+};
+
+Points read_points(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<double> coordinates;
+  for (double value; file >> value;) coordinates.push_back(value);
+  return Eigen::Map<const Points>(coordinates.data(), 3, Eigen::Index(coordinates.size() / 3));
+}
+
+/// Every face becomes four: new vertices at the middle of edges.
+void subdivide(Correspondences& pairs, Faces& faces) {
+  std::map<std::pair<int, int>, int> middles;
+  std::vector<std::pair<int, int>> edges;
+  const auto middle = [&](int a, int b) {
+    const auto edge = std::minmax(a, b);
+    const auto [entry, is_new] = middles.try_emplace(edge, int(pairs.sources.cols()) + int(edges.size()));
+    if (is_new) edges.push_back(edge);
+    return entry->second;
+  };
+  Faces finer(3, 4 * faces.cols());
+  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
+    const Eigen::Vector3i v = faces.col(f);
+    const Eigen::Vector3i m(middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0]));
+    finer.middleCols<4>(4 * f) << v[0], v[1], v[2], m[0], m[0], m[1], m[2], m[1], m[2], m[0], m[1], m[2];
+  }
+  faces = finer;
+  for (Points* points : {&pairs.sources, &pairs.targets}) {
+    const Eigen::Index old = points->cols();
+    points->conservativeResize(3, old + Eigen::Index(edges.size()));
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      points->col(old + Eigen::Index(e)) = (points->col(edges[e].first) + points->col(edges[e].second)) / 2;
+  }
+}
+
+/// A real pair of bodies where it is present, else a bent sphere; 13,380 pairs and, subdivided, four times as
+/// many each time.
+Correspondences load(int subdivisions) {
+  const auto folder = std::filesystem::path(BESPOKE_SHARED_DIR) / "cases/d01_body_dress";
+  if (!std::filesystem::exists(folder)) {
+    Correspondences pairs;
+    pairs.sources = test::sphere_points(13380 * (1 << (2 * subdivisions)));
+    pairs.targets = pairs.sources + 0.1 * (3 * pairs.sources.array()).sin().matrix().colwise().reverse();
+    return pairs;
+  }
+  TriangleMesh mesh = read_triangle_mesh(folder / "reference_a.obj");
+  Correspondences pairs{mesh.vertices, read_points(folder / "gt_a_on_b.xyz")};
+  const auto weights = Eigen::VectorXd::Ones(pairs.sources.cols());
+  pairs.targets = inverse(align_rigidly(pairs.sources, pairs.targets, weights)) * pairs.targets;
+  for (int k = 0; k < subdivisions; ++k) subdivide(pairs, mesh.faces);
+  return pairs;
+}
+
+MultiscaleOptions options_for(const Points& sources, bool composed) {
+  const double diagonal = (sources.rowwise().maxCoeff() - sources.rowwise().minCoeff()).norm();
+  MultiscaleOptions options;
+  options.lambda = 0.1 * diagonal;
+  options.tolerance = 1e-4 * diagonal;
+  options.composed = composed;
+  return options;
+}
+
+/// Within λ of the sources, in no order.
+Points band_points(const Points& sources, double lambda, int count) {
+  std::mt19937 generator(1);
+  std::uniform_int_distribution<Eigen::Index> pick(0, sources.cols() - 1);
+  Points x = lambda / std::sqrt(3.0) * test::random_points(count, 2);
+  for (auto point : x.colwise()) point += sources.col(pick(generator));
+  return x;
+}
+
+void fit(benchmark::State& state) {
+  const Correspondences pairs = load(int(state.range(0)));
+  const MultiscaleOptions options = options_for(pairs.sources, state.range(1) != 0);
+  MultiscaleSummary summary;
+  for (auto _ : state) summary = fit_multiscale(pairs.sources, pairs.targets, options).summary;
+  state.counters["vertices"] = double(pairs.sources.cols());
+  state.counters["layers"] = double(summary.lambdas.size());
+  state.counters["within_percent"] = 100.0 * double(summary.within_tolerance) / double(pairs.sources.cols());
+}
+BENCHMARK(fit)
+    ->ArgNames({"subdivisions", "composed"})
+    ->ArgsProduct({{0, 1, 2}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
+/// CPU time of all threads counts, so the rate is one of points per core.
+void evaluate(benchmark::State& state) {
+  const Correspondences pairs = load(0);
+  const MultiscaleOptions options = options_for(pairs.sources, state.range(0) != 0);
+  const MultiscaleFit map = fit_multiscale(pairs.sources, pairs.targets, options);
+  const Points x = band_points(pairs.sources, options.lambda, 1000000);
+  for (auto _ : state) {
+    if (state.range(1) != 0)
+      benchmark::DoNotOptimize(map.map->displacement_gradient(x));
+    else
+      benchmark::DoNotOptimize(map.map->displacement(x));
+  }
+  state.counters["s/point"] = benchmark::Counter(
+      double(x.cols()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(evaluate)
+    ->ArgNames({"composed", "gradient"})
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+
+}  // namespace
+}  // namespace bespoke
