@@ -9,7 +9,6 @@
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/kernels.h"
 #include "bespoke/rbf/layer_evaluator.h"
-#include "bespoke/rbf/point_grid.h"
 
 namespace bespoke {
 namespace {
@@ -69,57 +68,82 @@ std::vector<Cell> cells_in_reach(const RbfLayer& layer, double edge) {
   return cells;
 }
 
-constexpr double half_diagonal = 0.8660254037844387;  // of a unit cube
+using Bounds = LayerEvaluator::Bounds;
+
+Bounds cube(const Vector3& low, double edge) {
+  return {{low.x(), low.y(), low.z()}, {low.x() + edge, low.y() + edge, low.z() + edge}};
+}
+
+double distance(const Bounds& bounds, const LayerEvaluator::Center& center) {
+  double squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double outside =
+        std::max(std::max(bounds.low[axis] - center.z[axis], center.z[axis] - bounds.high[axis]), 0.0);
+    squared += outside * outside;
+  }
+  return std::sqrt(squared);
+}
 
 }  // namespace
 
-/// Bounds one layer cube by cube.
+/// Bounds one layer cube by cube. Cubes get the positions of the centres within λ of them.
 class GradientBound::Search {
  public:
   Search(const RbfLayer& layer, double enough, Closeness closeness)
-      : layer_(layer),
+      : lambda_(layer.lambda),
         enough_(enough),
         closeness_(closeness),
-        sizes_(layer.coefficients.colwise().norm()),
-        grid_(layer.centers, layer.lambda),
-        evaluator_(layer.centers, layer.coefficients, layer.lambda, Wendland::c2) {}
-
-  bool feels(const Vector3& low, double edge, const std::vector<char>& changed) const {
-    bool result = false;
-    grid_.for_each_within(low + Vector3::Constant(edge / 2), layer_.lambda + half_diagonal * edge,
-                          [&](int j, double) { result = result || changed[std::size_t(j)]; });
-    return result;
+        evaluator_(layer.centers, layer.coefficients, layer.lambda, Wendland::c2) {
+    for (const LayerEvaluator::Center& center : evaluator_.sorted_centers())
+      sizes_.push_back(
+          std::sqrt(center.c[0] * center.c[0] + center.c[1] * center.c[1] + center.c[2] * center.c[2]));
   }
 
-  void look(const Vector3& low, double edge, Found& found, std::vector<int>& scratch) const {
-    const double coarse = bound_from_sizes(low, edge);
+  std::vector<int> centers_near(const Vector3& low, double edge) const {
+    std::vector<int> near;
+    evaluator_.collect(cube(low, edge), near);
+    return near;
+  }
+
+  bool any(const std::vector<int>& near, const std::vector<char>& flags) const {
+    return std::any_of(near.begin(), near.end(), [&](int position) {
+      return flags[std::size_t(evaluator_.order()[std::size_t(position)])] != 0;
+    });
+  }
+
+  void look(const Vector3& low, double edge, const std::vector<int>& near, Found& found) const {
+    const double coarse = sum_over(near, cube(low, edge), steepest_beyond) / lambda_;
     if (coarse <= enough_) {
       found.largest = std::max(found.largest, coarse);
       return;
     }
     // Cubes this small are left to the lattice.
-    if (edge <= layer_.lambda / 4) return look_closely(low, edge, found, scratch);
-    for (int octant = 0; octant < 8; ++octant)
-      look(low + edge / 2 * Vector3(octant % 2, octant / 2 % 2, octant / 4), edge / 2, found, scratch);
+    if (edge <= lambda_ / 4) return look_closely(low, edge, near, found);
+    std::vector<int> nearer;
+    for (int octant = 0; octant < 8; ++octant) {
+      const Vector3 part = low + edge / 2 * Vector3(octant % 2, octant / 2 % 2, octant / 4);
+      evaluator_.narrow(cube(part, edge / 2), near, nearer);
+      look(part, edge / 2, nearer, found);
+    }
   }
 
  private:
-  /// Σ |cⱼ| max |φ'| / λ over the ball around the cube.
-  double bound_from_sizes(const Vector3& low, double edge) const {
-    const double radius = half_diagonal * edge;
+  /// Σ |cⱼ| bound(sⱼ), sⱼ the least |x − zⱼ|/λ over the cube.
+  template <class BoundBeyond>
+  double sum_over(const std::vector<int>& near, const Bounds& bounds, const BoundBeyond& bound) const {
     double sum = 0;
-    grid_.for_each_within(low + Vector3::Constant(edge / 2), layer_.lambda + radius,
-                          [&](int j, double squared) {
-                            sum += sizes_[j] * steepest_beyond((std::sqrt(squared) - radius) / layer_.lambda);
-                          });
-    return sum / layer_.lambda;
+    for (const int position : near)
+      sum += sizes_[std::size_t(position)] *
+             bound(distance(bounds, evaluator_.sorted_centers()[std::size_t(position)]) / lambda_);
+    return sum;
   }
 
   /// The gradient's trilinear interpolant on a lattice of spacing δ takes its largest norm at a node, and
   /// misses the gradient by at most 3 δ²/8 Σ |cⱼ| ‖D³φ‖ / λ³. The lattice is refined until the second part is
   /// small.
-  void look_closely(const Vector3& low, double edge, Found& found, std::vector<int>& scratch) const {
-    const double curvature = curvature_from_sizes(low, edge);
+  void look_closely(const Vector3& low, double edge, const std::vector<int>& near, Found& found) const {
+    const double curvature =
+        sum_over(near, cube(low, edge), third_derivative_beyond) / (lambda_ * lambda_ * lambda_);
     constexpr int coarsest = 2;
     constexpr int finest = 8;
     for (int intervals = coarsest;; intervals *= 2) {
@@ -127,28 +151,18 @@ class GradientBound::Search {
       const double remainder = 3 * spacing * spacing / 8 * curvature;
       const bool last = intervals == finest || remainder <= 0.1 * enough_;
       if (remainder >= enough_ && !last) continue;
-      const double sampled = largest_at_nodes(low, spacing, intervals + 1, scratch);
+      const double sampled = largest_at_nodes(low, spacing, intervals + 1, near);
       const bool steep = sampled > enough_ && closeness_ == Closeness::rough;
       if (sampled + remainder > enough_ && !last && !steep) continue;
       found.largest = std::max(found.largest, sampled + remainder);
       if (sampled + remainder > enough_)
-        found.steep.push_back({low + Vector3::Constant(edge / 2), half_diagonal * edge,
+        found.steep.push_back({low + Vector3::Constant(edge / 2), std::sqrt(3.0) / 2 * edge,
                                sampled + std::min(remainder, 0.1 * sampled)});
       return;
     }
   }
 
-  double curvature_from_sizes(const Vector3& low, double edge) const {
-    const double radius = half_diagonal * edge;
-    double sum = 0;
-    grid_.for_each_within(
-        low + Vector3::Constant(edge / 2), layer_.lambda + radius, [&](int j, double squared) {
-          sum += sizes_[j] * third_derivative_beyond((std::sqrt(squared) - radius) / layer_.lambda);
-        });
-    return sum / (layer_.lambda * layer_.lambda * layer_.lambda);
-  }
-
-  double largest_at_nodes(const Vector3& low, double spacing, int nodes, std::vector<int>& scratch) const {
+  double largest_at_nodes(const Vector3& low, double spacing, int nodes, const std::vector<int>& near) const {
     constexpr int lanes = LayerEvaluator::lanes;
     const int count = nodes * nodes * nodes;
     std::vector<LayerEvaluator::Block> blocks(std::size_t(count + lanes - 1) / lanes);
@@ -159,7 +173,8 @@ class GradientBound::Search {
         blocks[std::size_t(slot / lanes)].x[axis][slot % lanes] = low[axis] + spacing * index[axis];
     }
     for (LayerEvaluator::Block& block : blocks) block.update_bounds();
-    evaluator_.evaluate(blocks.data(), blocks.size(), LayerEvaluator::Order::gradient, scratch);
+    std::vector<int> nearby;
+    evaluator_.evaluate_among(near, blocks.data(), blocks.size(), LayerEvaluator::Order::gradient, nearby);
     double largest = 0;
     for (int node = 0; node < count; ++node) {
       if (!blocks[std::size_t(node / lanes)].reached) continue;
@@ -172,12 +187,11 @@ class GradientBound::Search {
     return largest;
   }
 
-  const RbfLayer& layer_;
+  double lambda_;
   double enough_;
   Closeness closeness_;
-  Eigen::RowVectorXd sizes_;
-  PointGrid grid_;
   LayerEvaluator evaluator_;
+  std::vector<double> sizes_;  // |cⱼ| by position
 };
 
 void GradientBound::update(const RbfLayer& layer, double enough, Closeness closeness,
@@ -190,13 +204,13 @@ void GradientBound::update(const RbfLayer& layer, double enough, Closeness close
   if (cells_.empty()) return;
   const Search search(layer, enough, closeness);
   parallel_for(cells_.size(), 4, [&](std::size_t begin, std::size_t end) {
-    std::vector<int> scratch;
     for (std::size_t c = begin; c < end; ++c) {
       const Vector3 low = edge * Vector3(cells_[c][0], cells_[c][1], cells_[c][2]);
       const bool settled = found_[c].steep.empty() || closeness == Closeness::rough;
-      if (!changed.empty() && settled && !search.feels(low, edge, changed)) continue;
+      const std::vector<int> near = search.centers_near(low, edge);
+      if (!changed.empty() && settled && !search.any(near, changed)) continue;
       found_[c] = {};
-      search.look(low, edge, found_[c], scratch);
+      search.look(low, edge, near, found_[c]);
     }
   });
 }

@@ -278,6 +278,11 @@ void LayerEvaluator::evaluate_together(Block* blocks, std::size_t count, const B
   collect(bounds, nearby);
   if (count == 1) return sum(*blocks, order, nearby.data(), int(nearby.size()));
   const std::vector<int> candidates = nearby;
+  evaluate_among(candidates, blocks, count, order, nearby);
+}
+
+void LayerEvaluator::evaluate_among(const std::vector<int>& candidates, Block* blocks, std::size_t count,
+                                    Order order, std::vector<int>& nearby) const {
   for (std::size_t b = 0; b < count; ++b) {
     narrow(blocks[b].bounds, candidates, nearby);
     sum(blocks[b], order, nearby.data(), int(nearby.size()));

@@ -38,23 +38,38 @@ class LayerEvaluator {
     void update_bounds();
   };
 
+  /// A centre and its coefficient, mesh units.
+  struct Center {
+    double z[3];
+    double c[3];
+  };
+
   /// Which sums a call forms.
   enum class Order { value, gradient };
 
   /// Fills the sums of blocks[0 … count − 1]. `nearby` is scratch space, for reuse between calls.
   void evaluate(Block* blocks, std::size_t count, Order order, std::vector<int>& nearby) const;
 
+  /// The same for callers that keep track of the centres near by: `candidates` holds the positions of all
+  /// centres within λ of the blocks, in increasing order.
+  void evaluate_among(const std::vector<int>& candidates, Block* blocks, std::size_t count, Order order,
+                      std::vector<int>& nearby) const;
+
+  /// Replaces `nearby` by the positions of the centres within λ of a box.
+  void collect(const Bounds& bounds, std::vector<int>& nearby) const;
+
+  /// The same, out of `candidates`.
+  void narrow(const Bounds& bounds, const std::vector<int>& candidates, std::vector<int>& nearby) const;
+
+  /// By position; order()[position] is the index that the constructor knew the centre by.
+  const std::vector<Center>& sorted_centers() const { return sorted_; }
+  const std::vector<int>& order() const { return grid_.order(); }
+
  private:
-  struct Center {
-    double z[3];
-    double c[3];
-  };
   void evaluate_together(Block* blocks, std::size_t count, const Bounds& bounds, Order order,
                          std::vector<int>& nearby) const;
   void evaluate_lanes(Block& block, Order order, std::vector<int>& nearby) const;
   bool within_reach(const Bounds& bounds) const;
-  void collect(const Bounds& bounds, std::vector<int>& nearby) const;
-  void narrow(const Bounds& bounds, const std::vector<int>& candidates, std::vector<int>& nearby) const;
   void sum(Block& block, Order order, const int* nearby, int count) const;
   void mark_reach(const Points& centers);
 

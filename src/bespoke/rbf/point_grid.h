@@ -32,21 +32,28 @@ class PointGrid {
  private:
   using Cell = Eigen::Array3i;
   Cell cell_of(const Vector3& x) const;
-  /// Range of sorted positions of the points in a cell; empty when the cell holds none.
-  struct Range {
+  /// Slot of a hash table: an occupied cell and the sorted positions of its points; empty where begin == end.
+  struct Slot {
+    std::uint64_t key = 0;
     int begin = 0;
     int end = 0;
   };
-  Range range(const Cell& cell) const;
+  static std::uint64_t key_of(int i, int j, int k) {
+    return (static_cast<std::uint64_t>(k) << 42) | (static_cast<std::uint64_t>(j) << 21) |
+           static_cast<std::uint64_t>(i);
+  }
+  std::size_t first_slot(std::uint64_t key) const {
+    // Fibonacci hashing: the high bits of the product mix all bits of the key.
+    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 20) & (slots_.size() - 1);
+  }
+  std::size_t next_slot(std::size_t slot) const { return (slot + 1) & (slots_.size() - 1); }
 
   Points sorted_;           // 3×n in cell order
   std::vector<int> order_;  // sorted position → index
   Vector3 origin_ = Vector3::Zero();
   double inverse_cell_ = 1;
-  Cell cells_ = Cell::Zero();             // number of cells along each axis
-  std::vector<std::uint64_t> cell_keys_;  // of the occupied cells, increasing
-  std::vector<int> cell_start_;           // occupied cells + 1
-  std::vector<std::uint32_t> bucket_;     // hash table: slot → occupied cell + 1
+  Cell cells_ = Cell::Zero();  // number of cells along each axis
+  std::vector<Slot> slots_;    // a power of two of them, at most half occupied
 };
 
 /// Indices, increasing, of a subset no two of which are closer than `spacing`, and from which no point is
@@ -71,8 +78,13 @@ void PointGrid::for_each_range(const Vector3& low, const Vector3& high, const Vi
   for (int k = first.z(); k <= last.z(); ++k)
     for (int j = first.y(); j <= last.y(); ++j)
       for (int i = first.x(); i <= last.x(); ++i) {
-        const Range found = range(Cell(i, j, k));
-        if (found.begin < found.end) visit(found.begin, found.end);
+        const std::uint64_t key = key_of(i, j, k);
+        for (std::size_t slot = first_slot(key); slots_[slot].begin < slots_[slot].end;
+             slot = next_slot(slot)) {
+          if (slots_[slot].key != key) continue;
+          visit(slots_[slot].begin, slots_[slot].end);
+          break;
+        }
       }
 }
 

@@ -1,43 +1,44 @@
 #include "bespoke/rbf/spatial_order.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <utility>
+#include <numeric>
 
 #include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
 
-constexpr int bits_per_axis = 16;
+// A key has 30 bits: three passes of the sort below.
+constexpr int bits_per_axis = 10;
 
-/// Spreads the low 16 bits to every third bit.
-std::uint64_t spread(std::uint64_t value) {
-  value = (value | (value << 16)) & 0x0000FF0000FFu;
-  value = (value | (value << 8)) & 0x00F00F00F00Fu;
-  value = (value | (value << 4)) & 0x0C30C30C30C3u;
-  value = (value | (value << 2)) & 0x249249249249u;
+/// Spreads the low 10 bits to every third bit.
+std::uint32_t spread(std::uint32_t value) {
+  value = (value | (value << 16)) & 0x030000FFu;
+  value = (value | (value << 8)) & 0x0300F00Fu;
+  value = (value | (value << 4)) & 0x030C30C3u;
+  value = (value | (value << 2)) & 0x09249249u;
   return value;
 }
 
-using Keyed = std::pair<std::uint64_t, int>;
+struct Keyed {
+  std::uint32_t key;
+  int index;
+};
 
-/// Sorts chunks side by side, then merges neighbours in rounds.
-void sort_in_parallel(std::vector<Keyed>& keyed) {
-  constexpr std::size_t chunk = std::size_t{1} << 15;
-  parallel_for(keyed.size(), chunk, [&](std::size_t begin, std::size_t end) {
-    std::sort(keyed.begin() + std::ptrdiff_t(begin), keyed.begin() + std::ptrdiff_t(end));
-  });
-  std::vector<Keyed> merged(keyed.size() > chunk ? keyed.size() : 0);
-  for (std::size_t width = chunk; width < keyed.size(); width *= 2) {
-    parallel_for(keyed.size(), 2 * width, [&](std::size_t begin, std::size_t end) {
-      const auto first = keyed.begin() + std::ptrdiff_t(begin);
-      const auto middle = keyed.begin() + std::ptrdiff_t(std::min(begin + width, end));
-      const auto last = keyed.begin() + std::ptrdiff_t(end);
-      std::merge(first, middle, middle, last, merged.begin() + std::ptrdiff_t(begin));
-    });
-    keyed.swap(merged);
+/// Radix sort by key; equal keys keep their order.
+void sort_by_key(std::vector<Keyed>& keyed) {
+  constexpr int digit_bits = 10;
+  constexpr std::uint32_t digits = 1u << digit_bits;
+  std::vector<Keyed> sorted(keyed.size());
+  for (int shift = 0; shift < 3 * bits_per_axis; shift += digit_bits) {
+    const auto digit_of = [&](const Keyed& item) { return (item.key >> shift) & (digits - 1); };
+    std::array<std::size_t, digits> place{};
+    for (const Keyed& item : keyed) ++place[digit_of(item)];
+    std::exclusive_scan(place.begin(), place.end(), place.begin(), std::size_t{0});
+    for (const Keyed& item : keyed) sorted[place[digit_of(item)]++] = item;
+    keyed.swap(sorted);
   }
 }
 
@@ -56,16 +57,16 @@ std::vector<int> spatial_order(const Points& x) {
   parallel_for(count, 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3 point = x.col(static_cast<Eigen::Index>(i));
-      std::uint64_t key = 0;
+      std::uint32_t key = 0;
       if (point.allFinite() && scale > 0)
         for (int axis = 0; axis < 3; ++axis)
-          key |= spread(static_cast<std::uint64_t>((point[axis] - box.min()[axis]) * scale)) << axis;
+          key |= spread(static_cast<std::uint32_t>((point[axis] - box.min()[axis]) * scale)) << axis;
       keyed[i] = {key, static_cast<int>(i)};
     }
   });
-  sort_in_parallel(keyed);
+  sort_by_key(keyed);
   std::vector<int> order(count);
-  for (std::size_t i = 0; i < count; ++i) order[i] = keyed[i].second;
+  for (std::size_t i = 0; i < count; ++i) order[i] = keyed[i].index;
   return order;
 }
 
