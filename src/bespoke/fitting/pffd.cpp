@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/fitting/face_distances.h"
 #include "bespoke/parallel.h"
-#include "bespoke/rbf/point_grid.h"
 
 namespace bespoke {
 namespace {
@@ -55,13 +55,11 @@ struct FaceFrame {
   Vector3 a, ab, ac, normal;
   double bb, bc, cc, det;  ///< dot products of the edges and their Gram determinant
   double area;
-  Vector3 shift;   ///< the face's affine map minus the background map, at a
+  Vector3 shift;   ///< the face's affine map minus the background map, at the origin of the frames
   Matrix3 linear;  ///< the same difference's linear part
-
-  Vector3 displacement(const Vector3& x) const { return shift + linear * (x - a); }
 };
 
-FaceFrame make_frame(const Matrix3& from, const Matrix3& to, const AffineMap& affine) {
+FaceFrame make_frame(const Matrix3& from, const Matrix3& to, const AffineMap& affine, const Vector3& origin) {
   FaceFrame frame;
   frame.a = from.col(0);
   frame.ab = from.col(1) - from.col(0);
@@ -83,7 +81,7 @@ FaceFrame make_frame(const Matrix3& from, const Matrix3& to, const AffineMap& af
   source_frame << frame.ab, frame.ac, scale * normal;
   fitted_frame << fitted_ab, fitted_ac, fitted_scale * fitted_normal;
   frame.linear = fitted_frame * source_frame.inverse() - affine.linear;
-  frame.shift = to.col(0) - affine * frame.a;
+  frame.shift = to.col(0) - affine * frame.a + frame.linear * (origin - frame.a);
   return frame;
 }
 
@@ -132,10 +130,10 @@ std::vector<Vector3> cover(const TriangleMesh& mesh, const std::vector<int>& fac
 
 struct PffdMap::Frames {
   AffineMap affine;
-  std::vector<FaceFrame> faces;
-  std::vector<int> mesh_faces;  ///< index in the source of each of `faces`
-  double reach = 0;             ///< λ plus the largest distance of a face's centre from its corners
-  std::unique_ptr<const PointGrid> centers;
+  Vector3 origin;               ///< in the middle of the source, so that the shifts lose few digits
+  std::vector<int> mesh_faces;  ///< index in the source of each face with area
+  FaceDistances distances;
+  std::vector<FaceFrame> faces;  ///< in the order of `distances`
 };
 
 PffdMap::PffdMap(const TriangleMesh& source, const Points& fitted, double lambda)
@@ -148,26 +146,28 @@ PffdMap::PffdMap(const TriangleMesh& source, const Points& fitted, double lambda
   if (!(lambda > 0 && std::isfinite(lambda)))
     throw InvalidInput("p-FFD: lambda is " + std::to_string(lambda) + ", but must be finite and above 0");
 
-  auto frames = std::make_unique<Frames>();
-  const std::vector<int> used = referenced_vertices(source);
-  frames->affine = affine_fit(source.vertices(Eigen::all, used), fitted(Eigen::all, used));
   const double no_area = 1e-14 * std::pow(diagonal(source.vertices), 2);  // as MeshFindings counts them
-  std::vector<Vector3> centers;
-  for (Eigen::Index face = 0; face < source.faces.cols(); ++face) {
-    const Matrix3 from = corners(source, source.vertices, face);
-    const Matrix3 to = corners(source, fitted, face);
-    const double area = (from.col(1) - from.col(0)).cross(from.col(2) - from.col(0)).norm() / 2;
-    if (!(area > no_area)) continue;
-    frames->faces.push_back(make_frame(from, to, frames->affine));
-    frames->mesh_faces.push_back(static_cast<int>(face));
-    centers.emplace_back(from.rowwise().mean());
-    const double radius = (from.colwise() - centers.back()).colwise().norm().maxCoeff();
-    frames->reach = std::max(frames->reach, lambda + radius);
+  std::vector<int> mesh_faces;
+  std::vector<Matrix3> triangles;
+  for (int face = 0; face < source.faces.cols(); ++face) {
+    const Matrix3 triangle = corners(source, source.vertices, face);
+    const Vector3 normal = (triangle.col(1) - triangle.col(0)).cross(triangle.col(2) - triangle.col(0));
+    if (!(normal.norm() / 2 > no_area)) continue;
+    mesh_faces.push_back(face);
+    triangles.push_back(triangle);
   }
-  if (centers.empty()) throw InvalidInput("p-FFD: no face of the source has any area");
-  const Points center_points = Points::Map(centers.front().data(), 3, static_cast<int>(centers.size()));
-  frames->centers = std::make_unique<PointGrid>(center_points, frames->reach / 2);
-  frames_ = std::move(frames);
+  if (triangles.empty()) throw InvalidInput("p-FFD: no face of the source has any area");
+
+  const std::vector<int> used = referenced_vertices(source);
+  const Points used_vertices = source.vertices(Eigen::all, used);
+  const AffineMap affine = affine_fit(used_vertices, fitted(Eigen::all, used));
+  Frames frames{affine, bounding_box(used_vertices).center(), mesh_faces, {triangles, lambda}, {}};
+  for (const int place : frames.distances.order()) {
+    const auto index = static_cast<std::size_t>(place);
+    const Matrix3 image = corners(source, fitted, mesh_faces[index]);
+    frames.faces.push_back(make_frame(triangles[index], image, affine, frames.origin));
+  }
+  frames_ = std::make_unique<const Frames>(std::move(frames));
 }
 
 PffdMap::~PffdMap() = default;
@@ -176,55 +176,60 @@ AffineMap PffdMap::affine() const { return frames_->affine; }
 
 namespace {
 
-/// The faces within λ of a point.
-struct Near {
-  const FaceFrame* face;
-  Vector3 arm;  ///< from the face to the point
-  double s;     ///< (distance / λ)²
-};
+using Neighbours = std::vector<FaceDistances::Near>;
 
-/// u at a point, with what its gradient needs.
+/// The faces' maps at one point, blended: minus the background map, about the frames' origin.
 struct Blend {
-  Vector3 displacement = Vector3::Zero();
+  Vector3 shift = Vector3::Zero();
+  Matrix3 linear = Matrix3::Zero();
   double total_weight = 0;
-  double nearest = 1;  ///< s of the nearest face; 0: only the faces that touch the point count, evenly
+  double nearest = 1;  ///< s of the nearest face
+
+  /// A point on the surface up to rounding: the faces that touch it agree, and the weights have no limit.
+  bool on_surface() const { return nearest <= 1e-18; }
+
+  double weight(double area, double s) const {
+    if (on_surface()) return s <= 1e-18 ? 1 : 0;
+    // Relative to 1/s² of the nearest face, which stays finite near the surface.
+    const double ratio = nearest / s, fade = 1 - s;
+    return area * ratio * ratio * fade * fade * fade;
+  }
 };
 
-double weight(const Near& at, const Blend& blend) {
-  if (!(blend.nearest > 0)) return at.s > 0 ? 0 : 1;
-  const double ratio = blend.nearest / at.s, fade = 1 - at.s;
-  return at.face->area * ratio * ratio * fade * fade * fade;
-}
-
-Blend blend_faces(const std::vector<Near>& near, const Vector3& x, double lambda) {
+Blend blend_faces(const std::vector<FaceFrame>& faces, const Neighbours& near, double lambda) {
   Blend blend;
-  if (near.empty()) return blend;
-  for (const Near& at : near) blend.nearest = std::min(blend.nearest, at.s);
-  // Weights relative to 1/s² of the nearest face stay finite near the surface.
-  blend.total_weight = background * lambda * lambda * blend.nearest * blend.nearest;
-  for (const Near& at : near) {
-    const double share = weight(at, blend);
-    blend.displacement += share * at.face->displacement(x);
+  const double inverse = 1 / (lambda * lambda);
+  for (const FaceDistances::Near& at : near)
+    blend.nearest = std::min(blend.nearest, at.squared_distance * inverse);
+  if (!blend.on_surface()) blend.total_weight = background * lambda * lambda * blend.nearest * blend.nearest;
+  for (const FaceDistances::Near& at : near) {
+    const FaceFrame& face = faces[static_cast<std::size_t>(at.place)];
+    const double share = blend.weight(face.area, at.squared_distance * inverse);
+    blend.shift += share * face.shift;
+    blend.linear += share * face.linear;
     blend.total_weight += share;
   }
-  blend.displacement /= blend.total_weight;
+  blend.shift /= blend.total_weight;
+  blend.linear /= blend.total_weight;
   return blend;
 }
 
-Matrix3 blend_gradient(const std::vector<Near>& near, const Vector3& x, double lambda) {
-  Matrix3 gradient = Matrix3::Zero();
-  if (near.empty()) return gradient;
-  const Blend blend = blend_faces(near, x, lambda);
-  for (const Near& at : near) {
-    const double share = weight(at, blend);
-    gradient += share * at.face->linear;
-    if (!(blend.nearest > 0)) continue;
+/// ∇u: the blended linear parts, and the change of the weights.
+Matrix3 blend_gradient(const std::vector<FaceFrame>& faces, const Neighbours& near, const Vector3& x,
+                       const Vector3& origin, double lambda) {
+  const Blend blend = blend_faces(faces, near, lambda);
+  if (blend.on_surface()) return blend.linear;
+  const Vector3 displacement = blend.shift + blend.linear * (x - origin);
+  Matrix3 change = Matrix3::Zero();
+  for (const FaceDistances::Near& at : near) {
+    const FaceFrame& face = faces[static_cast<std::size_t>(at.place)];
+    const double s = at.squared_distance / (lambda * lambda);
     // d/ds (1 − s)³ / s² = −(1 − s)² (s + 2) / s³, and ∇s = 2 arm / λ².
-    const double slope = -share * (at.s + 2) / (at.s * (1 - at.s));
-    const Vector3 off = at.face->displacement(x) - blend.displacement;
-    gradient += off * (slope * 2 / (lambda * lambda) * at.arm).transpose();
+    const double slope = -blend.weight(face.area, s) * (s + 2) / (s * (1 - s)) * 2 / (lambda * lambda);
+    const Vector3 off = face.shift + face.linear * (x - origin) - displacement;
+    change += slope * off * arm_from_face(face, x).transpose();
   }
-  return gradient / blend.total_weight;
+  return blend.linear + change / blend.total_weight;
 }
 
 }  // namespace
@@ -232,34 +237,29 @@ Matrix3 blend_gradient(const std::vector<Near>& near, const Vector3& x, double l
 template <class Take>
 void PffdMap::for_each_neighbourhood(const Points& x, const Take& take) const {
   parallel_for(static_cast<std::size_t>(x.cols()), 32, [&](std::size_t begin, std::size_t end) {
-    std::vector<Near> near;
+    FaceDistances::Scratch scratch;
     for (std::size_t i = begin; i < end; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
       const Vector3 at = x.col(column);
-      near.clear();
-      frames_->centers->for_each_within(at, frames_->reach, [&](int index, double) {
-        const FaceFrame& face = frames_->faces[static_cast<std::size_t>(index)];
-        const Vector3 arm = arm_from_face(face, at);
-        const double s = arm.squaredNorm() / (lambda_ * lambda_);
-        if (s < 1) near.push_back({&face, arm, s});
-      });
-      take(column, near, at);
+      if (const Neighbours& near = frames_->distances.find(at, scratch); !near.empty())
+        take(column, near, at);
     }
   });
 }
 
 Points PffdMap::displacement(const Points& x) const {
-  Points result(3, x.cols());
-  for_each_neighbourhood(x, [&](Eigen::Index i, const std::vector<Near>& near, const Vector3& at) {
-    result.col(i) = blend_faces(near, at, lambda_).displacement;
+  Points result = Points::Zero(3, x.cols());
+  for_each_neighbourhood(x, [&](Eigen::Index i, const Neighbours& near, const Vector3& at) {
+    const Blend blend = blend_faces(frames_->faces, near, lambda_);
+    result.col(i) = blend.shift + blend.linear * (at - frames_->origin);
   });
   return result;
 }
 
 Points PffdMap::displacement_gradient(const Points& x) const {
-  Points result(3, 3 * x.cols());
-  for_each_neighbourhood(x, [&](Eigen::Index i, const std::vector<Near>& near, const Vector3& at) {
-    result.middleCols<3>(3 * i) = blend_gradient(near, at, lambda_);
+  Points result = Points::Zero(3, 3 * x.cols());
+  for_each_neighbourhood(x, [&](Eigen::Index i, const Neighbours& near, const Vector3& at) {
+    result.middleCols<3>(3 * i) = blend_gradient(frames_->faces, near, at, frames_->origin, lambda_);
   });
   return result;
 }
