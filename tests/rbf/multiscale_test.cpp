@@ -5,10 +5,14 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <random>
+#include <sstream>
 
 #include "bespoke/error.h"
+#include "bespoke/rigid/rigid_alignment.h"
 #include "support/random_points.h"
 
 namespace bespoke {
@@ -196,6 +200,35 @@ TEST(FitMultiscaleComposed, ReportsGradientBoundsThatHold) {
     const Points gradient = alone.displacement_gradient(band_points(layer.centers, 5000, layer.lambda, 6));
     for (Eigen::Index i = 0; i < gradient.cols(); i += 3)
       EXPECT_LE(Matrix3(gradient.middleCols<3>(i)).operatorNorm(), fit.summary.gradient_bounds[k]);
+  }
+}
+
+/// Three numbers a line, after `prefix`; empty where the file is absent.
+Points read_points(const std::filesystem::path& path, const std::string& prefix) {
+  std::ifstream file(path);
+  std::vector<double> coordinates;
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind(prefix, 0) != 0) continue;
+    std::istringstream numbers(line.substr(prefix.size()));
+    for (double value; numbers >> value;) coordinates.push_back(value);
+  }
+  return Eigen::Map<const Points>(coordinates.data(), 3, Eigen::Index(coordinates.size() / 3));
+}
+
+TEST(FitMultiscaleComposed, MeetsRealBodiesHandsAndFeetWithoutFolds) {
+  for (const char* name : {"d01_body_dress", "d04_hand_glove", "d05_foot_shoe"}) {
+    const auto folder = std::filesystem::path(BESPOKE_SHARED_DIR) / "cases" / name;
+    const Points sources = read_points(folder / "reference_a.obj", "v ");
+    if (sources.cols() == 0) GTEST_SKIP() << "no shared cases here";
+    Points targets = read_points(folder / "gt_a_on_b.xyz", "");
+    targets = inverse(align_rigidly(sources, targets, Eigen::VectorXd::Ones(sources.cols()))) * targets;
+    const double diagonal = (sources.rowwise().maxCoeff() - sources.rowwise().minCoeff()).norm();
+    const MultiscaleFit fit =
+        fit_multiscale(sources, targets, with_options(0.1 * diagonal, 1e-4 * diagonal, true));
+    EXPECT_GE(double(fit.summary.within_tolerance), 0.99 * double(sources.cols())) << name;
+    const Points gradient = fit.map->displacement_gradient(band_points(sources, 100000, 0.1 * diagonal, 7));
+    for (Eigen::Index i = 0; i < gradient.cols(); i += 3)
+      ASSERT_GT((fit.map->affine().linear + gradient.middleCols<3>(i)).determinant(), 0) << name;
   }
 }
 

@@ -37,8 +37,8 @@ struct MultiscaleSummary {
 /// One line.
 std::string to_string(const MultiscaleSummary& summary);
 
-/// Residual correction over halved scales (Floater–Iske, Wendland), summed: E = affine + Σ u_k, or composed:
-/// E = (id + u_n)∘…∘(id + u_1)∘affine, which cannot fold.
+/// Residual correction over halved scales (Floater–Iske, Wendland), summed: E(x) = affine(x) + Σ u_k(x), or
+/// composed: E = (id + u_n)∘…∘(id + u_1)∘affine, which cannot fold. Layers use Wendland's C2 function.
 class MultiscaleMap : public ElasticMap {
  public:
   MultiscaleMap(AffineMap affine, std::vector<RbfLayer> layers, bool composed);
@@ -65,7 +65,12 @@ struct MultiscaleFit {
   MultiscaleSummary summary;
 };
 
-/// E(sources) ≈ targets, 3×n each, mesh units. Throws InvalidInput, SolverError.
+/// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map of the pairs,
+/// the identity along directions in which the sources have no extent. Centres of a layer are thinned to
+/// λ_k/4; λ_k is halved while a residual exceeds the tolerance. A composed scale takes several layers where
+/// residuals are clipped to 0.3 λ_k or a layer is damped to keep ‖∇u_k‖ ≤ 0.9. What cannot be met (the data
+/// folds there) stays in the residuals. Throws InvalidInput (sizes, non-finite values, affine part with det ≤
+/// 0, values out of range), SolverError.
 MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
                              const Progress& progress = {});
 
