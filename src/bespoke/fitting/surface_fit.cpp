@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/fitting/laplacian_fit.h"
+#include "bespoke/fitting/multiscale_fit.h"
 
 namespace bespoke {
 namespace {
@@ -62,7 +63,7 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
     case SurfaceFitMethod::laplacian:
       return fit_surface_laplacian(input, options, progress);
     case SurfaceFitMethod::multiscale:
-      throw InvalidInput("surface fitting by multiscale is not built in; use laplacian");
+      return fit_surface_multiscale(input, options, progress);
   }
   throw InvalidInput("unknown surface fitting method");
 }

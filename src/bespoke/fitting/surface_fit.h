@@ -39,6 +39,9 @@ struct SurfaceFitSummary {
   StopReason stop_reason = StopReason::iteration_cap;
   std::size_t unmatched_vertices =
       0;  ///< no compatible point in the last iteration: moved by the smoothness term alone
+  bool similarity_suffices =
+      false;                   ///< multiscale: one similarity explains the target, nothing else was fitted
+  int matched_boundaries = 0;  ///< multiscale: open boundaries of the source taken for the target's cut
   double seconds = 0;
 };
 

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "bespoke/fitting/boundary_match.h"
+#include "bespoke/fitting/target_surface.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// What the deformation of a surface by nodes works on. Lengths in mesh units.
+struct NodeFitInput {
+  const TriangleMesh& rest;  ///< the source, aligned with the target
+  const TargetSurface& target;
+  const Points& anchor_sources;  ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_targets;  ///< 3×k
+  /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
+  const Eigen::VectorXd& anchor_weights;
+  double diagonal = 0;  ///< of the aligned source
+};
+
+struct NodeFit {
+  Points vertices;        ///< 3×n, of the deformed `rest`
+  Points anchor_sources;  ///< 3×k, carried along
+  int iterations = 0;
+  int matched_boundaries = 0;
+};
+
+/// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
+/// that (closest compatible points both ways, point to plane) + (anchors) + (boundaries) + ℓ⁴ (second
+/// differences along the surface) + (0.1 ℓ)² (deviation from local similarities) is least, with a smoothing
+/// length ℓ that falls from half to a hundredth of the diagonal. Where the target has nothing to offer, the
+/// last two extrapolate. Throws SolverError.
+NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress);
+
+}  // namespace bespoke

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// What a point finds on a surface.
+struct SurfaceMatch {
+  Vector3 point;   ///< mesh units
+  Vector3 normal;  ///< unit, interpolated from the vertices
+  int face = 0;
+  Vector3 barycentric;
+  double agreement = 0;  ///< cosine between the query's normal and `normal`, in [0, 1]
+};
+
+/// A surface that answers closest compatible points. A point on its boundary is no answer: there the surface
+/// ends, not the body, and whatever lies beyond would collapse onto the boundary curve. Thread-safe.
+class TargetSurface {
+ public:
+  /// Throws InvalidInput as ClosestPointTree.
+  explicit TargetSurface(TriangleMesh mesh);
+
+  /// Closest point whose face normal has a cosine above `min_cosine` with `normal`; empty when there is none
+  /// within `max_distance` (mesh units), when it lies on the boundary, or when `normal` is zero.
+  std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, double min_cosine,
+                                    double max_distance) const;
+
+  /// Plain distance, mesh units.
+  double distance(const Vector3& x) const;
+
+  const TriangleMesh& mesh() const { return mesh_; }
+  const Points& normals() const { return normals_; }       ///< 3×n, unit or zero, per vertex
+  const Eigen::VectorXd& areas() const { return areas_; }  ///< n, a third of the adjacent faces' areas
+  /// 2×e: the vertices of the edges of exactly one face, along the face.
+  const Eigen::Matrix2Xi& boundary_edges() const { return boundary_edges_; }
+
+ private:
+  bool on_boundary(const SurfacePoint& found) const;
+
+  TriangleMesh mesh_;
+  ClosestPointTree tree_;
+  Points normals_;
+  Eigen::VectorXd areas_;
+  Eigen::Matrix2Xi boundary_edges_;
+  std::vector<unsigned char> boundary_bits_;  // per face: bit k where edge (k, k+1) belongs to one face
+  std::vector<char> boundary_vertices_;
+};
+
+/// 2×e: the vertices of the edges of exactly one face, in the face's direction.
+Eigen::Matrix2Xi boundary_edges(const TriangleMesh& mesh);
+
+/// n: a third of the area of the faces around each vertex, mesh units squared.
+Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
+
+}  // namespace bespoke
