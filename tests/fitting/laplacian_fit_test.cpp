@@ -137,7 +137,8 @@ struct Scene {
   Points anchor_targets = Points(3, 0);
   Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
 
-  SurfaceFit fit(const SurfaceFitOptions& options = {}) const {
+  SurfaceFit fit(SurfaceFitOptions options = {}) const {
+    options.method = SurfaceFitMethod::laplacian;
     return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
   }
 };

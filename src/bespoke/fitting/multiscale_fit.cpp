@@ -61,6 +61,7 @@ double largest_distance(const Points& a, const Points& b) {
 
 SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                                   const Progress& progress) {
+  progress.check();
   const auto start = std::chrono::steady_clock::now();
   const Eigen::Index count = input.source.vertices.cols();
   const double area = vertex_areas(input.source).sum();

@@ -13,12 +13,12 @@ namespace bespoke {
 
 enum class SurfaceFitMethod {
   laplacian,   ///< the paper's (IV.C, Eq. 11–15)
-  multiscale,  ///< a space deformation, coarse to fine
+  multiscale,  ///< smooth deformations, coarse to fine (multiscale_fit.h)
 };
 
 struct SurfaceFitOptions {
-  SurfaceFitMethod method = SurfaceFitMethod::laplacian;
-  int max_iterations = 100;
+  SurfaceFitMethod method = SurfaceFitMethod::multiscale;
+  int max_iterations = 100;  ///< laplacian only: multiscale runs a fixed schedule
   /// ε of the paper: stop when the root mean square of a step falls below this fraction of the source's
   /// bounding-box diagonal.
   double epsilon = 1e-5;

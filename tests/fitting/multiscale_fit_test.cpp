@@ -1,0 +1,160 @@
+#include "bespoke/fitting/multiscale_fit.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "bespoke/error.h"
+#include "support/random_points.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Scene {
+  TriangleMesh source;
+  TriangleMesh target;
+  Points warped = source.vertices;
+  Points anchor_sources = Points(3, 0);
+  Points anchor_targets = Points(3, 0);
+  Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
+
+  SurfaceFit fit() const {
+    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, {});
+  }
+};
+
+TriangleMesh potato(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  for (auto&& x : mesh.vertices.colwise())
+    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
+  return mesh;
+}
+
+Vector3 bend(const Vector3& x) {
+  return {x[0] + 0.15 * x[1] * x[1], 1.1 * x[1] + 0.1 * x[0] * x[2], 0.95 * x[2]};
+}
+
+/// A featured closed surface and its smooth image with finer connectivity, twelve exact anchors.
+Scene bent_scene() {
+  Scene scene{potato(4), potato(5)};
+  for (auto&& x : scene.target.vertices.colwise()) x = bend(x);
+  scene.anchor_sources = scene.source.vertices.leftCols(12);
+  scene.anchor_targets.resize(3, 12);
+  for (int k = 0; k < 12; ++k) scene.anchor_targets.col(k) = bend(scene.anchor_sources.col(k));
+  scene.anchor_weights = Eigen::VectorXd::Constant(12, infinity);
+  return scene;
+}
+
+TEST(FitSurfaceMultiscale, IsTheDefault) {
+  EXPECT_EQ(SurfaceFitOptions{}.method, SurfaceFitMethod::multiscale);
+}
+
+TEST(FitSurfaceMultiscale, RecoversASimilarity) {
+  const AffineMap truth{1.1 * Eigen::AngleAxisd(0.06, Vector3(1, 2, 2) / 3).toRotationMatrix(),
+                        Vector3(0.02, 0.01, -0.03)};
+  // The finer copy's own vertices lie on the potato, not on the coarser facets: compare the same surface.
+  Scene scene{potato(4), shapes::moved(potato(4), truth)};
+  const SurfaceFit fit = scene.fit();
+  EXPECT_TRUE(fit.summary.similarity_suffices);
+  EXPECT_LT((fit.vertices - truth * scene.source.vertices).colwise().norm().maxCoeff(), 1e-3);
+}
+
+TEST(FitSurfaceMultiscale, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
+  const Scene scene = bent_scene();
+  const SurfaceFit fit = scene.fit();
+  EXPECT_FALSE(fit.summary.similarity_suffices);
+  Points truth = scene.source.vertices;
+  for (auto&& x : truth.colwise()) x = bend(x);
+  EXPECT_LT((fit.vertices - truth).colwise().norm().mean(), 0.02);
+  const Points found = face_normals({fit.vertices, scene.source.faces});
+  const Points expected = face_normals({truth, scene.source.faces});
+  EXPECT_GT(found.cwiseProduct(expected).colwise().sum().minCoeff(), 0);
+  EXPECT_LT((fit.vertices.leftCols(12) - scene.anchor_targets).colwise().norm().maxCoeff(), 1e-5);
+  EXPECT_LT(fit.summary.after.p95, 1e-3);
+  EXPECT_EQ(fit.summary.unmatched_vertices, 0u);
+  for (const double confidence : fit.confidence) EXPECT_GT(confidence, 0.5);
+}
+
+TEST(FitSurfaceMultiscale, TheEndOfTheTargetDoesNotAttract) {
+  // Half of the potato has no counterpart; it follows the other half instead of crowding at the cut.
+  Scene scene = bent_scene();
+  std::vector<int> kept;
+  for (Eigen::Index f = 0; f < scene.target.faces.cols(); ++f)
+    if (scene.target.vertices(0, scene.target.faces(0, f)) < 0.4) kept.push_back(static_cast<int>(f));
+  const Faces faces = scene.target.faces(Eigen::all, kept);
+  scene.target.faces = faces;
+  const SurfaceFit fit = scene.fit();
+  EXPECT_EQ(fit.summary.matched_boundaries, 0);
+  double reach = 0, beyond = 0, covered = 0;
+  for (Eigen::Index i = 0; i < scene.source.vertices.cols(); ++i) {
+    const Vector3 truth = bend(scene.source.vertices.col(i));
+    const double error = (fit.vertices.col(i) - truth).norm();
+    reach = std::max(reach, fit.vertices(0, i));
+    if (truth[0] > 0.5) beyond = std::max(beyond, error);
+    if (truth[0] < 0.3) covered = std::max(covered, error);
+    if (truth[0] > 0.6) {
+      EXPECT_EQ(fit.confidence[static_cast<std::size_t>(i)], 0);
+    }
+  }
+  EXPECT_GT(reach, 0.9);
+  EXPECT_LT(covered, 0.1);
+  EXPECT_LT(beyond, 0.3);
+}
+
+TEST(FitSurfaceMultiscale, GivesTheSameBytesAtAnyThreadCount) {
+  const Scene scene = bent_scene();
+  Points first;
+  for (const std::size_t threads : {1, 2, 8}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const SurfaceFit fit = scene.fit();
+    if (first.cols() == 0) first = fit.vertices;
+    EXPECT_EQ(fit.vertices, first);
+  }
+}
+
+TEST(FitSurfaceMultiscale, WorksOnPiecesSingleTrianglesAndLooseVertices) {
+  TriangleMesh pieces = shapes::joined(
+      potato(3), shapes::moved(shapes::icosphere(1), {0.1 * Matrix3::Identity(), Vector3(2, 0, 0)}));
+  pieces.vertices.conservativeResize(3, pieces.vertices.cols() + 1);
+  pieces.vertices.rightCols(1) = Vector3(1, 1, 1);
+  TriangleMesh target = pieces;
+  for (auto&& x : target.vertices.colwise()) x = bend(x);
+  const SurfaceFit fit = Scene{pieces, target}.fit();
+  EXPECT_TRUE(fit.vertices.allFinite());
+  EXPECT_LT((fit.vertices - target.vertices).colwise().norm().maxCoeff(), 0.3);
+
+  const SurfaceFit single = Scene{shapes::triangle(), shapes::triangle()}.fit();
+  EXPECT_TRUE(single.vertices.isApprox(shapes::triangle().vertices, 1e-6));
+}
+
+TEST(FitSurfaceMultiscale, RejectsWhatItCannotFit) {
+  Scene scene = bent_scene();
+  scene.warped(0, 0) = std::nan("");
+  EXPECT_THROW(scene.fit(), InvalidInput);
+  scene = bent_scene();
+  scene.target.faces.resize(3, 0);
+  EXPECT_THROW(scene.fit(), InvalidInput);
+  TriangleMesh flat = shapes::triangle();
+  flat.vertices.col(2) = 2 * flat.vertices.col(1);
+  EXPECT_THROW((Scene{flat, shapes::triangle()}.fit()), InvalidInput);
+  scene = bent_scene();
+  scene.warped.setZero();
+  EXPECT_THROW(scene.fit(), InvalidInput);
+}
+
+TEST(FitSurfaceMultiscale, StopsWhenAsked) {
+  const Scene scene = bent_scene();
+  Progress progress;
+  progress.cancelled = [] { return true; };
+  EXPECT_THROW(fit_surface({scene.source, scene.warped, scene.target, scene.anchor_sources,
+                            scene.anchor_targets, scene.anchor_weights},
+                           {}, progress),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace bespoke
