@@ -16,7 +16,7 @@ TriangleMesh square_from(double left) {
 TEST(BoundaryMatcher, TakesNearbyCutsForTheSame) {
   const TargetSurface target(square_from(0.1));
   const TriangleMesh source = shapes::square_grid(8);
-  BoundaryMatcher matcher(source, Vector3(0.5, 0.5, 0), target);
+  BoundaryMatcher matcher(TargetSurface(source), Vector3(0.5, 0.5, 0), target);
   EXPECT_EQ(matcher.boundaries(), 1);
   EXPECT_TRUE(matcher.match(source.vertices).empty());  // before the decision
   matcher.decide(source.vertices);
@@ -38,7 +38,7 @@ TEST(BoundaryMatcher, TakesNearbyCutsForTheSame) {
 TEST(BoundaryMatcher, LeavesACutThatWouldStretchTheSourceByHalf) {
   const TargetSurface target(square_from(0.45));
   const TriangleMesh source = shapes::square_grid(8);
-  BoundaryMatcher matcher(source, Vector3(0.5, 0.5, 0), target);
+  BoundaryMatcher matcher(TargetSurface(source), Vector3(0.5, 0.5, 0), target);
   matcher.decide(source.vertices);
   EXPECT_EQ(matcher.matched_boundaries(), 0);
   EXPECT_TRUE(matcher.match(source.vertices).empty());
@@ -46,8 +46,8 @@ TEST(BoundaryMatcher, LeavesACutThatWouldStretchTheSourceByHalf) {
 
 TEST(BoundaryMatcher, HasNothingToDoOnClosedModels) {
   const TargetSurface closed(shapes::cube()), open(shapes::square_grid(4));
-  EXPECT_EQ(BoundaryMatcher(shapes::square_grid(4), Vector3::Zero(), closed).boundaries(), 0);
-  EXPECT_EQ(BoundaryMatcher(shapes::cube(), Vector3::Zero(), open).boundaries(), 0);
+  EXPECT_EQ(BoundaryMatcher(open, Vector3::Zero(), closed).boundaries(), 0);
+  EXPECT_EQ(BoundaryMatcher(closed, Vector3::Zero(), open).boundaries(), 0);
 }
 
 }  // namespace

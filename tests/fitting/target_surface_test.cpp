@@ -15,7 +15,7 @@ TEST(TargetSurface, FindsThePointBelowWithItsNormal) {
   EXPECT_LT((found->point - Vector3(0.3, 0.6, 0)).norm(), 1e-12);
   EXPECT_LT((found->normal - Vector3(0, 0, 1)).norm(), 1e-12);
   EXPECT_NEAR(found->agreement, 0.8, 1e-12);
-  EXPECT_NEAR(surface.distance(Vector3(0.3, 0.6, -0.2)), 0.2, 1e-12);
+  EXPECT_NEAR(surface.closest(Vector3(0.3, 0.6, -0.2)).squared_distance, 0.04, 1e-12);
 }
 
 TEST(TargetSurface, GivesNoPointOnItsBoundary) {
@@ -31,6 +31,13 @@ TEST(TargetSurface, GivesNoPointThatIsFarOrFacesAway) {
   EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, 1), 0, 0.1));
   EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, -1), 0, 1));
   EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3::Zero(), 0, 1));
+}
+
+TEST(TargetSurface, MovesWithItsBoundary) {
+  const TriangleMesh square = shapes::square_grid(4);
+  const TargetSurface lifted = TargetSurface(square).moved(square.vertices.colwise() + Vector3(0, 0, 2));
+  EXPECT_NEAR(lifted.closest(Vector3(0.5, 0.5, 0)).squared_distance, 4, 1e-12);
+  EXPECT_FALSE(lifted.match(Vector3(-0.1, 0.5, 2), Vector3(0, 0, 1), 0, 1));
 }
 
 TEST(TargetSurface, KnowsAreasAndBoundary) {

@@ -17,11 +17,12 @@ constexpr std::size_t grain = 32;
 
 }  // namespace
 
-BoundaryMatcher::BoundaryMatcher(const TriangleMesh& source_rest, const Points& anchors,
+BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors,
                                  const TargetSurface& target)
     : target_(target) {
   if (target.boundary_edges().cols() == 0 || anchors.cols() == 0) return;
-  const Eigen::Matrix2Xi edges = boundary_edges(source_rest);
+  const Eigen::Matrix2Xi& edges = source_rest.boundary_edges();
+  const Points& rest = source_rest.mesh().vertices;
   std::map<int, double> length;
   std::map<int, int> parent;
   const auto root = [&](int i) {
@@ -31,7 +32,7 @@ BoundaryMatcher::BoundaryMatcher(const TriangleMesh& source_rest, const Points& 
   for (const auto& edge : edges.colwise())
     for (int k = 0; k < 2; ++k) parent.try_emplace(edge[k], edge[k]);
   for (const auto& edge : edges.colwise()) {
-    const double half = (source_rest.vertices.col(edge[0]) - source_rest.vertices.col(edge[1])).norm() / 2;
+    const double half = (rest.col(edge[0]) - rest.col(edge[1])).norm() / 2;
     for (int k = 0; k < 2; ++k) length[edge[k]] += half;
     const int a = root(edge[0]), b = root(edge[1]);
     parent[std::max(a, b)] = std::min(a, b);
@@ -43,7 +44,7 @@ BoundaryMatcher::BoundaryMatcher(const TriangleMesh& source_rest, const Points& 
     boundary_.push_back(numbered.first->second);
     length_.push_back(own_length);
     anchor_distance_.push_back(
-        std::sqrt((anchors.colwise() - source_rest.vertices.col(vertex)).colwise().squaredNorm().minCoeff()));
+        std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
   }
   boundaries_ = static_cast<int>(number_of_root.size());
   accepted_.assign(static_cast<std::size_t>(boundaries_), 0);

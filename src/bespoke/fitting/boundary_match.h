@@ -20,7 +20,7 @@ struct BoundaryMatch {
 class BoundaryMatcher {
  public:
   /// `source_rest`: the source, aligned; anchors: 3×k, aligned with it, mesh units.
-  BoundaryMatcher(const TriangleMesh& source_rest, const Points& anchors, const TargetSurface& target);
+  BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors, const TargetSurface& target);
 
   /// Decides, once, with the source's vertices (3×n) where they are when only surfaces and anchors were met.
   void decide(const Points& vertices);

@@ -23,7 +23,7 @@ Statistics distances(const Points& vertices, const TargetSurface& target) {
   std::vector<double> all(static_cast<std::size_t>(vertices.cols()));
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      all[i] = target.distance(vertices.col(static_cast<Eigen::Index>(i)));
+      all[i] = std::sqrt(target.closest(vertices.col(static_cast<Eigen::Index>(i))).squared_distance);
   });
   return summarize(std::move(all));
 }

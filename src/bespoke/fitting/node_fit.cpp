@@ -18,8 +18,9 @@ namespace {
 struct Level {
   int nodes;  // aimed at, over the whole surface
   int iterations;
+  std::size_t samples, back_samples;  // pairs looked for, source to target and back
 };
-constexpr std::array levels = {Level{400, 10}, Level{1500, 6}};
+constexpr std::array levels = {Level{400, 10, 5000, 2000}, Level{1500, 6, 16000, 6000}};
 constexpr double coarsest_smoothing = 0.5, finest_smoothing = 0.01;  // of the diagonal
 constexpr double shape_share = 0.1;  // of the smoothing length: where local similarity begins to count
 constexpr int boundary_start = 4;    // iterations: anchors and surfaces come first
@@ -29,7 +30,6 @@ constexpr double outlier_medians = 4;  // residuals beyond lose their weight
 constexpr double anchor_growth =
     2;  // weight of all exact anchors after the first iteration; the surface has 1
 constexpr double back_share = 0.5;  // weight of target-to-source pairs
-constexpr std::size_t max_samples = 16000, max_back_samples = 6000;
 constexpr std::size_t grain = 128;
 
 /// A vertex should lie in the plane through `point`.
@@ -78,12 +78,13 @@ class LevelFit {
     return std::sqrt(area / count / packing);
   }
 
-  NodeWeights vertex_combination(int vertex) const {
-    NodeWeights combination;
+  /// In one buffer, valid until the next call: this is asked for every pair.
+  const NodeWeights& vertex_combination(int vertex) const {
+    vertex_combination_.clear();
     for (int k = 0; k < DeformationNodes::per_vertex; ++k)
       if (nodes_.vertex_weights(k, vertex) != 0)
-        combination.emplace_back(nodes_.vertex_nodes(k, vertex), nodes_.vertex_weights(k, vertex));
-    return combination;
+        vertex_combination_.emplace_back(nodes_.vertex_nodes(k, vertex), nodes_.vertex_weights(k, vertex));
+    return vertex_combination_;
   }
 
   std::vector<NodeWeights> anchor_combinations(const std::vector<SurfacePoint>& feet) const {
@@ -123,9 +124,9 @@ class LevelFit {
     }
     std::vector<std::size_t> limit(adjacent.size(), 4096);  // keeps the lists of large meshes short
     for (Eigen::Index vertex = 0; vertex < nodes_.vertex_nodes.cols(); ++vertex)
-      for (const auto& [a, weight_a] : vertex_combination(static_cast<int>(vertex))) {
-        for (const auto& [b, weight_b] : vertex_combination(static_cast<int>(vertex)))
-          adjacent[a].push_back(b);
+      for (const NodeWeights& used = vertex_combination(static_cast<int>(vertex));
+           const auto& [a, weight_a] : used) {
+        for (const auto& [b, weight_b] : used) adjacent[a].push_back(b);
         if (adjacent[a].size() < limit[a]) continue;
         tidy(adjacent[a]);
         limit[a] = std::max<std::size_t>(4096, 2 * adjacent[a].size());
@@ -237,6 +238,7 @@ class LevelFit {
     }
   }
 
+  mutable NodeWeights vertex_combination_;
   const NodeFitInput& input_;
   const Eigen::VectorXd& areas_;
   DeformationNodes nodes_;
@@ -251,9 +253,10 @@ void keep_found(std::vector<PlaneObservation>& planes) {
 }
 
 std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const TriangleMesh& moved,
-                                               const Points& normals, const Eigen::VectorXd& areas) {
+                                               const Eigen::VectorXd& areas, std::size_t samples) {
   const std::size_t count = static_cast<std::size_t>(moved.vertices.cols());
-  const std::size_t stride = (count + max_samples - 1) / max_samples;
+  const std::size_t stride = (count + samples - 1) / samples;
+  const Points normals = vertex_normals(moved);
   std::vector<PlaneObservation> planes((count + stride - 1) / stride);
   parallel_for(planes.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -270,11 +273,11 @@ std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const 
 }
 
 /// What the target's points find on the moved source, as pulls on the nearest corner of the face found.
-std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, TriangleMesh moved) {
-  const TargetSurface surface(std::move(moved));
+std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const TargetSurface& surface,
+                                               std::size_t samples) {
   const Points& points = input.target.mesh().vertices;
   const std::size_t count = static_cast<std::size_t>(points.cols());
-  const std::size_t stride = (count + max_back_samples - 1) / max_back_samples;
+  const std::size_t stride = (count + samples - 1) / samples;
   std::vector<PlaneObservation> planes((count + stride - 1) / stride);
   parallel_for(planes.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -298,10 +301,10 @@ std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, Triang
 
 NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
   const Eigen::VectorXd areas = vertex_areas(input.rest);
-  const ClosestPointTree rest_tree(input.rest);
+  const TargetSurface rest(input.rest);
   std::vector<SurfacePoint> feet;
-  for (const auto& anchor : input.anchor_sources.colwise()) feet.push_back(*rest_tree.closest(anchor));
-  BoundaryMatcher boundaries(input.rest, input.anchor_sources, input.target);
+  for (const auto& anchor : input.anchor_sources.colwise()) feet.push_back(rest.closest(anchor));
+  BoundaryMatcher boundaries(rest, input.anchor_sources, input.target);
 
   int total = 0;
   for (const Level& level : levels) total += level.iterations;
@@ -315,8 +318,8 @@ NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
       std::vector<PlaneObservation> planes;
       // Before the anchors are met, closest points mislead.
       if (result.iterations > 0 || feet.empty()) {
-        planes = source_to_target(input, moved, vertex_normals(moved), areas);
-        const auto back = target_to_source(input, moved);
+        planes = source_to_target(input, moved, areas, level.samples);
+        const auto back = target_to_source(input, rest.moved(moved.vertices), level.back_samples);
         planes.insert(planes.end(), back.begin(), back.end());
       }
       if (result.iterations == boundary_start) boundaries.decide(moved.vertices);

@@ -30,15 +30,6 @@ void for_each_boundary_edge(const TriangleMesh& mesh, const Visit& visit) {
 
 }  // namespace
 
-Eigen::Matrix2Xi boundary_edges(const TriangleMesh& mesh) {
-  std::vector<Eigen::Vector2i> edges;
-  for_each_boundary_edge(
-      mesh, [&](Eigen::Index f, int k) { edges.emplace_back(mesh.faces(k, f), mesh.faces((k + 1) % 3, f)); });
-  Eigen::Matrix2Xi columns(2, static_cast<Eigen::Index>(edges.size()));
-  for (std::size_t i = 0; i < edges.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = edges[i];
-  return columns;
-}
-
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertices.cols());
   for (const auto& face : mesh.faces.colwise()) {
@@ -49,18 +40,32 @@ Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
   return areas;
 }
 
-TargetSurface::TargetSurface(TriangleMesh mesh)
+std::shared_ptr<const TargetSurface::Boundary> TargetSurface::boundary_of(const TriangleMesh& mesh) {
+  auto boundary = std::make_shared<Boundary>();
+  boundary->face_bits.assign(static_cast<std::size_t>(mesh.faces.cols()), 0);
+  boundary->vertices.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+  std::vector<Eigen::Vector2i> edges;
+  for_each_boundary_edge(mesh, [&](Eigen::Index f, int k) {
+    boundary->face_bits[static_cast<std::size_t>(f)] |= static_cast<unsigned char>(1 << k);
+    for (const int corner : {k, (k + 1) % 3}) boundary->vertices[mesh.faces(corner, f)] = 1;
+    edges.emplace_back(mesh.faces(k, f), mesh.faces((k + 1) % 3, f));
+  });
+  boundary->edges.resize(2, static_cast<Eigen::Index>(edges.size()));
+  for (std::size_t i = 0; i < edges.size(); ++i) boundary->edges.col(static_cast<Eigen::Index>(i)) = edges[i];
+  return boundary;
+}
+
+TargetSurface::TargetSurface(TriangleMesh mesh, std::shared_ptr<const Boundary> boundary)
     : mesh_(std::move(mesh)),
       tree_(mesh_),
       normals_(vertex_normals(mesh_)),
       areas_(vertex_areas(mesh_)),
-      boundary_edges_(bespoke::boundary_edges(mesh_)),
-      boundary_bits_(static_cast<std::size_t>(mesh_.faces.cols()), 0),
-      boundary_vertices_(static_cast<std::size_t>(mesh_.vertices.cols()), 0) {
-  for_each_boundary_edge(mesh_, [&](Eigen::Index f, int k) {
-    boundary_bits_[static_cast<std::size_t>(f)] |= static_cast<unsigned char>(1 << k);
-    for (const int corner : {k, (k + 1) % 3}) boundary_vertices_[mesh_.faces(corner, f)] = 1;
-  });
+      boundary_(std::move(boundary)) {}
+
+TargetSurface::TargetSurface(TriangleMesh mesh) : TargetSurface(mesh, boundary_of(mesh)) {}
+
+TargetSurface TargetSurface::moved(Points vertices) const {
+  return TargetSurface({std::move(vertices), mesh_.faces}, boundary_);
 }
 
 bool TargetSurface::on_boundary(const SurfacePoint& found) const {
@@ -69,9 +74,9 @@ bool TargetSurface::on_boundary(const SurfacePoint& found) const {
   if (zeros == 0) return false;
   for (int k = 0; k < 3; ++k) {
     const bool at_corner = zeros == 2 && found.barycentric[k] > on_edge;
-    if (at_corner) return boundary_vertices_[mesh_.faces(k, found.face)] != 0;
+    if (at_corner) return boundary_->vertices[mesh_.faces(k, found.face)] != 0;
     const bool on_opposite_edge = zeros == 1 && found.barycentric[(k + 2) % 3] <= on_edge;
-    if (on_opposite_edge) return (boundary_bits_[static_cast<std::size_t>(found.face)] >> k & 1) != 0;
+    if (on_opposite_edge) return (boundary_->face_bits[static_cast<std::size_t>(found.face)] >> k & 1) != 0;
   }
   return false;
 }
@@ -99,8 +104,6 @@ std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3
   return match;
 }
 
-double TargetSurface::distance(const Vector3& x) const {
-  return std::sqrt(tree_.closest(x)->squared_distance);
-}
+SurfacePoint TargetSurface::closest(const Vector3& x) const { return *tree_.closest(x); }
 
 }  // namespace bespoke

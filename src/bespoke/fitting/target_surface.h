@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,34 +25,39 @@ class TargetSurface {
   /// Throws InvalidInput as ClosestPointTree.
   explicit TargetSurface(TriangleMesh mesh);
 
+  /// The same faces with other vertices (3×n, mesh units).
+  TargetSurface moved(Points vertices) const;
+
   /// Closest point whose face normal has a cosine above `min_cosine` with `normal`; empty when there is none
   /// within `max_distance` (mesh units), when it lies on the boundary, or when `normal` is zero.
   std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, double min_cosine,
                                     double max_distance) const;
 
-  /// Plain distance, mesh units.
-  double distance(const Vector3& x) const;
+  /// Closest point, whatever the normals and on the boundary too.
+  SurfacePoint closest(const Vector3& x) const;
 
   const TriangleMesh& mesh() const { return mesh_; }
   const Points& normals() const { return normals_; }       ///< 3×n, unit or zero, per vertex
   const Eigen::VectorXd& areas() const { return areas_; }  ///< n, a third of the adjacent faces' areas
   /// 2×e: the vertices of the edges of exactly one face, along the face.
-  const Eigen::Matrix2Xi& boundary_edges() const { return boundary_edges_; }
+  const Eigen::Matrix2Xi& boundary_edges() const { return boundary_->edges; }
 
  private:
+  struct Boundary {
+    Eigen::Matrix2Xi edges;
+    std::vector<unsigned char> face_bits;  // bit k where edge (k, k+1) belongs to one face
+    std::vector<char> vertices;
+  };
+  TargetSurface(TriangleMesh mesh, std::shared_ptr<const Boundary> boundary);
+  static std::shared_ptr<const Boundary> boundary_of(const TriangleMesh& mesh);
   bool on_boundary(const SurfacePoint& found) const;
 
   TriangleMesh mesh_;
   ClosestPointTree tree_;
   Points normals_;
   Eigen::VectorXd areas_;
-  Eigen::Matrix2Xi boundary_edges_;
-  std::vector<unsigned char> boundary_bits_;  // per face: bit k where edge (k, k+1) belongs to one face
-  std::vector<char> boundary_vertices_;
+  std::shared_ptr<const Boundary> boundary_;
 };
-
-/// 2×e: the vertices of the edges of exactly one face, in the face's direction.
-Eigen::Matrix2Xi boundary_edges(const TriangleMesh& mesh);
 
 /// n: a third of the area of the faces around each vertex, mesh units squared.
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
