@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 
 #include "bespoke/error.h"
 #include "bespoke/volume/baked_map.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr std::uint64_t error_seed = 3;
 // Places where a finished pyramid misses the tolerance or folds are refined and the whole measured anew.
 constexpr int largest_number_of_rounds = 5;
-constexpr int rounds_against_folds = 2;
+constexpr int rounds_against_folds = 3;
 
 bool is_empty(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
@@ -101,40 +102,58 @@ Points points_above(const Points& x, const std::vector<double>& errors, double t
   return above.leftCols(kept);
 }
 
+std::size_t cells_that_fail(const Certificate& certificate) {
+  return certificate.folded + certificate.undecided;
+}
+
+// Refines folds for as long as that leaves fewer of them. Where the map itself is nearly flat it does not:
+// finer leaves bring rims of their own.
+void refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder, BakeSummary& summary,
+                  const Progress& progress) {
+  for (int round = 0; round < rounds_against_folds; ++round) {
+    const Pyramid pyramid = builder->pyramid();
+    const Certificate before = certify_listing_all(pyramid, map.affine(), 1, progress);
+    const Points folds = needless_folds(map, pyramid, before);
+    if (folds.cols() == 0) return;
+    auto refined = std::make_unique<PyramidBuilder>(*builder);
+    if (refined->refine_at(folds) == 0) return;
+    refined->refine();
+    const Certificate after = certify_listing_all(refined->pyramid(), map.affine(), 1, progress);
+    if (cells_that_fail(after) >= cells_that_fail(before)) return;
+    summary.refined_folds += cells_that_fail(before) - cells_that_fail(after);
+    builder = std::move(refined);
+  }
+}
+
 Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {
   const Support support = map.support();
   RefinementOptions refinement;
   refinement.tolerance = options.tolerance;
   refinement.max_memory = options.max_memory;
-  PyramidBuilder builder(map, refinement, progress);
-  builder.refine();
+  auto builder = std::make_unique<PyramidBuilder>(map, refinement, progress);
+  builder->refine();
   Bake result;
   BakeSummary& summary = result.summary;
-  for (int round = 0;; ++round) {
-    result.pyramid = builder.pyramid();
-    const bool last = round + 1 == largest_number_of_rounds;
-    const Certificate certificate = certify_listing_all(result.pyramid, map.affine(), 1, progress);
-    const Points folds = needless_folds(map, result.pyramid, certificate);
-    if (round < rounds_against_folds && folds.cols() > 0 && builder.refine_at(folds) > 0) {
-      summary.refined_folds += static_cast<std::size_t>(folds.cols());
-      builder.refine();
-      continue;
-    }
+  for (int round = 0; round < largest_number_of_rounds; ++round) {
+    refine_folds(map, builder, summary, progress);
+    result.pyramid = builder->pyramid();
     const RepairSummary repair = repair_folds(result.pyramid, map.affine(), progress);
     summary.repaired_cells = repair.cells - repair.folded;
     summary.repair_cost = repair.largest_change;
     summary.folded_cells = repair.folded;
-    const Points x = fresh_points(builder, result.pyramid, support, options.error_points,
+    const Points x = fresh_points(*builder, result.pyramid, support, options.error_points,
                                   error_seed + static_cast<std::uint64_t>(round));
     const std::vector<double> errors =
         displacement_errors(BakedMap(map.affine(), result.pyramid), map, x, progress);
     summary.error = summarize(errors);
-    if (last || summary.error.max <= options.tolerance || repair.cells > 0) break;
-    if (builder.refine_at(points_above(x, errors, options.tolerance)) == 0) break;
-    builder.refine();
+    // What the repair costs, no finer leaf brings back.
+    if (summary.error.max <= options.tolerance || repair.cells > 0) break;
+    if (round + 1 == largest_number_of_rounds) break;
+    if (builder->refine_at(points_above(x, errors, options.tolerance)) == 0) break;
+    builder->refine();
   }
-  summary.evaluated_points = builder.evaluated_points();
-  summary.peak_bytes = builder.byte_count();
+  summary.evaluated_points = builder->evaluated_points();
+  summary.peak_bytes = builder->byte_count();
   return result;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -11,11 +13,14 @@
 namespace bespoke {
 namespace {
 
-constexpr int largest_number_of_rounds = 36;
-constexpr int sweeps_per_round = 4;
-// Nodes of a wide fold learn slowly from its surroundings: after so many rounds the nodes of the next coarser
-// level move instead, finer values riding on them.
-constexpr int rounds_per_level = 3;
+constexpr int sweeps_per_round = 2;
+// Of the way to the neighbours' mean: the whole way would keep a checkerboard alive.
+constexpr double step_fraction = 0.7;
+// Moves of one level's nodes before those of the next coarser one take over, finer values riding on them: a
+// fold that is wider than its cells learns too slowly from its surroundings. Coarse moves cost accuracy far
+// around, so they come last and for what is left only.
+constexpr int rounds_per_level = 10;
+constexpr int levels_upwards = 5;
 
 using Node = std::array<int, 3>;
 
@@ -49,28 +54,10 @@ class Repair {
                                place.second[2] + side % 3 - 1});
   }
 
-  // Every movable node goes to the mean of its six neighbours.
+  // Every movable node goes towards the mean of its six neighbours; one level after the other, because nodes
+  // of several levels may lie at one place and would move it several times.
   void sweep() {
-    Points x(3, static_cast<Eigen::Index>(7 * nodes_.size()));
-    Eigen::Index column = 0;
-    for (const auto& [place, offset] : nodes_) {
-      const double voxel_size = pyramid_.levels[static_cast<std::size_t>(place.first)].voxel_size;
-      const Vector3 node(place.second[0], place.second[1], place.second[2]);
-      x.col(column++) = pyramid_.origin + voxel_size * node;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const double step : {-1.0, 1.0})
-          x.col(column++) = pyramid_.origin + voxel_size * (node + step * Vector3::Unit(axis));
-    }
-    const Points u = look_up(pyramid_, index_, x);
-    column = 0;
-    for (const auto& [place, offset] : nodes_) {
-      const Vector3 change = u.middleCols(column + 1, 6).rowwise().mean() - u.col(column);
-      column += 7;
-      float* value = &pyramid_.levels[static_cast<std::size_t>(place.first)].values[offset];
-      Vector3& moved = moved_.try_emplace(place, Vector3::Zero()).first->second;
-      moved += change;
-      for (int c = 0; c < 3; ++c) value[c] += static_cast<float>(change[c]);
-    }
+    for (int level = 0; level < static_cast<int>(pyramid_.levels.size()); ++level) sweep_level(level);
   }
 
   double largest_change() const {
@@ -80,6 +67,32 @@ class Repair {
   }
 
  private:
+  void sweep_level(int level) {
+    constexpr int lowest = std::numeric_limits<int>::min();
+    const auto begin = nodes_.lower_bound({level, {lowest, lowest, lowest}});
+    const auto end = nodes_.lower_bound({level + 1, {lowest, lowest, lowest}});
+    if (begin == end) return;
+    PyramidLevel& stored = pyramid_.levels[static_cast<std::size_t>(level)];
+    Points x(3, 7 * std::distance(begin, end));
+    Eigen::Index column = 0;
+    for (auto at = begin; at != end; ++at) {
+      const Node& place = at->first.second;
+      const Vector3 node(place[0], place[1], place[2]);
+      x.col(column++) = pyramid_.origin + stored.voxel_size * node;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double step : {-1.0, 1.0})
+          x.col(column++) = pyramid_.origin + stored.voxel_size * (node + step * Vector3::Unit(axis));
+    }
+    const Points u = look_up(pyramid_, index_, x);
+    column = 0;
+    for (auto at = begin; at != end; ++at, column += 7) {
+      const Vector3 change = step_fraction * (u.middleCols(column + 1, 6).rowwise().mean() - u.col(column));
+      float* value = &stored.values[at->second];
+      for (int c = 0; c < 3; ++c) value[c] += static_cast<float>(change[c]);
+      moved_.try_emplace(at->first, Vector3::Zero()).first->second += change;
+    }
+  }
+
   void add_node(int level, const Node& node) {
     const int leaf =
         tables_[static_cast<std::size_t>(level)].find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
@@ -103,12 +116,11 @@ RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Prog
   summary.cells = summary.folded = certificate.folded + certificate.undecided;
   if (summary.cells == 0 || !(certificate.affine_determinant > 0)) return summary;
   Repair repair(pyramid);
-  const int levels = static_cast<int>(pyramid.levels.size());
-  for (int round = 0; round < largest_number_of_rounds && summary.folded > 0; ++round) {
+  constexpr int rounds = rounds_per_level * levels_upwards;
+  for (int round = 0; round < rounds && summary.folded > 0; ++round) {
     repair.forget_nodes();
-    for (const FoldedCell& cell : certificate.places)
-      repair.add_corners(cell, round / rounds_per_level % levels);
-    if (round % rounds_per_level > 0) repair.grow();
+    for (const FoldedCell& cell : certificate.places) repair.add_corners(cell, round / rounds_per_level);
+    if (round % rounds_per_level > rounds_per_level / 2) repair.grow();
     for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
     certificate = certify_listing_all(pyramid, affine, 1, progress);
     summary.folded = certificate.folded + certificate.undecided;
