@@ -1,11 +1,7 @@
-r"""Draws samples/picture.png: every sample's product on its source and, carried, on its targets.
+"""Draws samples/picture.png from what tools/demo made: each product on its source and, carried, on its targets.
 
-    bespoke samples build/samples
-    bespoke fit build/samples/dress/source.obj build/samples/dress/target.obj \
-            --anchors build/samples/dress/anchors.json --elastic diffeomorphic -o dress.vdb
-    bespoke apply dress.vdb build/samples/dress/dress.obj --out-dir build/carried/dress
-    (so for every sample; the tops and skirts of `girths` to build/carried/girths/94 and so on)
-    xvfb-run -a blender -b --python samples/render.py -- build/samples build/carried samples/picture.png
+    tools/demo
+    xvfb-run -a blender -b --python samples/render.py -- build/demo samples/picture.png
 
 Needs Blender 3.4 or later; nothing in the build does. Targets are drawn turned back into the source's position.
 """
@@ -18,7 +14,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-SAMPLES, CARRIED, PICTURE = (Path(argument) for argument in sys.argv[sys.argv.index("--") + 1:])
+DEMO, PICTURE = (Path(argument) for argument in sys.argv[sys.argv.index("--") + 1:])
 WIDTH, HEIGHT = 1600, 800
 BODY = (0.80, 0.74, 0.68)
 INK = (0.16, 0.17, 0.19)
@@ -88,7 +84,7 @@ def figure(x, y, scale, turn, parts):
 
 def sample(name, products, spots, scale, y, turn, targets=("",), labels=("source", "target")):
     """`products`: name to material. The source at the first spot, then the targets."""
-    folder = SAMPLES / name
+    folder = DEMO / "samples" / name
     body = paint("body", BODY)
     model = [(*read_obj(folder / "source.obj"), body)]
     model += [(*read_obj(folder / f"{product}.obj"), material) for product, material in products.items()]
@@ -97,7 +93,7 @@ def sample(name, products, spots, scale, y, turn, targets=("",), labels=("source
         ending = f"_{target}" if target else ""
         back = source_from_target(folder / f"anchors{ending}.json")
         model = [(*read_obj(folder / f"target{ending}.obj"), body)]
-        model += [(*read_obj(CARRIED / name / target / f"{product}.obj"), material)
+        model += [(*read_obj(DEMO / f"{name}{ending}" / f"{product}.obj"), material)
                   for product, material in products.items()]
         figure(spot, y, scale, turn, [(back(vertices), faces, material) for vertices, faces, material in model])
     for spot, label in zip(spots, labels):
