@@ -122,6 +122,9 @@ TEST_F(AssetIo, RefusesToWriteWhatIsNotValid) {
         a.pyramid.levels = {test::wavy_level({0, 0, 0}, 1e-5, {{0, 0, 0}}, 1e-6)};
       },
       "smaller unit");
+  refuses([](Asset& a) { a.certificate.certified = 0; }, "no cell is certified");
+  refuses([](Asset& a) { a.certificate.least_determinant = 0; }, "least determinant");
+  refuses([](Asset& a) { a.certificate.affine_determinant = 1; }, "affine determinant");
   refuses([&](Asset& a) { a.record.lambda = nan; }, "lambda");
   refuses([&](Asset& a) { a.record.anchors[0].weight = 0; }, "weight");
   refuses([&](Asset& a) { a.record.source.box.setEmpty(); }, "source bounding box");

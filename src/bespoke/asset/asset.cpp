@@ -1,5 +1,6 @@
 #include "bespoke/asset/asset.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,6 +14,9 @@ namespace {
 
 // Far above the rounding of any way to a rotation matrix, far below any rotation that is meant.
 constexpr double rotation_tolerance = 1e-9;
+
+// Of the sums of products of three entries, relative to the largest entry's cube.
+constexpr double determinant_tolerance = 1e-12;
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw InvalidInput(what);
@@ -49,6 +53,22 @@ void require_valid(const AssetRecord& record) {
   require_valid(record.target, "target");
 }
 
+/// A claim of bijection that contradicts the map it stands beside.
+void require_consistent(const Certificate& certificate, const Asset& asset) {
+  require(std::isfinite(certificate.least_determinant) && std::isfinite(certificate.affine_determinant),
+          "the certificate's determinants are not finite");
+  if (!certificate.is_bijection()) return;
+  require(certificate.least_determinant > 0, "the certificate claims a bijection with least determinant " +
+                                                 std::to_string(certificate.least_determinant));
+  require(asset.pyramid.levels.empty() || certificate.certified > 0,
+          "the certificate claims a bijection but no cell is certified");
+  const double scale = asset.affine.linear.cwiseAbs().maxCoeff();
+  const double error = std::abs(certificate.affine_determinant - asset.affine.linear.determinant());
+  require(error <= determinant_tolerance * scale * scale * scale,
+          "the certificate's affine determinant " + std::to_string(certificate.affine_determinant) +
+              " is not that of the affine part");
+}
+
 }  // namespace
 
 void require_valid(const Asset& asset) {
@@ -57,9 +77,7 @@ void require_valid(const Asset& asset) {
           "the affine part is not finite");
   require_valid(asset.pyramid);
   for (const PyramidLevel& level : asset.pyramid.levels) require_storable(level.voxel_size, "pyramid");
-  require(std::isfinite(asset.certificate.least_determinant) &&
-              std::isfinite(asset.certificate.affine_determinant),
-          "the certificate's determinants are not finite");
+  require_consistent(asset.certificate, asset);
   require_valid(asset.record);
 }
 

@@ -59,7 +59,8 @@ struct Asset {
 };
 
 /// Throws InvalidInput, naming what is wrong, unless R is a rotation, every number is finite and within its
-/// range, the boxes are not empty and the pyramid is valid.
+/// range, the boxes are not empty, the pyramid is valid, and a certificate of bijection does not contradict
+/// the map.
 void require_valid(const Asset& asset);
 
 /// Adds the preview grids for `source` (the reference model, source frame) to everything else that `asset`
