@@ -20,7 +20,7 @@ struct Level {
   int iterations;
   std::size_t samples, back_samples;  // pairs looked for, source to target and back
 };
-constexpr std::array levels = {Level{400, 10, 5000, 2000}, Level{1500, 6, 16000, 6000}};
+constexpr std::array levels = {Level{400, 10, 5000, 2000}, Level{1500, 6, 8000, 5000}};
 constexpr double coarsest_smoothing = 0.5, finest_smoothing = 0.01;  // of the diagonal
 constexpr double shape_share = 0.1;  // of the smoothing length: where local similarity begins to count
 constexpr int boundary_start = 4;    // iterations: anchors and surfaces come first
