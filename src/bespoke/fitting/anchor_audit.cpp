@@ -124,9 +124,8 @@ std::string to_string(const AnchorAudit& audit, const Anchors& anchors) {
     char distance[120];
     std::snprintf(distance, sizeof distance, " lies %.4g from where the others put it (typical: %.4g)",
                   anchor.distance, audit.typical_distance);
-    text += "anchor " + label(anchor.index) + distance;
-    if (anchor.swapped_with) text += "; it looks swapped with " + label(*anchor.swapped_with);
-    text += "\n";
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchor.index) + distance;
+    if (anchor.swapped_with) text += ", looks swapped with " + label(*anchor.swapped_with);
   }
   return text;
 }

@@ -29,7 +29,7 @@ struct AnchorAudit {
 /// nothing is suspicious then. Throws InvalidInput for values that are not finite.
 AnchorAudit audit_anchors(const Anchors& anchors);
 
-/// One line for each suspicious pair, naming it, how far off it is and what it may be swapped with.
+/// One line, empty without suspicion: every suspicious pair, how far off it is, what it may be swapped with.
 std::string to_string(const AnchorAudit& audit, const Anchors& anchors);
 
 }  // namespace bespoke

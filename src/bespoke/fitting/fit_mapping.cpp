@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/fitting/anchor_audit.h"
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
 #include "bespoke/rbf/global_rbf.h"
@@ -56,11 +57,21 @@ StageReport rigid_report(const RigidTransform& target_from_source, const Statist
   return {"rigid", line, json.dump(), watch.seconds()};
 }
 
-StageReport coarse_report(const Statistics& residual, const Stopwatch& watch) {
-  char line[200];
-  std::snprintf(line, sizeof line, "%zu anchors, residual p95 %.4g max %.4g", residual.count, residual.p95,
+StageReport coarse_report(const Statistics& residual, const Anchors& anchors, const Stopwatch& watch) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%zu anchors, residual p95 %.4g max %.4g", residual.count, residual.p95,
                 residual.max);
-  const Json json = {{"pairs", residual.count}, {"residual", to_json(residual)}};
+  const AnchorAudit audit = audit_anchors(anchors);
+  std::string line = text;
+  if (!audit.suspicious.empty()) line += "; suspicious: " + to_string(audit, anchors);
+  Json suspicious = Json::array();
+  for (const SuspiciousAnchor& anchor : audit.suspicious) {
+    Json entry = {{"index", anchor.index}, {"name", anchor.name}, {"distance", anchor.distance}};
+    if (anchor.swapped_with) entry["swapped_with"] = *anchor.swapped_with;
+    suspicious.push_back(std::move(entry));
+  }
+  const Json json = {
+      {"pairs", residual.count}, {"residual", to_json(residual)}, {"suspicious_anchors", suspicious}};
   return {"coarse", line, json.dump(), watch.seconds()};
 }
 
@@ -74,7 +85,9 @@ StageReport surface_fit_report(const SurfaceFitSummary& summary, SurfaceFitMetho
                      {"after", to_json(summary.after)},
                      {"iterations", summary.iterations},
                      {"stop_reason", to_string(summary.stop_reason)},
-                     {"unmatched_vertices", summary.unmatched_vertices}};
+                     {"unmatched_vertices", summary.unmatched_vertices},
+                     {"similarity_suffices", summary.similarity_suffices},
+                     {"matched_boundaries", summary.matched_boundaries}};
   return {"surface-fit", std::string(name(method)) + ": " + to_string(summary), json.dump(), summary.seconds};
 }
 
@@ -248,7 +261,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   const GlobalRbf coarse(anchor_sources, anchor_targets, anchor_weights);
   const Points warped = coarse(source.vertices);
   result.stages.push_back(
-      coarse_report(summarize(distances(coarse(anchor_sources), anchor_targets)), coarse_watch));
+      coarse_report(summarize(distances(coarse(anchor_sources), anchor_targets)), anchors, coarse_watch));
 
   const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
   SurfaceFit fit =

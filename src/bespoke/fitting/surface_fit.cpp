@@ -53,7 +53,11 @@ std::string to_string(const SurfaceFitSummary& summary) {
                 summary.after.p95, summary.after.max, summary.before.p95, summary.before.max,
                 summary.iterations, to_string(summary.stop_reason), summary.unmatched_vertices,
                 summary.seconds);
-  return text;
+  std::string line = text;
+  if (summary.similarity_suffices) line += ", one similarity explains the target";
+  if (summary.matched_boundaries > 0)
+    line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
+  return line;
 }
 
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
