@@ -47,8 +47,8 @@ class LevelFit {
   LevelFit(const NodeFitInput& input, const Level& level, const Points& vertices,
            const Eigen::VectorXd& areas, const std::vector<SurfacePoint>& anchor_feet)
       : input_(input),
-        areas_(areas),
-        nodes_(make_deformation_nodes(input.rest, spacing(areas.sum(), level.nodes))),
+        total_area_(areas.sum()),
+        nodes_(make_deformation_nodes(input.rest, spacing(total_area_, level.nodes))),
         stencils_(bending_stencils(nodes_)),
         anchors_(anchor_combinations(anchor_feet)),
         system_(adjacency()),
@@ -168,7 +168,7 @@ class LevelFit {
     for (std::size_t k = 0; k < planes.size(); ++k) {
       const PlaneObservation& plane = planes[k];
       const double outlier = distances[k] / scale;
-      const double weight = plane.weight / areas_.sum() / (1 + outlier * outlier);
+      const double weight = plane.weight / total_area_ / (1 + outlier * outlier);
       add_quadratic(vertex_combination(plane.vertex), weight * plane.normal * plane.normal.transpose(),
                     plane.point - input_.rest.vertices.col(plane.vertex));
     }
@@ -177,7 +177,7 @@ class LevelFit {
   void add_boundary(const std::vector<BoundaryMatch>& boundary) {
     for (const BoundaryMatch& match : boundary) {
       // Like a strip of surface, one node spacing wide; free to slide along the cut.
-      const double weight = match.length * nodes_.spacing / areas_.sum();
+      const double weight = match.length * nodes_.spacing / total_area_;
       add_quadratic(vertex_combination(match.vertex),
                     weight * (Matrix3::Identity() - match.tangent * match.tangent.transpose()),
                     match.point - input_.rest.vertices.col(match.vertex));
@@ -240,7 +240,7 @@ class LevelFit {
 
   mutable NodeWeights vertex_combination_;
   const NodeFitInput& input_;
-  const Eigen::VectorXd& areas_;
+  double total_area_;  // mesh units squared
   DeformationNodes nodes_;
   std::vector<BendingStencil> stencils_;
   std::vector<NodeWeights> anchors_;
