@@ -1,0 +1,33 @@
+// Maps the space around one model onto the space around another and carries a product across.
+#include <bespoke/apply/apply_mapping.h>
+#include <bespoke/asset/asset_io.h>
+#include <bespoke/mesh/mesh_io.h>
+#include <bespoke/mesh/product_io.h>
+#include <bespoke/pipeline/make_map.h>
+
+#include <cstdio>
+
+int main(int argc, char** argv) try {
+  if (argc != 7) {
+    std::fprintf(stderr, "usage: fit_and_apply SOURCE TARGET ANCHORS PRODUCT MAP.vdb OUT\n");
+    return 1;
+  }
+  const bespoke::TriangleMesh source = bespoke::read_triangle_mesh(argv[1]);
+  const bespoke::TriangleMesh target = bespoke::read_triangle_mesh(argv[2]);
+  const bespoke::Anchors anchors = bespoke::read_anchors(argv[3]);
+
+  const double diagonal = bespoke::diagonal(source.vertices);
+  const bespoke::MadeMap made =
+      bespoke::make_map({source, target, anchors}, bespoke::default_options(diagonal));
+  bespoke::write_asset(argv[5], made.asset);
+
+  bespoke::Product product = bespoke::read_product(argv[4]);
+  const bespoke::AppliedPoints moved = bespoke::apply_mapping(*made.fit.elastic, made.fit.target_from_source,
+                                                              product.vertices, /*times=*/{1.0});
+  product.vertices = moved.frames[0];
+  bespoke::write_product(argv[6], product);
+  std::printf("%s\n", to_string(moved.summary).c_str());
+} catch (const bespoke::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}

@@ -1,0 +1,209 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+double largest_distance(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
+
+class ApplyCommand : public testing::Test {
+ protected:
+  ApplyCommand() { EXPECT_EQ(pair_.fit("map.vdb", {"--keep-exact", "--lambda", "20%"}).exit_code, 0); }
+
+  Points product() const { return read_obj_points(pair_.file("product.obj")); }
+  /// The product's points after `apply` with the options, which must succeed.
+  Points applied(const std::vector<std::string>& extra) const {
+    std::vector<std::string> arguments{"-o", pair_.file("out.obj")};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const ProgramResult result = pair_.apply("map.vdb", arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return read_obj_points(pair_.file("out.obj"));
+  }
+  void expect_refusal(const ProgramResult& result, int exit_code, const std::string& text) const {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_FALSE(pair_.has("out.obj"));
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(ApplyCommand, KeepsFacesAndCountsTheBand) {
+  const ProgramResult result = pair_.apply("map.vdb", {"-o", pair_.file("out.obj")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("729"));
+  const std::string before = read_text(pair_.file("product.obj"));
+  const std::string after = read_text(pair_.file("out.obj"));
+  const auto lines_of_faces = [](const std::string& text) { return text.substr(text.find("\nf ")); };
+  EXPECT_EQ(lines_of_faces(after), lines_of_faces(before));
+}
+
+TEST_F(ApplyCommand, AtTimeZeroIsTheIdentity) {
+  EXPECT_LT(largest_distance(applied({"--t", "0"}), product()), 1e-8);
+}
+
+TEST_F(ApplyCommand, FramesAreTheSameAsSingleTimes) {
+  ASSERT_EQ(pair_.apply("map.vdb", {"-o", pair_.file("frame.obj"), "--frames", "4"}).exit_code, 0);
+  EXPECT_FALSE(pair_.has("frame.obj"));
+  EXPECT_FALSE(pair_.has("frame_005.obj"));
+  for (int k = 0; k <= 4; ++k) {
+    const std::string frame = read_text(pair_.file("frame_00" + std::to_string(k) + ".obj"));
+    applied({"--t", std::to_string(0.25 * k)});
+    EXPECT_EQ(frame, read_text(pair_.file("out.obj"))) << k;
+  }
+}
+
+TEST_F(ApplyCommand, ReachesTheSameEndOnEveryPathAndInEveryOrder) {
+  const Points end = applied({});
+  for (const std::string path : {"geodesic", "euler"})
+    for (const std::string order : {"elastic-first", "rigid-first", "linear"})
+      EXPECT_LT(largest_distance(applied({"--path", path, "--order", order}), end), 1e-6) << path << order;
+}
+
+TEST_F(ApplyCommand, TravelsAsThePathAndTheOrderSay) {
+  const Points geodesic = applied({"--t", "0.5"});
+  EXPECT_GT(largest_distance(applied({"--t", "0.5", "--path", "euler"}), geodesic), 1e-4);
+  EXPECT_GT(largest_distance(applied({"--t", "0.5", "--order", "rigid-first"}), geodesic), 1e-4);
+  // Eq. of Fig. 1: half-way on straight lines.
+  const Points half = 0.5 * (product() + applied({}));
+  EXPECT_LT(largest_distance(applied({"--t", "0.5", "--order", "linear"}), half), 1e-6);  // files hold floats
+  expect_refusal((std::filesystem::remove(pair_.file("out.obj")),
+                  pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--order", "reverse"})),
+                 1, "reverse");
+}
+
+TEST_F(ApplyCommand, ExactDiffersFromBakedByTheMeasuredError) {
+  const ProgramResult info = bespoke({"info", pair_.file("map.vdb"), "--json"});
+  const double tolerance = json::parse(info.out)["tolerance"];
+  const double difference = largest_distance(applied({}), applied({"--exact"}));
+  EXPECT_LE(difference, tolerance);
+  EXPECT_GT(difference, 0);
+}
+
+TEST_F(ApplyCommand, ExactIsTheSameForEveryMethod) {
+  for (const std::string elastic : {"pffd", "multiscale", "diffeomorphic"}) {
+    const ProgramResult fit = pair_.fit("map.vdb", {"--elastic", elastic, "--keep-exact", "--lambda", "20%"});
+    ASSERT_EQ(fit.exit_code, 0) << fit.err;
+    const double tolerance = json::parse(bespoke({"info", pair_.file("map.vdb"), "--json"}).out)["tolerance"];
+    EXPECT_LE(largest_distance(applied({}), applied({"--exact"})), tolerance) << elastic;
+  }
+}
+
+TEST_F(ApplyCommand, ExactNeedsTheStoredMap) {
+  ASSERT_EQ(pair_.fit("plain.vdb").exit_code, 0);
+  expect_refusal(pair_.apply("plain.vdb", {"-o", pair_.file("out.obj"), "--exact"}), 2, "--keep-exact");
+}
+
+TEST_F(ApplyCommand, WritesSeveralProductsIntoADirectory) {
+  const ProgramResult result = bespoke({"apply", pair_.file("map.vdb"), pair_.file("product.obj"),
+                                        pair_.file("source.obj"), "--out-dir", pair_.file("moved/here")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(pair_.has("moved/here/product.obj"));
+  EXPECT_TRUE(pair_.has("moved/here/source.obj"));
+}
+
+TEST_F(ApplyCommand, NeedsOneOfTheTwoOutputs) {
+  expect_refusal(pair_.apply("map.vdb"), 1, "--out-dir");
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--out-dir", pair_.file("moved")}), 1,
+                 "--out-dir");
+  expect_refusal(bespoke({"apply", pair_.file("map.vdb"), pair_.file("product.obj"), pair_.file("source.obj"),
+                          "-o", pair_.file("out.obj")}),
+                 1, "2 are given");
+}
+
+TEST_F(ApplyCommand, RefusesTwoProductsOfOneName) {
+  std::filesystem::create_directory(pair_.file("other"));
+  std::filesystem::copy(pair_.file("product.obj"), pair_.file("other/product.obj"));
+  expect_refusal(bespoke({"apply", pair_.file("map.vdb"), pair_.file("product.obj"),
+                          pair_.file("other/product.obj"), "--out-dir", pair_.file("moved")}),
+                 1, "twice");
+}
+
+TEST_F(ApplyCommand, DoesNotOverwriteTheProduct) {
+  const std::string before = read_text(pair_.file("product.obj"));
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("product.obj")}), 1, "overwritten");
+  expect_refusal(pair_.apply("map.vdb", {"--out-dir", pair_.file(".")}), 1, "overwritten");
+  EXPECT_EQ(read_text(pair_.file("product.obj")), before);
+}
+
+TEST_F(ApplyCommand, RefusesBadTimesAndFrames) {
+  for (const std::string t : {"nan", "inf", "half"})
+    expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--t", t}), 1, t);
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--frames", "0"}), 1, "--frames");
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--frames", "2", "--t", "1"}), 1,
+                 "--t");
+}
+
+TEST_F(ApplyCommand, ReportsCountsAndMemory) {
+  applied({"--report", pair_.file("report.json")});
+  const json report = json::parse(read_text(pair_.file("report.json")));
+  const json& entry = report["products"][0];
+  EXPECT_EQ(entry["name"], "product.obj");
+  EXPECT_EQ(entry["points"], 729);
+  EXPECT_EQ(entry["in_band"].get<int>() + entry["affine_only"].get<int>(), 729);
+  EXPECT_GT(entry["in_band"], 0);
+  EXPECT_GT(entry["affine_only"], 0);
+  EXPECT_GT(report["peak_memory"], 1000000);
+}
+
+TEST_F(ApplyCommand, ChecksUntrustedAssetsInAChild) {
+  const Points trusted = applied({});
+  EXPECT_EQ(largest_distance(applied({"--untrusted"}), trusted), 0);
+}
+
+TEST_F(ApplyCommand, GivesTheSameOnAnyNumberOfThreads) {
+  const Points one = applied({"--threads", "1"});
+  EXPECT_EQ(largest_distance(applied({"--threads", "8"}), one), 0);
+}
+
+TEST_F(ApplyCommand, SaysNothingWhenQuiet) {
+  const ProgramResult result = pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "-q"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(ApplyCommand, RejectsADamagedAsset) {
+  std::string bytes = read_text(pair_.file("map.vdb"));
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_text(pair_.file("map.vdb"), bytes);
+  for (const std::string mode : {"--quiet", "--untrusted"})
+    expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), mode}), 2, "map.vdb");
+}
+
+TEST_F(ApplyCommand, NamesTheFileAtFault) {
+  expect_refusal(pair_.apply("none.vdb", {"-o", pair_.file("out.obj")}), 4, "none.vdb");
+  expect_refusal(
+      bespoke({"apply", pair_.file("map.vdb"), pair_.file("none.obj"), "-o", pair_.file("out.obj")}), 4,
+      "none.obj");
+  write_text(pair_.file("empty.obj"), "# nothing\n");
+  expect_refusal(
+      bespoke({"apply", pair_.file("map.vdb"), pair_.file("empty.obj"), "-o", pair_.file("out.obj")}), 2,
+      "empty.obj");
+  write_text(pair_.file("nan.obj"), "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_refusal(
+      bespoke({"apply", pair_.file("map.vdb"), pair_.file("nan.obj"), "-o", pair_.file("out.obj")}), 2,
+      "nan.obj");
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.step")}), 1, "out.step");
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("no/out.obj")}), 4, "no");
+}
+
+TEST_F(ApplyCommand, LeavesNoneOfSeveralOutputsWhenOneFails) {
+  write_text(pair_.file("broken.obj"), "v 0 0\n");
+  const ProgramResult result = bespoke({"apply", pair_.file("map.vdb"), pair_.file("product.obj"),
+                                        pair_.file("broken.obj"), "--out-dir", pair_.file("moved")});
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_FALSE(pair_.has("moved/product.obj"));
+}
+
+}  // namespace
+}  // namespace bespoke::test

@@ -1,0 +1,37 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Command, NeedsASubcommand) {
+  EXPECT_EQ(bespoke({}).exit_code, 1);
+  EXPECT_EQ(bespoke({"knit"}).exit_code, 1);
+  const ProgramResult option = bespoke({"info", "map.vdb", "--colour"});
+  EXPECT_EQ(option.exit_code, 1);
+  EXPECT_THAT(option.err, StartsWith("bespoke: "));
+  EXPECT_THAT(option.err, HasSubstr("--colour"));
+}
+
+TEST(Command, SaysItsVersion) {
+  const ProgramResult version = bespoke({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out, BESPOKE_VERSION "\n");
+}
+
+TEST(Command, ExplainsItselfWithExamples) {
+  EXPECT_THAT(bespoke({"--help"}).out, HasSubstr("Exit codes"));
+  for (const std::string name : {"fit", "apply", "info", "measure", "samples"}) {
+    const ProgramResult help = bespoke({name, "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Examples:\n  bespoke " + name));
+  }
+}
+
+}  // namespace
+}  // namespace bespoke::test

@@ -1,0 +1,349 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
+
+class FitCommand : public testing::Test {
+ protected:
+  json info(const std::string& map) const {
+    const ProgramResult result = bespoke({"info", pair_.file(map), "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return json::parse(result.out);
+  }
+  json read_json(const std::string& name) const { return json::parse(read_text(pair_.file(name))); }
+
+  /// Expects the fit to refuse with the exit code and a message that holds the text, leaving nothing behind.
+  void expect_refusal(const ProgramResult& result, int exit_code, const std::string& text) const {
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_FALSE(pair_.has("map.vdb"));
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(FitCommand, MapsTheSourceOntoTheTarget) {
+  const ProgramResult fit = pair_.fit("map.vdb");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  for (const char* text : {"source", "rigid", "surface-fit", "elastic", "bake", "certificate", "anchors"})
+    EXPECT_THAT(fit.out, HasSubstr(text));
+  const ProgramResult apply =
+      bespoke({"apply", pair_.file("map.vdb"), pair_.file("source.obj"), "-o", pair_.file("moved.obj")});
+  ASSERT_EQ(apply.exit_code, 0) << apply.err;
+  // The target is the ellipsoid with radii (1.1, 1.3, 0.95), turned and moved; a chord of its mesh lies at
+  // most 1 % of the radius below it.
+  const Matrix3 rotation = Eigen::AngleAxisd(0.7, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  const Points moved = read_obj_points(pair_.file("moved.obj"));
+  const Points local = rotation.transpose() * (moved.colwise() - Vector3(3, -1, 2));
+  const Eigen::ArrayXd height = (local.array().colwise() / Eigen::Array3d(1.1, 1.3, 0.95))
+                                    .matrix()
+                                    .colwise()
+                                    .norm()
+                                    .transpose()
+                                    .array() -
+                                1;
+  EXPECT_LT(height.abs().maxCoeff(), 0.03);
+}
+
+TEST_F(FitCommand, OtherProgramsReadTheAsset) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  const ProgramResult result = run_program({"vdb_print", "-l", pair_.file("map.vdb")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  for (const char* grid : {"displacement", "u_0", "source_distance", "jacobian"})
+    EXPECT_THAT(result.out, HasSubstr(grid));
+}
+
+TEST_F(FitCommand, ChoosesTheMethods) {
+  for (const std::string elastic : {"csrbf", "pffd"}) {
+    ASSERT_EQ(pair_.fit("map.vdb", {"--surface-fit", "laplacian", "--elastic", elastic}).exit_code, 0);
+    EXPECT_EQ(info("map.vdb")["elastic"], elastic);
+    EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
+  }
+}
+
+TEST_F(FitCommand, NamesTheMethodItDoesNotKnow) {
+  expect_refusal(pair_.fit("map.vdb", {"--elastic", "spline"}), 1, "spline");
+  expect_refusal(pair_.fit("map.vdb", {"--surface-fit", "glue"}), 1, "glue");
+}
+
+TEST_F(FitCommand, PaperIsThePrintedMethod) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--paper"}).exit_code, 0);
+  EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
+  EXPECT_EQ(info("map.vdb")["elastic"], "csrbf");
+  EXPECT_EQ(info("map.vdb")["path"], "euler");
+  EXPECT_EQ(pair_.fit("map.vdb", {"--paper", "--elastic", "pffd"}).exit_code, 1);
+}
+
+TEST_F(FitCommand, StoresTheRotationPath) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  EXPECT_EQ(info("map.vdb")["path"], "geodesic");
+  ASSERT_EQ(pair_.fit("map.vdb", {"--path", "euler"}).exit_code, 0);
+  EXPECT_EQ(info("map.vdb")["path"], "euler");
+  EXPECT_EQ(pair_.fit("map.vdb", {"--path", "straight"}).exit_code, 1);
+}
+
+TEST_F(FitCommand, TakesLengthsInMeshUnitsAndPercent) {
+  ASSERT_EQ(pair_.fit("percent.vdb", {"--lambda", "20%", "--voxel-size", "2%"}).exit_code, 0);
+  const json percent = info("percent.vdb");
+  const double diagonal = (Vector3(percent["source"]["box"]["max"][0], percent["source"]["box"]["max"][1],
+                                   percent["source"]["box"]["max"][2]) -
+                           Vector3(percent["source"]["box"]["min"][0], percent["source"]["box"]["min"][1],
+                                   percent["source"]["box"]["min"][2]))
+                              .norm();
+  EXPECT_NEAR(percent["lambda"], 0.2 * diagonal, 1e-12);
+  EXPECT_NEAR(percent["levels"][0]["voxel_size"], 0.02 * diagonal, 1e-12);
+
+  std::ostringstream lambda;
+  lambda.precision(17);
+  lambda << percent["lambda"].get<double>();
+  ASSERT_EQ(pair_.fit("units.vdb", {"--lambda", lambda.str(), "--voxel-size", "2%"}).exit_code, 0);
+  EXPECT_EQ(info("units.vdb")["lambda"], percent["lambda"]);
+}
+
+TEST_F(FitCommand, RefusesWhatIsNotALength) {
+  for (const std::string option : {"--lambda", "--tolerance", "--voxel-size", "--fit-tolerance"})
+    for (const std::string text : {"0", "-1", "nan", "inf", "ten", "10%%", "10 cm", "-5%"})
+      expect_refusal(pair_.fit("map.vdb", {option + "=" + text}), 1,
+                     "'" + text + "' is not a positive length");
+}
+
+TEST_F(FitCommand, MeetsTheTolerance) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--lambda", "20%", "--tolerance", "0.2%"}).exit_code, 0);
+  const json found = info("map.vdb");
+  EXPECT_LE(found["bake_error"]["max"], found["tolerance"]);
+  EXPECT_GT(found["bake_error"]["count"], 0);
+}
+
+TEST_F(FitCommand, WarnsWhenTheVoxelSizeMissesTheTolerance) {
+  const ProgramResult fit = pair_.fit("map.vdb", {"--voxel-size", "10%", "--tolerance", "0.001%", "--quiet"});
+  EXPECT_EQ(fit.exit_code, 0);
+  EXPECT_THAT(fit.err, HasSubstr("exceeds the tolerance"));
+  EXPECT_THAT(fit.err, HasSubstr("--voxel-size"));
+}
+
+TEST_F(FitCommand, MultiscaleMapsMeetTheFitTolerance) {
+  ASSERT_EQ(pair_
+                .fit("map.vdb", {"--elastic", "multiscale", "--lambda", "30%", "--fit-tolerance", "0.1%",
+                                 "--report", pair_.file("report.json")})
+                .exit_code,
+            0);
+  const json report = read_json("report.json");
+  EXPECT_LE(report["vertex_residuals"]["p95"], 0.001 * report["source"]["diagonal"].get<double>());
+}
+
+TEST_F(FitCommand, WritesTheFittedSourceAndTakesIt) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--fitted-out", pair_.file("fitted.obj")}).exit_code, 0);
+  const std::string source = read_text(pair_.file("source.obj"));
+  const std::string fitted = read_text(pair_.file("fitted.obj"));
+  EXPECT_EQ(read_obj_points(pair_.file("fitted.obj")).cols(),
+            read_obj_points(pair_.file("source.obj")).cols());
+
+  // Taken as given, it is met by the map, and no anchors are needed.
+  const ProgramResult given = bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
+                                       pair_.file("fitted.obj"), "-o", pair_.file("given.vdb"), "--tolerance",
+                                       "0.5%", "--elastic", "csrbf"});
+  ASSERT_EQ(given.exit_code, 0) << given.err;
+  EXPECT_EQ(info("given.vdb")["surface_fit"], "given");
+  ASSERT_EQ(
+      bespoke({"apply", pair_.file("given.vdb"), pair_.file("source.obj"), "-o", pair_.file("moved.obj")})
+          .exit_code,
+      0);
+  const Points difference =
+      read_obj_points(pair_.file("moved.obj")) - read_obj_points(pair_.file("fitted.obj"));
+  EXPECT_LE(difference.colwise().norm().maxCoeff(), 0.006 * 2 * Vector3(1, 1.4, 0.8).norm());
+}
+
+TEST_F(FitCommand, RefusesAFittedSourceOfOtherConnectivity) {
+  write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2, "642");
+}
+
+TEST_F(FitCommand, RefusesUnknownEndingsBeforeItWorks) {
+  expect_refusal(pair_.fit("map.vdb", {"--fitted-out", pair_.file("fitted.step")}), 1, "fitted.step");
+}
+
+TEST_F(FitCommand, KeepsTheExactMapOnRequest) {
+  ASSERT_EQ(pair_.fit("plain.vdb").exit_code, 0);
+  ASSERT_EQ(pair_.fit("exact.vdb", {"--keep-exact"}).exit_code, 0);
+  EXPECT_EQ(info("plain.vdb")["exact_map_bytes"], 0);
+  EXPECT_GT(info("exact.vdb")["exact_map_bytes"], 0);
+}
+
+TEST_F(FitCommand, AddsTheCornersOfTheBoxes) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  EXPECT_EQ(info("map.vdb")["anchors"].size(), 14u);
+  ASSERT_EQ(pair_.fit("map.vdb", {"--paper", "--add-corners"}).exit_code, 0);
+  EXPECT_EQ(info("map.vdb")["anchors"].size(), 22u);
+  EXPECT_EQ(info("map.vdb")["anchors"][14]["name"], "corner_000");
+}
+
+TEST_F(FitCommand, ReportsEveryStage) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--report", pair_.file("report.json")}).exit_code, 0);
+  const json report = read_json("report.json");
+  std::vector<std::string> names;
+  for (const json& stage : report["stages"]) {
+    names.push_back(stage["name"]);
+    EXPECT_GE(stage["seconds"].get<double>(), 0) << stage;
+  }
+  EXPECT_THAT(names, IsSupersetOf({"rigid", "coarse", "surface-fit", "elastic", "bake", "certificate"}));
+  for (const char* key : {"min", "median", "p95", "p99", "max"}) {
+    EXPECT_TRUE(report["anchor_residuals"].contains(key));
+    EXPECT_TRUE(report["vertex_residuals"].contains(key));
+  }
+  for (const json& stage : report["stages"])
+    if (stage["name"] == "surface-fit") {
+      EXPECT_TRUE(stage.contains("iterations")) << stage;
+      EXPECT_TRUE(stage.contains("stop_reason")) << stage;
+    }
+  EXPECT_EQ(report["source"]["vertices"], 642);
+  EXPECT_GT(report["voxels"], 0);
+  EXPECT_GT(report["peak_memory"], 1000000);
+}
+
+TEST_F(FitCommand, WritesTheSameBytesOnAnyNumberOfThreads) {
+  for (const std::string threads : {"1", "2", "8"})
+    ASSERT_EQ(pair_.fit("map" + threads + ".vdb", {"--threads", threads}).exit_code, 0);
+  const std::string one = read_text(pair_.file("map1.vdb"));
+  EXPECT_TRUE(one == read_text(pair_.file("map2.vdb")));
+  EXPECT_TRUE(one == read_text(pair_.file("map8.vdb")));
+  EXPECT_EQ(pair_.fit("map.vdb", {"--threads", "0"}).exit_code, 1);
+}
+
+TEST_F(FitCommand, SaysNothingWhenQuiet) {
+  const ProgramResult fit = pair_.fit("map.vdb", {"--quiet"});
+  EXPECT_EQ(fit.exit_code, 0);
+  EXPECT_THAT(fit.out, IsEmpty());
+  EXPECT_THAT(fit.err, IsEmpty());
+}
+
+TEST_F(FitCommand, PrintsPlainProgressWithoutATerminal) {
+  const ProgramResult fit = pair_.fit("map.vdb");
+  EXPECT_THAT(fit.err, HasSubstr("bake: "));
+  EXPECT_THAT(fit.err, Not(HasSubstr("\r")));
+}
+
+TEST_F(FitCommand, NeedsAnchorsOrAFittedSource) {
+  expect_refusal(
+      bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o", pair_.file("map.vdb")}), 1,
+      "--anchors");
+  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
+                          pair_.file("map.vdb"), "--fitted", pair_.file("source.obj"), "--add-corners"}),
+                 1, "--add-corners");
+}
+
+TEST_F(FitCommand, NeedsItsPositionalArguments) {
+  EXPECT_EQ(bespoke({"fit"}).exit_code, 1);
+  EXPECT_EQ(bespoke({"fit", pair_.file("source.obj")}).exit_code, 1);
+  const ProgramResult no_output = bespoke(
+      {"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors", pair_.file("anchors.json")});
+  EXPECT_EQ(no_output.exit_code, 1);
+  EXPECT_THAT(no_output.err, HasSubstr("--output"));
+}
+
+TEST_F(FitCommand, NamesTheMissingFile) {
+  std::filesystem::remove(pair_.file("target.obj"));
+  expect_refusal(pair_.fit("map.vdb"), 4, "target.obj");
+}
+
+TEST_F(FitCommand, NamesTheLineOfABadFace) {
+  write_text(pair_.file("target.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  const ProgramResult fit = pair_.fit("map.vdb");
+  expect_refusal(fit, 2, "target.obj");
+  EXPECT_THAT(fit.err, HasSubstr("4"));
+}
+
+TEST_F(FitCommand, RefusesAModelWithoutFaces) {
+  write_text(pair_.file("source.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  expect_refusal(pair_.fit("map.vdb"), 2, "source.obj");
+}
+
+TEST_F(FitCommand, RefusesAnchorsThatDoNotFixTheMap) {
+  write_text(pair_.file("anchors.json"),
+             R"({"pairs":[{"name":"p","a":[0,0,0],"b":[0,0,0]},{"name":"q","a":[1,0,0],"b":[1,0,0]}]})");
+  expect_refusal(pair_.fit("map.vdb"), 2, "2");
+  write_text(pair_.file("anchors.json"), R"({"pairs":[{"name":"p","a":[0,0,0],"b":[0,0]}]})");
+  expect_refusal(pair_.fit("map.vdb"), 2, "anchors.json");
+}
+
+TEST_F(FitCommand, TakesAnchorsAsCsv) {
+  std::string rows = "name,ax,ay,az,bx,by,bz\n";
+  const json anchors = read_json("anchors.json");
+  for (const json& p : anchors["pairs"]) {
+    rows += p["name"].get<std::string>();
+    for (const char* side : {"a", "b"})
+      for (int axis = 0; axis < 3; ++axis) rows += "," + p[side][axis].dump();
+    rows += "\n";
+  }
+  write_text(pair_.file("anchors.csv"), rows);
+  const ProgramResult fit =
+      bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+               pair_.file("anchors.csv"), "-o", pair_.file("map.vdb"), "--tolerance", "0.5%"});
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(info("map.vdb")["anchors"].size(), 14u);
+}
+
+TEST_F(FitCommand, AdvisesALambdaThatWorksWhenTheSystemIsTooLarge) {
+  const ProgramResult refused =
+      pair_.fit("map.vdb", {"--elastic", "csrbf", "--lambda", "100%", "--max-memory", "1MiB"});
+  EXPECT_THAT(refused.exit_code, testing::AnyOf(3, 4)) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("use an effective distance of at most"));
+  EXPECT_FALSE(pair_.has("map.vdb"));
+}
+
+TEST_F(FitCommand, AdvisesAVoxelSizeThatFitsTheMemory) {
+  expect_refusal(pair_.fit("map.vdb", {"--elastic", "pffd", "--voxel-size", "0.1%", "--max-memory", "20MB"}),
+                 4, "voxel size");
+  EXPECT_EQ(pair_.fit("map.vdb", {"--max-memory", "much"}).exit_code, 1);
+}
+
+TEST_F(FitCommand, DoesNotOverwriteItsInputs) {
+  const std::string before = read_text(pair_.file("source.obj"));
+  expect_refusal(pair_.fit("source.obj"), 1, "overwritten");
+  expect_refusal(pair_.fit("map.vdb", {"--fitted-out", pair_.file("./target.obj")}), 1, "overwritten");
+  expect_refusal(pair_.fit("map.vdb", {"--report", pair_.file("map.vdb")}), 1, "twice");
+  EXPECT_EQ(read_text(pair_.file("source.obj")), before);
+}
+
+TEST_F(FitCommand, NamesTheDirectoryThatDoesNotExist) {
+  expect_refusal(pair_.fit("none/map.vdb"), 4, "none");
+}
+
+TEST_F(FitCommand, LeavesNothingWhenAnOutputCannotBeWritten) {
+  const std::vector<std::string> before = pair_.files();
+  std::filesystem::create_directory(pair_.file("report.json"));
+  expect_refusal(pair_.fit("map.vdb", {"--report", pair_.file("report.json")}), 4, "report.json");
+  std::filesystem::remove(pair_.file("report.json"));
+  EXPECT_EQ(pair_.files(), before);
+}
+
+class InterruptedFit : public FitCommand, public testing::WithParamInterface<int> {};
+
+TEST_P(InterruptedFit, LeavesNothing) {
+  const std::vector<std::string> before = pair_.files();
+  RunningProgram fit({BESPOKE_COMMAND, "fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+                      pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "--elastic", "csrbf",
+                      "--voxel-size", "0.15%"});
+  ASSERT_TRUE(fit.wait_for_error_text("bake: "));
+  fit.send(GetParam());
+  const ProgramResult result = fit.wait();
+  EXPECT_EQ(result.exit_code, 128 + GetParam());
+  EXPECT_THAT(result.err, HasSubstr("interrupted"));
+  EXPECT_EQ(pair_.files(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, InterruptedFit, testing::Values(SIGINT, SIGTERM));
+
+}  // namespace
+}  // namespace bespoke::test

@@ -1,0 +1,62 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string program(const std::string& name) {
+  return (std::filesystem::path(BESPOKE_COMMAND).parent_path() / name).string();
+}
+
+TEST(SamplePrograms, FitApplyAndInspect) {
+  const ExamplePair pair;
+  const ProgramResult fit = run_program(
+      {program("fit_and_apply"), pair.file("source.obj"), pair.file("target.obj"), pair.file("anchors.json"),
+       pair.file("product.obj"), pair.file("map.vdb"), pair.file("out.obj")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_EQ(read_obj_points(pair.file("out.obj")).cols(), 729);
+
+  const ProgramResult apply = run_program({program("apply_asset"), pair.file("map.vdb")});
+  EXPECT_EQ(apply.exit_code, 0) << apply.err;
+  EXPECT_THAT(apply.out, HasSubstr("->"));
+
+  const ProgramResult inspect = run_program({program("inspect_asset"), pair.file("map.vdb")});
+  EXPECT_EQ(inspect.exit_code, 0) << inspect.err;
+  EXPECT_THAT(inspect.out, HasSubstr("bijection: "));
+  EXPECT_THAT(inspect.out, HasSubstr("p13"));
+}
+
+TEST(SamplePrograms, NameWhatTheyNeed) {
+  for (const std::string name : {"fit_and_apply", "apply_asset", "inspect_asset"}) {
+    EXPECT_THAT(run_program({program(name)}).err, HasSubstr("usage: " + name));
+    EXPECT_EQ(run_program({program(name)}).exit_code, 1);
+  }
+  EXPECT_THAT(run_program({program("inspect_asset"), "none.vdb"}).err, HasSubstr("none.vdb"));
+}
+
+TEST(Readme, ShowsASampleVerbatim) {
+  const std::string readme = read_text(BESPOKE_SOURCE_DIR "/README.md");
+  EXPECT_THAT(readme,
+              HasSubstr("```cpp\n" + read_text(BESPOKE_SOURCE_DIR "/samples/fit_and_apply.cpp") + "```"));
+}
+
+TEST(Readme, NamesEveryOptionOfTheCommand) {
+  const std::string readme = read_text(BESPOKE_SOURCE_DIR "/README.md");
+  for (const std::string name : {"fit", "apply", "info", "measure", "samples"}) {
+    const std::string help = bespoke({name, "--help"}).out;
+    for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
+      const std::string option =
+          help.substr(at, help.find_first_not_of("abcdefghijklmnopqrstuvwxyz-", at) - at);
+      if (option.size() > 2) {
+        EXPECT_THAT(readme, HasSubstr(option)) << name;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bespoke::test
