@@ -46,6 +46,7 @@ struct Pair {
       anchors.pairs.push_back(
           {"anchor " + std::to_string(i), q.col(i), on_target.closest(image.col(i))->point});
     options.lambda = 0.4;
+    options.elastic = ElasticMethod::csrbf;
   }
 
   FittedMapping fit() const { return fit_mapping(source, target, anchors, options); }

@@ -23,7 +23,7 @@ enum class ElasticMethod {
 
 struct FitOptions {
   SurfaceFitOptions surface_fit;
-  ElasticMethod elastic = ElasticMethod::csrbf;
+  ElasticMethod elastic = ElasticMethod::diffeomorphic;
   double lambda = 0;  ///< effective distance, > 0, mesh units
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates

@@ -8,7 +8,7 @@ namespace bespoke {
 
 /// Default lengths as fractions of the source's bounding-box diagonal.
 inline constexpr double default_lambda = 0.1;
-inline constexpr double default_tolerance = 0.0005;
+inline constexpr double default_tolerance = 0.00025;
 inline constexpr double default_fit_tolerance = 0.0001;
 
 struct MakeMapOptions {
