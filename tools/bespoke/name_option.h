@@ -23,7 +23,7 @@ CLI::Option* add_name_option(CLI::App& app, const std::string& name, std::option
   return app
       .add_option_function<std::string>(
           name, [&value, &names](const std::string& text) { value = value_of(names, text); }, description)
-      ->check(CLI::IsMember(known))
+      ->check(CLI::IsMember(known).description(""))
       ->type_name(choices);
 }
 

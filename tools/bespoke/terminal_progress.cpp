@@ -38,7 +38,9 @@ int percent(std::size_t done, std::size_t total) {
 
 TerminalProgress::TerminalProgress(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
-TerminalProgress::~TerminalProgress() { end_bar(); }
+TerminalProgress::~TerminalProgress() {
+  if (bar_open_) std::fputs("\r\033[K", stderr);
+}
 
 Progress TerminalProgress::progress() {
   Progress progress;
@@ -52,18 +54,15 @@ Progress TerminalProgress::progress() {
 
 void TerminalProgress::show(std::string_view stage, std::size_t done, std::size_t total) {
   const Clock::time_point now = Clock::now();
-  const bool new_stage = stage != stage_;
-  if (new_stage) {
-    end_bar();
+  if (stage != stage_) {
     stage_ = stage;
     stage_start_ = now;
   }
-  const bool last = total > 0 && done >= total;
-  if (!new_stage && !(terminal_ && last)) {
-    const Clock::duration interval =
-        terminal_ ? Clock::duration(bar_interval) : Clock::duration(line_interval);
-    if (now - last_shown_ < interval) return;
-  }
+  // Stages take turns (the bake certifies between its passes), so only the first start of each is news.
+  const bool first = announced_.insert(stage_).second;
+  const bool last = terminal_ && total > 0 && done >= total;
+  const Clock::duration interval = terminal_ ? Clock::duration(bar_interval) : Clock::duration(line_interval);
+  if (!first && !last && now - last_shown_ < interval) return;
   last_shown_ = now;
   const double seconds = std::chrono::duration<double>(now - stage_start_).count();
   terminal_ ? draw_bar(done, total, seconds) : print_line(done, total, seconds);
@@ -90,11 +89,6 @@ void TerminalProgress::print_line(std::size_t done, std::size_t total, double se
                  time_left(done, total, seconds).c_str());
   else
     std::fprintf(stderr, "%s: %s\n", stage_.c_str(), duration(seconds).c_str());
-}
-
-void TerminalProgress::end_bar() {
-  if (bar_open_) std::fputc('\n', stderr);
-  bar_open_ = false;
 }
 
 }  // namespace bespoke::command

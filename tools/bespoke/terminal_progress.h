@@ -1,14 +1,15 @@
 #pragma once
 
 #include <chrono>
+#include <set>
 #include <string>
 
 #include "bespoke/progress.h"
 
 namespace bespoke::command {
 
-/// Shows on standard error where a long run is: one bar a stage with the time left when that is a terminal,
-/// else one line at the start of each stage and one every ten seconds. Also what makes an interruption reach
+/// Shows on standard error where a long run is: a bar with the time left when that is a terminal,
+/// else one line when a stage first starts and one every ten seconds. Also what makes an interruption reach
 /// the library. One thread.
 class TerminalProgress {
  public:
@@ -26,12 +27,12 @@ class TerminalProgress {
   void show(std::string_view stage, std::size_t done, std::size_t total);
   void draw_bar(std::size_t done, std::size_t total, double seconds);
   void print_line(std::size_t done, std::size_t total, double seconds);
-  void end_bar();
 
   bool quiet_;
   bool terminal_;
   bool bar_open_ = false;
   std::string stage_;
+  std::set<std::string> announced_;
   Clock::time_point stage_start_;
   Clock::time_point last_shown_;
 };
