@@ -8,6 +8,9 @@ namespace bespoke::command {
 void add_fit_command(CLI::App& app);
 void add_apply_command(CLI::App& app);
 void add_info_command(CLI::App& app);
+void add_check_command(CLI::App& app);
+void add_invert_command(CLI::App& app);
+void add_compose_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
 

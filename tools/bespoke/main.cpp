@@ -18,6 +18,9 @@ int main(int argc, char** argv) {
   add_fit_command(app);
   add_apply_command(app);
   add_info_command(app);
+  add_check_command(app);
+  add_invert_command(app);
+  add_compose_command(app);
   add_measure_command(app);
   add_samples_command(app);
 

@@ -81,18 +81,34 @@ void require_valid(const Asset& asset) {
   require_valid(asset.record);
 }
 
-Asset with_preview(Asset asset, const TriangleMesh& source) {
-  require_valid(source, "source");
+namespace {
+
+Asset with_grids(Asset asset, const Box& source_box, StoredGrid source_distance) {
   require_valid(asset);
   const BakedMap baked(asset.affine, asset.pyramid);
-  StoredGrid displacement = displacement_preview(asset, baked, bounding_box(source.vertices));
+  StoredGrid displacement = displacement_preview(asset, baked, source_box);
   StoredGrid jacobian = jacobian_preview(baked, displacement);
   std::vector<StoredGrid> grids;
   grids.push_back(std::move(displacement));
-  grids.push_back(source_distance_preview(source));
+  grids.push_back(std::move(source_distance));
   grids.push_back(std::move(jacobian));
   asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
   return asset;
+}
+
+}  // namespace
+
+Asset with_preview(Asset asset, const TriangleMesh& source) {
+  require_valid(source, "source");
+  return with_grids(std::move(asset), bounding_box(source.vertices), source_distance_preview(source));
+}
+
+Asset with_preview_of(Asset asset, const Asset& original,
+                      const std::function<Points(const Points&)>& map_back) {
+  require(original.preview != nullptr, "the asset to take the source's distance from has no preview");
+  const StoredGrid& distance = original.preview->grids()[1];
+  const Box box = asset.record.source.box;
+  return with_grids(std::move(asset), box, map_back ? carried_distance(distance, box, map_back) : distance);
 }
 
 }  // namespace bespoke

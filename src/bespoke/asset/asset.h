@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,5 +67,11 @@ void require_valid(const Asset& asset);
 /// Adds the preview grids for `source` (the reference model, source frame) to everything else that `asset`
 /// already holds. Throws InvalidInput.
 Asset with_preview(Asset asset, const TriangleMesh& source);
+
+/// The same for an asset without its source at hand: `original` is an asset whose source's image under its
+/// map is the source of this one, or, with `map_back` empty, whose source is. Throws InvalidInput when it has
+/// no preview.
+Asset with_preview_of(Asset asset, const Asset& original,
+                      const std::function<Points(const Points&)>& map_back = {});
 
 }  // namespace bespoke

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "bespoke/asset/asset.h"
@@ -35,5 +36,10 @@ StoredGrid jacobian_preview(const BakedMap& baked, const StoredGrid& displacemen
 /// The source as a level set about 128 voxels long: of the signed distance where the mesh has no boundary;
 /// otherwise of a shell, the unsigned distance minus one voxel. Its metadata says which.
 StoredGrid source_distance_preview(const TriangleMesh& source);
+
+/// The surface of `distance` carried by a map whose way back is `map_back`, about 128 voxels along the
+/// diagonal of `box` (which holds its image): a shell as of an open mesh, of the distance before the map.
+StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
+                            const std::function<Points(const Points&)>& map_back);
 
 }  // namespace bespoke

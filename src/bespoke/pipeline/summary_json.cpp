@@ -38,6 +38,10 @@ Json to_json(const BakeSummary& summary) {
   return {{"levels", std::move(levels)},
           {"error", to_json(summary.error)},
           {"tolerance_met", summary.tolerance_met},
+          {"refined_folds", summary.refined_folds},
+          {"repaired_cells", summary.repaired_cells},
+          {"repair_cost", summary.repair_cost},
+          {"folded_cells", summary.folded_cells},
           {"evaluated_points", summary.evaluated_points},
           {"peak_bytes", summary.peak_bytes}};
 }

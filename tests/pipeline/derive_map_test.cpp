@@ -1,0 +1,93 @@
+#include "bespoke/pipeline/derive_map.h"
+
+#include <gmock/gmock.h>
+
+#include "asset/small_asset.h"
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/error.h"
+#include "bespoke/volume/baked_map.h"
+#include "support/analytic_map.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double tolerance = 1e-3;
+
+BakeOptions options() {
+  BakeOptions options;
+  options.tolerance = tolerance;
+  options.error_points = 20000;
+  return options;
+}
+
+// A certified asset of the space around a sphere.
+Asset asset_of(const Vector3& amplitude, const std::string& source_hash, const std::string& target_hash) {
+  const AnalyticMap map(
+      {{Vector3(0.5, 0, 0), 1.0, amplitude}, {Vector3(-0.5, 0.3, 0), 0.8, 0.5 * amplitude}});
+  Asset asset = test::small_asset();
+  asset.affine = map.affine();
+  asset.pyramid = bake(map, options()).pyramid;
+  asset.certificate = certify(asset.pyramid, asset.affine);
+  asset.record.tolerance = tolerance;
+  asset.record.source.hash = std::string(64, source_hash[0]);
+  asset.record.target.hash = std::string(64, target_hash[0]);
+  return with_preview(std::move(asset), test::sphere(Vector3::Zero(), 0.8, 2));
+}
+
+Points whole_map(const Asset& asset, const Points& x) {
+  return asset.target_from_source * BakedMap(asset.affine, asset.pyramid)(x);
+}
+
+TEST(InvertMap, IsAnAssetThatUndoesTheOther) {
+  const Asset forth = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  ASSERT_TRUE(forth.certificate.is_bijection());
+  const DerivedMap back = invert_map(forth, options());
+  EXPECT_TRUE(back.asset.certificate.is_bijection());
+  EXPECT_TRUE(back.bake.tolerance_met);
+  EXPECT_LE(back.deviation.max, 2 * tolerance);
+  EXPECT_EQ(back.asset.record.source.hash, forth.record.target.hash);
+  EXPECT_EQ(back.asset.record.target.hash, forth.record.source.hash);
+  EXPECT_EQ(back.asset.record.anchors[0].a, forth.record.anchors[0].b);
+  const Points x = 2 * Points::Random(3, 2000);
+  EXPECT_LT((whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm().maxCoeff(), 2 * tolerance);
+
+  const test::ScratchDirectory scratch;
+  write_asset(scratch / "back.vdb", back.asset);
+  EXPECT_EQ(read_asset(scratch / "back.vdb").pyramid.voxel_count(), back.asset.pyramid.voxel_count());
+}
+
+TEST(InvertMap, RefusesAMapThatIsNotCertified) {
+  Asset folded = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  folded.certificate.folded = 7;
+  try {
+    invert_map(folded, options());
+    ADD_FAILURE() << "inverted";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("7 cells"));
+  }
+}
+
+TEST(ComposeMaps, IsOneMapAfterTheOther) {
+  const Asset first = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  const Asset second = asset_of(Vector3(0, 0.1, 0.1), "b", "c");
+  const DerivedMap both = compose_maps(first, second, options(), MeetingModels::must_be_the_same);
+  EXPECT_TRUE(both.asset.certificate.is_bijection());
+  EXPECT_LE(both.deviation.max, tolerance);
+  EXPECT_EQ(both.asset.record.source.hash, first.record.source.hash);
+  EXPECT_EQ(both.asset.record.target.hash, second.record.target.hash);
+  const Points x = 2 * Points::Random(3, 2000);
+  EXPECT_LT((whole_map(both.asset, x) - whole_map(second, whole_map(first, x))).colwise().norm().maxCoeff(),
+            1.2 * tolerance);
+  const test::ScratchDirectory scratch;
+  write_asset(scratch / "both.vdb", both.asset);
+  EXPECT_NO_THROW(read_asset(scratch / "both.vdb"));
+}
+
+TEST(ComposeMaps, RefusesModelsThatDoNotMeetUnlessTold) {
+  const Asset first = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  EXPECT_THROW(compose_maps(first, first, options(), MeetingModels::must_be_the_same), InvalidInput);
+  EXPECT_NO_THROW(compose_maps(first, first, options(), MeetingModels::may_differ));
+}
+
+}  // namespace
+}  // namespace bespoke
