@@ -9,6 +9,7 @@
 #include "bespoke/mesh/product_io.h"
 #include "bespoke/report/report.h"
 #include "bespoke/volume/baked_map.h"
+#include "bespoke/volume/inverse.h"
 #include "commands.h"
 #include "name_option.h"
 #include "output_files.h"
@@ -30,6 +31,7 @@ struct ApplyArguments {
   std::optional<RotationPath> path;
   std::optional<MappingOrder> order;
   bool exact = false;
+  bool inverse = false;
   bool untrusted = false;
   RunOptions run;
 };
@@ -79,7 +81,20 @@ std::vector<double> times(const ApplyArguments& arguments) {
   return times;
 }
 
+/// The way back through the map's own cells; turns the asset's rigid part round as well.
+std::shared_ptr<const ElasticMap> inverse_map(const ApplyArguments& arguments, Asset& asset) {
+  if (!asset.certificate.is_bijection())
+    throw InvalidInput(arguments.map + ": is not certified as a bijection, so it has no inverse");
+  const auto baked = std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
+  const RigidTransform target_from_source = asset.target_from_source;
+  asset.target_from_source = inverse(target_from_source);
+  // The inverse refers to the baked map, which therefore goes last.
+  return {new InverseMap(*baked, target_from_source),
+          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); }};
+}
+
 std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
+  if (arguments.inverse) return inverse_map(arguments, asset);
   if (!arguments.exact) return std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
   if (asset.exact_map.empty())
     throw InvalidInput(arguments.map + ": holds no exact map; make it with `bespoke fit --keep-exact`");
@@ -173,8 +188,12 @@ void add_apply_command(CLI::App& app) {
   add_name_option(*apply, "--order", arguments->order, mapping_orders,
                   "In which order the rigid and the elastic part act; the last two are for comparison "
                   "(default: elastic-first)");
-  apply->add_flag("--exact", arguments->exact,
-                  "Evaluate the exact map that --keep-exact stored, not the grids");
+  CLI::Option* exact = apply->add_flag("--exact", arguments->exact,
+                                       "Evaluate the exact map that --keep-exact stored, not the grids");
+  apply
+      ->add_flag("--inverse", arguments->inverse,
+                 "Carry products of the target back to the source, through the cells of a certified map")
+      ->excludes(exact);
   apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
       ->type_name("FILE");
   apply->add_flag("--untrusted", arguments->untrusted,

@@ -33,6 +33,7 @@ struct FitArguments {
   std::optional<Length> voxel_size;
   std::optional<std::uint64_t> max_memory;
   bool keep_exact = false;
+  bool require_certified = false;
   bool add_corners = false;
   bool paper = false;
   RunOptions run;
@@ -114,6 +115,8 @@ void run(const FitArguments& arguments, const Progress& progress) {
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
   const MadeMap made = make_map(input, options, progress);
+  if (arguments.require_certified && !made.asset.certificate.is_bijection())
+    throw SolverError("the map is not certified as a bijection: " + to_string(made.asset.certificate));
   progress.check();
 
   OutputFiles outputs;
@@ -169,8 +172,8 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
                               default_fit_tolerance));
   add_length_option(
       fit, "--voxel-size", arguments.voxel_size,
-      "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: chosen to "
-      "meet --tolerance)");
+      "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: nested "
+      "levels that meet --tolerance)");
 }
 
 void add_file_options(CLI::App& fit, FitArguments& arguments) {
@@ -186,6 +189,8 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
       ->type_name("MESH");
   fit.add_option("--fitted-out", arguments.fitted_out, "Write the source as laid onto the target")
       ->type_name("MESH");
+  fit.add_flag("--require-certified", arguments.require_certified,
+               "Write nothing unless the map is proved to be a bijection of space");
   fit.add_flag("--keep-exact", arguments.keep_exact,
                "Store in the asset what `apply --exact` needs to evaluate the map without the grids");
   fit.add_option("--report", arguments.report,
