@@ -137,17 +137,23 @@ Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Pr
   for (int round = 0; round < largest_number_of_rounds; ++round) {
     refine_folds(map, builder, summary, progress);
     result.pyramid = builder->pyramid();
-    const RepairSummary repair = repair_folds(result.pyramid, map.affine(), progress);
-    summary.repaired_cells = repair.cells - repair.folded;
-    summary.repair_cost = repair.largest_change;
-    summary.folded_cells = repair.folded;
+    Pyramid repaired = result.pyramid;
+    const RepairSummary repair = repair_folds(repaired, map.affine(), progress);
+    if (repair.cells > 0 && repair.folded == 0) {
+      summary.repaired_cells = repair.cells;
+      summary.repair_cost = repair.largest_change;
+      result.pyramid = std::move(repaired);
+    } else {
+      // Half a repair would cost accuracy and prove nothing.
+      summary.folded_cells = repair.cells;
+    }
     const Points x = fresh_points(*builder, result.pyramid, support, options.error_points,
                                   error_seed + static_cast<std::uint64_t>(round));
     const std::vector<double> errors =
         displacement_errors(BakedMap(map.affine(), result.pyramid), map, x, progress);
     summary.error = summarize(errors);
     // What the repair costs, no finer leaf brings back.
-    if (summary.error.max <= options.tolerance || repair.cells > 0) break;
+    if (summary.error.max <= options.tolerance || summary.repaired_cells > 0) break;
     if (round + 1 == largest_number_of_rounds) break;
     if (builder->refine_at(points_above(x, errors, options.tolerance)) == 0) break;
     builder->refine();

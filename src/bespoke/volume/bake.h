@@ -48,7 +48,8 @@ struct Bake {
 };
 
 /// Samples u of the map over its support as a nested pyramid that is fine only where the map needs it, or on
-/// one lattice (DESIGN, step 5). Cells of the pyramid that fold are refined, then repaired. Reproduces affine
+/// one lattice (DESIGN, step 5). Cells of the pyramid that fold are refined, then repaired; where not all
+/// can be, none is, and their number is in the summary. Reproduces affine
 /// maps exactly (no leaf at all). Throws MemoryLimitError before taking the memory, naming the voxel size (or
 /// tolerance) that would fit; InvalidInput for values out of range.
 Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress = {});
