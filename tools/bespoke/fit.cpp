@@ -96,7 +96,7 @@ void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOption
   std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
                made.bake.error.max, options.bake.tolerance,
                arguments.voxel_size ? "a smaller --voxel-size lowers it"
-                                    : "a larger --max-memory allows smaller voxels");
+                                    : "ask for a smaller one to get below it");
 }
 
 void run(const FitArguments& arguments, const Progress& progress) {
