@@ -77,7 +77,7 @@ TEST(ComposeCommand, JoinsMapsWhoseModelsMeet) {
 
 // One vertex pulled far through its neighbours folds the space around it, and one uniform level repairs
 // nothing.
-TEST(FitCommand, WritesNothingUnlessCertifiedWhenAskedTo) {
+TEST(CertifiedFit, WritesNothingUnlessCertifiedWhenAskedTo) {
   const ExamplePair pair;
   const Points source = read_obj_points(pair.file("source.obj"));
   const double length = (source.rowwise().maxCoeff() - source.rowwise().minCoeff()).norm();

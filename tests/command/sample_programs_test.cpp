@@ -46,7 +46,8 @@ TEST(Readme, ShowsASampleVerbatim) {
 
 TEST(Readme, NamesEveryOptionOfTheCommand) {
   const std::string readme = read_text(BESPOKE_SOURCE_DIR "/README.md");
-  for (const std::string name : {"fit", "apply", "info", "measure", "samples"}) {
+  for (const std::string name :
+       {"fit", "apply", "info", "check", "invert", "compose", "measure", "samples"}) {
     const std::string help = bespoke({name, "--help"}).out;
     for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
       const std::string option =
