@@ -92,7 +92,8 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
   if (meeting == MeetingModels::must_be_the_same &&
       b_from_a.record.target.hash != c_from_b.record.source.hash)
     throw InvalidInput("the first map leads to another model (" + b_from_a.record.target.hash.substr(0, 12) +
-                       "…) than the second starts from (" + c_from_b.record.source.hash.substr(0, 12) + "…)");
+                       "…) than the second starts from (" + c_from_b.record.source.hash.substr(0, 12) +
+                       "…); --any-models joins them all the same");
   const WholeMap first(b_from_a), second(c_from_b);
   DerivedMap derived;
   Asset& asset = derived.asset;
