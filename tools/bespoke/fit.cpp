@@ -93,10 +93,10 @@ void print_stages(const MadeMap& made) {
 void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
                               const MadeMap& made) {
   if (made.bake.tolerance_met) return;
-  std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
-               made.bake.error.max, options.bake.tolerance,
-               arguments.voxel_size ? "a smaller --voxel-size lowers it"
-                                    : "ask for a smaller one to get below it");
+  std::fprintf(
+      stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
+      made.bake.error.max, options.bake.tolerance,
+      arguments.voxel_size ? "a smaller --voxel-size lowers it" : "ask for a smaller one to get below it");
 }
 
 void run(const FitArguments& arguments, const Progress& progress) {
