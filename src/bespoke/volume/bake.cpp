@@ -134,30 +134,36 @@ Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Pr
   builder->refine();
   Bake result;
   BakeSummary& summary = result.summary;
-  for (int round = 0; round < largest_number_of_rounds; ++round) {
-    refine_folds(map, builder, summary, progress);
-    result.pyramid = builder->pyramid();
-    Pyramid repaired = result.pyramid;
-    const RepairSummary repair = repair_folds(repaired, map.affine(), progress);
-    if (repair.cells > 0 && repair.folded == 0) {
-      summary.repaired_cells = repair.cells;
-      summary.repair_cost = repair.largest_change;
-      result.pyramid = std::move(repaired);
-    } else {
-      // Half a repair would cost accuracy and prove nothing.
-      summary.folded_cells = repair.cells;
-    }
-    const Points x = fresh_points(*builder, result.pyramid, support, options.error_points,
-                                  error_seed + static_cast<std::uint64_t>(round));
-    const std::vector<double> errors =
+  const auto errors_at = [&](const Points& x) {
+    std::vector<double> errors =
         displacement_errors(BakedMap(map.affine(), result.pyramid), map, x, progress);
     summary.error = summarize(errors);
-    // What the repair costs, no finer leaf brings back.
-    if (summary.error.max <= options.tolerance || summary.repaired_cells > 0) break;
-    if (round + 1 == largest_number_of_rounds) break;
+    return errors;
+  };
+  for (int round = 0;; ++round) {
+    result.pyramid = builder->pyramid();
+    const Points x = fresh_points(*builder, result.pyramid, support, options.error_points,
+                                  error_seed + static_cast<std::uint64_t>(round));
+    const std::vector<double> errors = errors_at(x);
+    if (summary.error.max <= options.tolerance || round + 1 == largest_number_of_rounds) break;
     if (builder->refine_at(points_above(x, errors, options.tolerance)) == 0) break;
     builder->refine();
   }
+  refine_folds(map, builder, summary, progress);
+  if (summary.refined_folds > 0) result.pyramid = builder->pyramid();
+  Pyramid repaired = result.pyramid;
+  const RepairSummary repair = repair_folds(repaired, map.affine(), progress);
+  if (repair.cells > 0 && repair.folded == 0) {
+    summary.repaired_cells = repair.cells;
+    summary.repair_cost = repair.largest_change;
+    result.pyramid = std::move(repaired);
+  } else {
+    // Half a repair would cost accuracy and prove nothing.
+    summary.folded_cells = repair.cells;
+  }
+  if (summary.refined_folds > 0 || summary.repaired_cells > 0)
+    errors_at(fresh_points(*builder, result.pyramid, support, options.error_points,
+                           error_seed + largest_number_of_rounds));
   summary.evaluated_points = builder->evaluated_points();
   summary.peak_bytes = builder->byte_count();
   return result;
