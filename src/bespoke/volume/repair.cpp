@@ -20,7 +20,7 @@ constexpr double step_fraction = 0.7;
 // fold that is wider than its cells learns too slowly from its surroundings. Coarse moves cost accuracy far
 // around, so they come last and for what is left only.
 constexpr int rounds_per_level = 10;
-constexpr int levels_upwards = 5;
+constexpr int levels_upwards = 3;
 
 using Node = std::array<int, 3>;
 
