@@ -1,0 +1,87 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using testing::HasSubstr;
+
+ProgramResult measure(const ExamplePair& pair, const std::vector<std::string>& extra = {}) {
+  std::vector<std::string> arguments{"measure",  pair.file("map.vdb"),    "--source", pair.file("source.obj"),
+                                     "--target", pair.file("target.obj"), "--quiet"};
+  arguments.insert(arguments.end(), extra.begin(), extra.end());
+  return bespoke(arguments);
+}
+
+TEST(MeasureCommand, PutsNumbersOnAMap) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const ProgramResult text = measure(pair, {"--product", pair.file("product.obj")});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  for (const char* part : {"mesh units (cm)", "anchor residuals", "source to target", "target to source",
+                           "Hausdorff", "conformal", "least det", "product.obj: 729 vertices",
+                           "clearance kept within", "inside the body", "self-intersecting"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+}
+
+TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const std::vector<std::string> options{"--json", "--product", pair.file("product.obj"), "--product",
+                                         pair.file("source.obj")};
+  const ProgramResult result = measure(pair, options);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["anchor_residuals"]["count"], 14);
+  EXPECT_EQ(json["source_faces"], 1280);
+  EXPECT_EQ(json["flipped_faces"], 0);
+  // The ellipsoids are 4 long: a fit that works leaves a small part of that.
+  EXPECT_LT(json["source_to_target"]["p99"].get<double>(), 0.05);
+  EXPECT_LT(json["target_to_source"]["p99"].get<double>(), 0.05);
+  EXPECT_GE(json["hausdorff"].get<double>(), json["source_to_target"]["max"].get<double>());
+  EXPECT_GT(json["distortion"]["least_determinant"].get<double>(), 0);
+  EXPECT_GE(json["distortion"]["conformal"]["min"].get<double>(), 1);
+  ASSERT_EQ(json["products"].size(), 2u);
+  EXPECT_EQ(json["products"][0]["name"], "product.obj");
+  // The source as a product lies on its own surface and lands on the target's.
+  const auto& itself = json["products"][1];
+  EXPECT_EQ(itself["clearance_before"]["max"], 0);
+  EXPECT_EQ(itself["penetration_before"]["vertices"], 0);
+  EXPECT_LT(itself["clearance_change"]["p95"].get<double>(), 0.05);
+  EXPECT_EQ(itself["self_intersections_after"], 0);
+  EXPECT_EQ(measure(pair, options).out, result.out);
+  std::vector<std::string> one_thread = options;
+  one_thread.insert(one_thread.end(), {"--threads", "1"});
+  EXPECT_EQ(measure(pair, one_thread).out, result.out);
+}
+
+TEST(MeasureCommand, RefusesOtherModelsThanTheMaps) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const ProgramResult swapped = bespoke({"measure", pair.file("map.vdb"), "--source", pair.file("target.obj"),
+                                         "--target", pair.file("source.obj")});
+  EXPECT_EQ(swapped.exit_code, 2);
+  EXPECT_THAT(swapped.err, HasSubstr("target.obj: is not the source that the map was made of"));
+}
+
+TEST(MeasureCommand, NamesWhatIsWrong) {
+  const ExamplePair pair;
+  EXPECT_EQ(bespoke({"measure"}).exit_code, 1);
+  EXPECT_EQ(bespoke({"measure", pair.file("map.vdb"), "--source", pair.file("source.obj")}).exit_code, 1);
+  const ProgramResult no_map = measure(pair);
+  EXPECT_EQ(no_map.exit_code, 4);
+  EXPECT_THAT(no_map.err, HasSubstr("map.vdb"));
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const ProgramResult no_product = measure(pair, {"--product", pair.file("none.obj")});
+  EXPECT_EQ(no_product.exit_code, 4);
+  EXPECT_THAT(no_product.err, HasSubstr("none.obj"));
+  EXPECT_THAT(bespoke({"measure", "--help"}).out, HasSubstr("Examples:\n  bespoke measure"));
+}
+
+}  // namespace
+}  // namespace bespoke::test
