@@ -69,6 +69,20 @@ TEST(MeasureCommand, RefusesOtherModelsThanTheMaps) {
   EXPECT_THAT(swapped.err, HasSubstr("target.obj: is not the source that the map was made of"));
 }
 
+TEST(MeasureCommand, ExactDiffersFromTheGridsByNoMoreThanTheTolerance) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb", {"--keep-exact", "--tolerance", "0.02"}).exit_code, 0);
+  const auto largest_residual = [&](const std::vector<std::string>& extra) {
+    const ProgramResult result = measure(pair, extra);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out)["anchor_residuals"]["max"].get<double>();
+  };
+  const double baked = largest_residual({"--json"});
+  const double exact = largest_residual({"--json", "--exact"});
+  EXPECT_NE(baked, exact);
+  EXPECT_NEAR(baked, exact, 0.02);
+}
+
 TEST(MeasureCommand, NamesWhatIsWrong) {
   const ExamplePair pair;
   EXPECT_EQ(bespoke({"measure"}).exit_code, 1);
@@ -80,6 +94,9 @@ TEST(MeasureCommand, NamesWhatIsWrong) {
   const ProgramResult no_product = measure(pair, {"--product", pair.file("none.obj")});
   EXPECT_EQ(no_product.exit_code, 4);
   EXPECT_THAT(no_product.err, HasSubstr("none.obj"));
+  const ProgramResult no_exact_map = measure(pair, {"--exact"});
+  EXPECT_EQ(no_exact_map.exit_code, 2);
+  EXPECT_THAT(no_exact_map.err, HasSubstr("map.vdb: holds no exact map"));
   EXPECT_THAT(bespoke({"measure", "--help"}).out, HasSubstr("Examples:\n  bespoke measure"));
 }
 

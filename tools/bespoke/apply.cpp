@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/fitting/exact_map_io.h"
 #include "bespoke/mesh/product_io.h"
 #include "bespoke/report/report.h"
 #include "bespoke/volume/baked_map.h"
@@ -14,6 +13,7 @@
 #include "name_option.h"
 #include "output_files.h"
 #include "run_options.h"
+#include "stored_exact_map.h"
 
 namespace bespoke::command {
 namespace {
@@ -95,14 +95,8 @@ std::shared_ptr<const ElasticMap> inverse_map(const ApplyArguments& arguments, A
 
 std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
   if (arguments.inverse) return inverse_map(arguments, asset);
-  if (!arguments.exact) return std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
-  if (asset.exact_map.empty())
-    throw InvalidInput(arguments.map + ": holds no exact map; make it with `bespoke fit --keep-exact`");
-  try {
-    return parse_exact_map(asset.exact_map);
-  } catch (const FormatError& error) {
-    throw FormatError(arguments.map + ": " + error.what());
-  }
+  if (arguments.exact) return stored_exact_map(arguments.map, asset);
+  return std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
 }
 
 /// Throws InvalidInput, with the product's name, for products that cannot be moved.

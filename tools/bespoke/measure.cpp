@@ -12,6 +12,7 @@
 #include "bespoke/volume/baked_map.h"
 #include "commands.h"
 #include "run_options.h"
+#include "stored_exact_map.h"
 
 namespace bespoke::command {
 namespace {
@@ -22,6 +23,7 @@ struct MeasureArguments {
   std::string target;
   std::vector<std::string> products;
   bool json = false;
+  bool exact = false;
   bool untrusted = false;
   RunOptions run;
 };
@@ -53,9 +55,13 @@ void run(const MeasureArguments& arguments, const Progress& progress) {
     anchor_sources.col(i) = asset.record.anchors[static_cast<std::size_t>(i)].a;
     anchor_targets.col(i) = asset.record.anchors[static_cast<std::size_t>(i)].b;
   }
-  const BakedMap elastic(asset.affine, std::move(asset.pyramid));
+  std::shared_ptr<const ElasticMap> elastic;
+  if (arguments.exact)
+    elastic = stored_exact_map(arguments.map, asset);
+  else
+    elastic = std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
   const MappingQuality quality = mapping_quality(
-      {source, target, elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
+      {source, target, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       progress);
   std::cout << (arguments.json ? quality_json(quality, names, asset.record.unit)
                                : quality_text(quality, names, asset.record.unit));
@@ -78,6 +84,8 @@ void add_measure_command(CLI::App& app) {
                    "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
       ->type_name("MESH");
   measure->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
+  measure->add_flag("--exact", arguments->exact,
+                    "Measure the exact map that --keep-exact stored, not the grids");
   measure->add_flag("--untrusted", arguments->untrusted,
                     "Check the asset in a child process under limits first");
   add_run_options(*measure, arguments->run);
