@@ -195,7 +195,10 @@ void complete_links(DeformationNodes& nodes) {
 void weigh(const Vector3& x, const std::vector<Near>& near, int used, DeformationNodes& nodes,
            Eigen::Index vertex) {
   constexpr double flatness = 0.02;  // of the spread: across the surface the nodes say nothing about slopes
-  const double reach = std::max(1.05 * near[used - 1].first, 1e-3 * nodes.spacing);
+  // Nodes fade out before they are dropped: the farthest of the full number, else those at the reach.
+  const double farthest = 1.05 * near[used - 1].first;
+  const double reach =
+      used < DeformationNodes::per_vertex ? std::max(farthest, follow_reach * nodes.spacing) : farthest;
   Eigen::VectorXd share(used);
   Vector3 mean = Vector3::Zero();
   for (int k = 0; k < used; ++k) {
