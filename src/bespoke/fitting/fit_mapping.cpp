@@ -87,7 +87,8 @@ StageReport surface_fit_report(const SurfaceFitSummary& summary, SurfaceFitMetho
                      {"stop_reason", to_string(summary.stop_reason)},
                      {"unmatched_vertices", summary.unmatched_vertices},
                      {"similarity_suffices", summary.similarity_suffices},
-                     {"matched_boundaries", summary.matched_boundaries}};
+                     {"matched_boundaries", summary.matched_boundaries},
+                     {"mended_vertices", summary.mended_vertices}};
   return {"surface-fit", std::string(name(method)) + ": " + to_string(summary), json.dump(), summary.seconds};
 }
 

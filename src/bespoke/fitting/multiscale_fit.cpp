@@ -9,6 +9,7 @@
 #include "bespoke/fitting/detail_layers.h"
 #include "bespoke/fitting/node_fit.h"
 #include "bespoke/fitting/similarity_fit.h"
+#include "bespoke/fitting/turned_faces.h"
 #include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
 
@@ -99,7 +100,9 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
     exact_sources = nodes.anchor_sources(Eigen::all, exact);
     const DetailFit details =
         fit_details({surface, target, exact_sources, exact_targets, scaled_diagonal}, progress);
-    surface.vertices = details.vertices;
+    const MendedSurface mended = mend_turned_faces(surface, details.vertices);
+    surface.vertices = mended.vertices;
+    fit.summary.mended_vertices = mended.mended_vertices;
     exact_sources = details.anchor_sources;
     fit.summary.iterations = nodes.iterations + details.layers;
     fit.summary.matched_boundaries = nodes.matched_boundaries;

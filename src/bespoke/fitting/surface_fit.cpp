@@ -57,6 +57,8 @@ std::string to_string(const SurfaceFitSummary& summary) {
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.matched_boundaries > 0)
     line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
+  if (summary.mended_vertices > 0)
+    line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn over a fold taken back";
   return line;
 }
 

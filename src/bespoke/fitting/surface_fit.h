@@ -42,6 +42,8 @@ struct SurfaceFitSummary {
   bool similarity_suffices =
       false;                   ///< multiscale: one similarity explains the target, nothing else was fitted
   int matched_boundaries = 0;  ///< multiscale: open boundaries of the source taken for the target's cut
+  std::size_t mended_vertices =
+      0;  ///< multiscale: drawn to the wrong side of a fold, so they follow their neighbours
   double seconds = 0;
 };
 

@@ -1,0 +1,86 @@
+#include "bespoke/fitting/turned_faces.h"
+
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
+
+/// Faces whose normals are more than 90° apart; a face without area has not turned.
+std::vector<Eigen::Index> turned_faces(const Points& before_normals, const TriangleMesh& after) {
+  const Points normals = face_normals(after);
+  std::vector<Eigen::Index> turned;
+  for (Eigen::Index face = 0; face < normals.cols(); ++face)
+    if (normals.col(face).dot(before_normals.col(face)) < 0) turned.push_back(face);
+  return turned;
+}
+
+/// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours'.
+Points spread_harmonically(const VertexAdjacency& adjacency, const std::vector<int>& free,
+                           Points displacements) {
+  constexpr int fixed = -1;
+  std::vector<int> row_of(static_cast<std::size_t>(displacements.cols()), fixed);
+  for (std::size_t k = 0; k < free.size(); ++k) row_of[free[k]] = static_cast<int>(k);
+  const auto count = static_cast<int>(free.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  Columns right(count, 3);
+  for (int row = 0; row < count; ++row) {
+    const int vertex = free[row];
+    constexpr double keep = 1e-9;  // decides where a component is free as a whole
+    right.row(row) = keep * displacements.col(vertex).transpose();
+    for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k) {
+      const int other = adjacency.neighbours[k];
+      if (row_of[other] == fixed)
+        right.row(row) += displacements.col(other).transpose();
+      else
+        entries.emplace_back(row, row_of[other], -1);
+    }
+    entries.emplace_back(row, row, keep + adjacency.start[vertex + 1] - adjacency.start[vertex]);
+  }
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  if (factor.info() != Eigen::Success)
+    throw SolverError("the displacements of " + std::to_string(count) + " vertices could not be spread");
+  const Columns solution = factor.solve(right);
+  for (int row = 0; row < count; ++row) displacements.col(free[row]) = solution.row(row).transpose();
+  return displacements;
+}
+
+}  // namespace
+
+MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after) {
+  constexpr int most_rings = 8;
+  const Points before_normals = face_normals(before);
+  const VertexAdjacency adjacency = vertex_adjacency(before);
+  TriangleMesh mended{after, before.faces};
+  std::vector<Eigen::Index> turned = turned_faces(before_normals, mended);
+  std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
+  std::vector<int> free;
+  for (int ring = 0; ring < most_rings && !turned.empty(); ++ring) {
+    // All that this ring releases counts from the next ring on.
+    const std::vector<char> was_free = is_free;
+    const auto release = [&](int vertex) {
+      if (!std::exchange(is_free[vertex], 1)) free.push_back(vertex);
+    };
+    for (const Eigen::Index face : turned)
+      for (const int vertex : before.faces.col(face)) {
+        release(vertex);
+        if (!was_free[vertex]) continue;
+        for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k)
+          release(adjacency.neighbours[k]);
+      }
+    mended.vertices = before.vertices + spread_harmonically(adjacency, free, after - before.vertices);
+    turned = turned_faces(before_normals, mended);
+  }
+  return {std::move(mended.vertices), free.size(), turned.size()};
+}
+
+}  // namespace bespoke
