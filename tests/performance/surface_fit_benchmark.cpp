@@ -17,20 +17,34 @@ TriangleMesh bumpy_sphere(int levels) {
 }
 
 /// 2,562 nodes onto 10,242, then 10,242 onto 40,962.
-void fit_laplacian(benchmark::State& state) {
+void fit(benchmark::State& state, SurfaceFitMethod method) {
   const auto levels = static_cast<int>(state.range(0));
   const TriangleMesh source = shapes::icosphere(levels);
   TriangleMesh target = bumpy_sphere(levels + 1);
   target.vertices =
       Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized()).toRotationMatrix() * target.vertices;
   const Eigen::VectorXd no_weights(0);
+  SurfaceFitOptions options;
+  options.method = method;
   SurfaceFit fit;
   for (auto _ : state)
-    fit = fit_surface({source, source.vertices, target, Points(3, 0), Points(3, 0), no_weights}, {});
+    fit = fit_surface({source, source.vertices, target, Points(3, 0), Points(3, 0), no_weights}, options);
   state.counters["iterations"] = fit.summary.iterations;
   state.counters["nodes"] = static_cast<double>(source.vertices.cols());
+  state.counters["distance_p95"] = fit.summary.after.p95;
 }
-BENCHMARK(fit_laplacian)->Arg(4)->Arg(5)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(fit, laplacian, SurfaceFitMethod::laplacian)
+    ->Arg(4)
+    ->Arg(5)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(fit, multiscale, SurfaceFitMethod::multiscale)
+    ->Arg(4)
+    ->Arg(5)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace bespoke
