@@ -3,15 +3,14 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/rbf/multiscale.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "support/random_points.h"
+#include "support/shapes.h"
 
 namespace bespoke {
 namespace {
@@ -29,31 +28,6 @@ Points read_points(const std::filesystem::path& path) {
   return Eigen::Map<const Points>(coordinates.data(), 3, Eigen::Index(coordinates.size() / 3));
 }
 
-/// Every face becomes four: new vertices at the middle of edges.
-void subdivide(Correspondences& pairs, Faces& faces) {
-  std::map<std::pair<int, int>, int> middles;
-  std::vector<std::pair<int, int>> edges;
-  const auto middle = [&](int a, int b) {
-    const auto edge = std::minmax(a, b);
-    const auto [entry, is_new] = middles.try_emplace(edge, int(pairs.sources.cols()) + int(edges.size()));
-    if (is_new) edges.push_back(edge);
-    return entry->second;
-  };
-  Faces finer(3, 4 * faces.cols());
-  for (Eigen::Index f = 0; f < faces.cols(); ++f) {
-    const Eigen::Vector3i v = faces.col(f);
-    const Eigen::Vector3i m(middle(v[0], v[1]), middle(v[1], v[2]), middle(v[2], v[0]));
-    finer.middleCols<4>(4 * f) << v[0], v[1], v[2], m[0], m[0], m[1], m[2], m[1], m[2], m[0], m[1], m[2];
-  }
-  faces = finer;
-  for (Points* points : {&pairs.sources, &pairs.targets}) {
-    const Eigen::Index old = points->cols();
-    points->conservativeResize(3, old + Eigen::Index(edges.size()));
-    for (std::size_t e = 0; e < edges.size(); ++e)
-      points->col(old + Eigen::Index(e)) = (points->col(edges[e].first) + points->col(edges[e].second)) / 2;
-  }
-}
-
 /// A real pair of bodies where it is present, else a bent sphere; 13,380 pairs and, subdivided, four times as
 /// many each time.
 Correspondences load(int subdivisions) {
@@ -68,8 +42,12 @@ Correspondences load(int subdivisions) {
   Correspondences pairs{mesh.vertices, read_points(folder / "gt_a_on_b.xyz")};
   const auto weights = Eigen::VectorXd::Ones(pairs.sources.cols());
   pairs.targets = inverse(align_rigidly(pairs.sources, pairs.targets, weights)) * pairs.targets;
-  for (int k = 0; k < subdivisions; ++k) subdivide(pairs, mesh.faces);
-  return pairs;
+  TriangleMesh moved{pairs.targets, mesh.faces};
+  for (int k = 0; k < subdivisions; ++k) {
+    mesh = shapes::subdivided(mesh);
+    moved = shapes::subdivided(moved);
+  }
+  return {mesh.vertices, moved.vertices};
 }
 
 MultiscaleOptions options_for(const Points& sources, bool composed) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <utility>
-#include <vector>
 
 namespace bespoke::shapes {
 
@@ -25,39 +24,42 @@ TriangleMesh cube(double edge) {
 
 TriangleMesh icosphere(int levels) {
   const double g = (1 + std::sqrt(5.0)) / 2;
-  std::vector<Vector3> vertices{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  for (Vector3& vertex : vertices) vertex.normalize();
-  std::vector<Eigen::Vector3i> faces{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                     {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                     {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                     {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  for (int level = 0; level < levels; ++level) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto [at, added] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
-      if (added)
-        vertices.push_back(
-            (vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
-      return at->second;
-    };
-    std::vector<Eigen::Vector3i> finer;
-    for (const Eigen::Vector3i& face : faces) {
-      const int ab = middle(face(0), face(1)), bc = middle(face(1), face(2)), ca = middle(face(2), face(0));
-      finer.push_back({face(0), ab, ca});
-      finer.push_back({face(1), bc, ab});
-      finer.push_back({face(2), ca, bc});
-      finer.push_back({ab, bc, ca});
-    }
-    faces = std::move(finer);
-  }
   TriangleMesh mesh;
-  mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    mesh.vertices.col(static_cast<Eigen::Index>(i)) = vertices[i];
-  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t i = 0; i < faces.size(); ++i) mesh.faces.col(static_cast<Eigen::Index>(i)) = faces[i];
+  mesh.vertices = Points{{-1, 1, -1, 1, 0, 0, 0, 0, g, g, -g, -g},
+                         {g, g, -g, -g, -1, 1, -1, 1, 0, 0, 0, 0},
+                         {0, 0, 0, 0, g, g, -g, -g, -1, 1, -1, 1}}
+                      .colwise()
+                      .normalized();
+  mesh.faces = Faces{{0, 0, 0, 0, 0, 1, 5, 11, 10, 7, 3, 3, 3, 3, 3, 4, 2, 6, 8, 9},
+                     {11, 5, 1, 7, 10, 5, 11, 10, 7, 1, 9, 4, 2, 6, 8, 9, 4, 2, 6, 8},
+                     {5, 1, 7, 10, 11, 9, 4, 2, 6, 8, 4, 2, 6, 8, 9, 5, 11, 10, 7, 1}};
+  for (int level = 0; level < levels; ++level) {
+    mesh = subdivided(mesh);
+    mesh.vertices.colwise().normalize();
+  }
   return mesh;
+}
+
+TriangleMesh subdivided(const TriangleMesh& mesh) {
+  std::map<std::pair<int, int>, int> middles;
+  const auto first = static_cast<int>(mesh.vertices.cols());
+  const auto middle = [&](int a, int b) {
+    return middles.try_emplace(std::minmax(a, b), first + static_cast<int>(middles.size())).first->second;
+  };
+  TriangleMesh finer;
+  finer.faces.resize(3, 4 * mesh.faces.cols());
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
+    const int a = mesh.faces(0, f), b = mesh.faces(1, f), c = mesh.faces(2, f);
+    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    finer.faces.middleCols<4>(4 * f) << a, b, c, ab,  //
+        ab, bc, ca, bc,                               //
+        ca, ab, bc, ca;
+  }
+  finer.vertices.resize(3, first + static_cast<Eigen::Index>(middles.size()));
+  finer.vertices.leftCols(first) = mesh.vertices;
+  for (const auto& [edge, vertex] : middles)
+    finer.vertices.col(vertex) = (mesh.vertices.col(edge.first) + mesh.vertices.col(edge.second)) / 2;
+  return finer;
 }
 
 TriangleMesh square_grid(int n) {

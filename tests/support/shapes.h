@@ -16,6 +16,10 @@ TriangleMesh icosphere(int levels);
 /// n×n squares of two triangles each over [0, 1]², normals +z.
 TriangleMesh square_grid(int n);
 
+/// Every face as four: a new vertex in the middle of every edge, after the old ones. Meshes of the same faces
+/// get the same new faces.
+TriangleMesh subdivided(const TriangleMesh& mesh);
+
 /// Both meshes as one, b's vertices after a's.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
