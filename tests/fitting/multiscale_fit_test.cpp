@@ -22,8 +22,10 @@ struct Scene {
   Points anchor_targets = Points(3, 0);
   Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
 
+  SurfaceFitOptions options = {};
+
   SurfaceFit fit() const {
-    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, {});
+    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
   }
 };
 
@@ -77,6 +79,41 @@ TEST(FitSurfaceMultiscale, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
   EXPECT_LT(fit.summary.after.p95, 1e-3);
   EXPECT_EQ(fit.summary.unmatched_vertices, 0u);
   for (const double confidence : fit.confidence) EXPECT_GT(confidence, 0.5);
+}
+
+/// What of the mesh lies above the height, with all its vertices.
+TriangleMesh cut_at(TriangleMesh mesh, double height) {
+  std::vector<int> kept;
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f)
+    if (mesh.vertices(2, mesh.faces.col(f)).minCoeff() > height) kept.push_back(static_cast<int>(f));
+  return {mesh.vertices, mesh.faces(Eigen::all, kept)};
+}
+
+TEST(FitSurfaceMultiscale, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo) {
+  // The source goes on below the height at which the target ends.
+  constexpr double source_end = -0.5, target_end = -0.35;
+  const double target_rim = 0.95 * target_end;  // bend() scales heights
+  Scene scene{cut_at(potato(4), source_end), cut_at(potato(5), target_end)};
+  for (auto&& x : scene.target.vertices.colwise()) x = bend(x);
+  std::vector<int> upper;
+  for (int i = 0; i < 42; ++i)
+    if (scene.source.vertices(2, i) > 0.1) upper.push_back(i);
+  scene.anchor_sources = scene.source.vertices(Eigen::all, upper);
+  scene.anchor_targets = scene.anchor_sources;
+  for (auto&& x : scene.anchor_targets.colwise()) x = bend(x);
+  scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
+
+  const auto lowest = [&](BoundaryRule rule) {
+    scene.options.boundaries = rule;
+    const SurfaceFit fit = scene.fit();
+    EXPECT_EQ(fit.summary.matched_boundaries, rule == BoundaryRule::free ? 0 : 1);
+    return fit.vertices(2, scene.source.faces.reshaped()).minCoeff();
+  };
+  const double source_rim = 0.95 * source_end;
+  EXPECT_NEAR(lowest(BoundaryRule::free), source_rim, 0.05);
+  EXPECT_NEAR(lowest(BoundaryRule::matched), target_rim, 0.05);
+  // Cuts this near each other are taken for the same.
+  EXPECT_NEAR(lowest(BoundaryRule::automatic), target_rim, 0.05);
 }
 
 TEST(FitSurfaceMultiscale, TheEndOfTheTargetDoesNotAttract) {

@@ -18,9 +18,10 @@ constexpr std::size_t grain = 32;
 }  // namespace
 
 BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors,
-                                 const TargetSurface& target)
-    : target_(target) {
-  if (target.boundary_edges().cols() == 0 || anchors.cols() == 0) return;
+                                 const TargetSurface& target, BoundaryRule rule)
+    : target_(target), rule_(rule) {
+  if (target.boundary_edges().cols() == 0 || rule == BoundaryRule::free) return;
+  if (anchors.cols() == 0 && rule == BoundaryRule::automatic) return;
   const Eigen::Matrix2Xi& edges = source_rest.boundary_edges();
   const Points& rest = source_rest.mesh().vertices;
   std::map<int, double> length;
@@ -43,8 +44,9 @@ BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points&
     vertices_.push_back(vertex);
     boundary_.push_back(numbered.first->second);
     length_.push_back(own_length);
-    anchor_distance_.push_back(
-        std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
+    if (rule == BoundaryRule::automatic)
+      anchor_distance_.push_back(
+          std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
   }
   boundaries_ = static_cast<int>(number_of_root.size());
   accepted_.assign(static_cast<std::size_t>(boundaries_), 0);
@@ -71,6 +73,11 @@ BoundaryMatch BoundaryMatcher::closest(int vertex, const Points& vertices) const
 }
 
 void BoundaryMatcher::decide(const Points& vertices) {
+  if (rule_ == BoundaryRule::matched) {
+    accepted_.assign(accepted_.size(), 1);
+    matched_boundaries_ = boundaries_;
+    return;
+  }
   std::vector<int> agree(accepted_.size(), 0), total(accepted_.size(), 0);
   for (std::size_t k = 0; k < vertices_.size(); ++k) {
     const BoundaryMatch found = closest(vertices_[k], vertices);

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bespoke/fitting/surface_fit.h"
 #include "bespoke/fitting/target_surface.h"
 
 namespace bespoke {
@@ -15,12 +16,14 @@ struct BoundaryMatch {
 };
 
 /// Ties the cuts of open models to each other. Whether two cuts are the same place of the body cannot be seen
-/// from the surfaces; a boundary of the source counts as the same cut when meeting the target's boundary
-/// stretches the strip between it and the nearest anchor by less than half for nine tenths of its vertices.
+/// from the surfaces; unless the caller rules it, a boundary of the source counts as the same cut when
+/// meeting the target's boundary stretches the strip between it and the nearest anchor by less than half for
+/// nine tenths of its vertices.
 class BoundaryMatcher {
  public:
   /// `source_rest`: the source, aligned; anchors: 3×k, aligned with it, mesh units.
-  BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors, const TargetSurface& target);
+  BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors, const TargetSurface& target,
+                  BoundaryRule rule);
 
   /// Decides, once, with the source's vertices (3×n) where they are when only surfaces and anchors were met.
   void decide(const Points& vertices);
@@ -35,6 +38,7 @@ class BoundaryMatcher {
   BoundaryMatch closest(int vertex, const Points& vertices) const;
 
   const TargetSurface& target_;
+  BoundaryRule rule_;
   std::vector<int> vertices_;   // of the source's boundaries
   std::vector<int> boundary_;   // of each of them: which one
   std::vector<double> length_;  // of each, mesh units

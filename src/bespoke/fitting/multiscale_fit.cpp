@@ -94,8 +94,9 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
   fit.summary.before = distances(input.warped_vertices, target);
   Points exact_sources = anchors(Eigen::all, exact);
   if (!similarity_suffices) {
-    const NodeFit nodes = fit_nodes(
-        {surface, target, anchors, input.anchor_targets, input.anchor_weights, scaled_diagonal}, progress);
+    const NodeFit nodes = fit_nodes({surface, target, anchors, input.anchor_targets, input.anchor_weights,
+                                     scaled_diagonal, options.boundaries},
+                                    progress);
     surface.vertices = nodes.vertices;
     exact_sources = nodes.anchor_sources(Eigen::all, exact);
     const DetailFit details =

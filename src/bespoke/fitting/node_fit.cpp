@@ -304,7 +304,7 @@ NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
   const TargetSurface rest(input.rest);
   std::vector<SurfacePoint> feet;
   for (const auto& anchor : input.anchor_sources.colwise()) feet.push_back(rest.closest(anchor));
-  BoundaryMatcher boundaries(rest, input.anchor_sources, input.target);
+  BoundaryMatcher boundaries(rest, input.anchor_sources, input.target, input.boundaries);
 
   int total = 0;
   for (const Level& level : levels) total += level.iterations;

@@ -15,6 +15,7 @@ struct NodeFitInput {
   /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
   const Eigen::VectorXd& anchor_weights;
   double diagonal = 0;  ///< of the aligned source
+  BoundaryRule boundaries = BoundaryRule::automatic;
 };
 
 struct NodeFit {

@@ -16,6 +16,13 @@ enum class SurfaceFitMethod {
   multiscale,  ///< smooth deformations, coarse to fine (multiscale_fit.h)
 };
 
+/// What an open boundary of the source does where the target is open too.
+enum class BoundaryRule {
+  automatic,  ///< meets the target's boundary where both are plausibly the same cut (boundary_match.h)
+  free,       ///< goes where the surface around it goes: for models that were cut at different places
+  matched,    ///< meets the target's boundary
+};
+
 struct SurfaceFitOptions {
   SurfaceFitMethod method = SurfaceFitMethod::multiscale;
   int max_iterations = 100;  ///< laplacian only: multiscale runs a fixed schedule
@@ -26,6 +33,7 @@ struct SurfaceFitOptions {
   /// the target in one step (laplacian only). 1 is the printed equation. By default it grows with the number
   /// of vertices, so that displacements spread over the same distance at any resolution.
   std::optional<double> stiffness;
+  BoundaryRule boundaries = BoundaryRule::automatic;  ///< multiscale only
 };
 
 enum class StopReason { converged, stagnated, iteration_cap };

@@ -15,6 +15,7 @@ std::string options_json(const MakeMapOptions& options, bool given_fitted) {
   json["path"] = name_of(rotation_paths, options.path);
   if (!given_fitted) {
     json["surface_fit"] = name_of(surface_fit_methods, options.fit.surface_fit.method);
+    json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
     json["max_iterations"] = options.fit.surface_fit.max_iterations;
     json["epsilon"] = options.fit.surface_fit.epsilon;
   }

@@ -20,6 +20,10 @@ inline constexpr std::array surface_fit_methods{
     Named<SurfaceFitMethod>{"laplacian", SurfaceFitMethod::laplacian},
     Named<SurfaceFitMethod>{"multiscale", SurfaceFitMethod::multiscale}};
 
+inline constexpr std::array boundary_rules{Named<BoundaryRule>{"auto", BoundaryRule::automatic},
+                                           Named<BoundaryRule>{"free", BoundaryRule::free},
+                                           Named<BoundaryRule>{"matched", BoundaryRule::matched}};
+
 inline constexpr std::array elastic_methods{
     Named<ElasticMethod>{"csrbf", ElasticMethod::csrbf},
     Named<ElasticMethod>{"multiscale", ElasticMethod::multiscale},
