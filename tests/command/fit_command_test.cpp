@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "command/example_pair.h"
 
@@ -207,9 +210,64 @@ TEST_F(FitCommand, ReportsEveryStage) {
       EXPECT_TRUE(stage.contains("iterations")) << stage;
       EXPECT_TRUE(stage.contains("stop_reason")) << stage;
     }
+  EXPECT_EQ(report["confidence"]["count"], 642);
+  EXPECT_TRUE(report["unmet_vertices"].is_array());
   EXPECT_EQ(report["source"]["vertices"], 642);
   EXPECT_GT(report["voxels"], 0);
   EXPECT_GT(report["peak_memory"], 1000000);
+}
+
+TEST_F(FitCommand, ListsTheVerticesItMisses) {
+  // Two vertices change places across the body: no map without folds takes them there.
+  std::istringstream source(read_text(pair_.file("source.obj")));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(source, line);) lines.push_back(line);
+  const auto vertex = [&](int index) {
+    return std::find_if(lines.begin(), lines.end(),
+                        [&](const std::string& line) { return line.rfind("v ", 0) == 0; }) +
+           index;
+  };
+  std::iter_swap(vertex(0), vertex(3));
+  std::ofstream fitted(pair_.file("swapped.obj"));
+  for (const std::string& line : lines) fitted << line << '\n';
+  fitted.close();
+  ASSERT_EQ(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
+                     pair_.file("swapped.obj"), "-o", pair_.file("map.vdb"), "--tolerance", "0.5%",
+                     "--report", pair_.file("report.json")})
+                .exit_code,
+            0);
+  const json report = read_json("report.json");
+  EXPECT_FALSE(report.contains("confidence"));
+  std::vector<int> listed;
+  for (const json& unmet : report["unmet_vertices"]) {
+    listed.push_back(unmet["vertex"]);
+    EXPECT_GT(unmet["residual"], 1e-4 * report["source"]["diagonal"].get<double>());
+    EXPECT_TRUE(unmet["reason"].is_string());
+  }
+  EXPECT_THAT(listed, IsSupersetOf({0, 3}));
+}
+
+TEST_F(FitCommand, WritesTheConfidenceOfEveryVertex) {
+  ASSERT_EQ(pair_.fit("first.vdb", {"--confidence-out", pair_.file("confidence.txt")}).exit_code, 0);
+  std::istringstream lines(read_text(pair_.file("confidence.txt")));
+  int count = 0;
+  for (double value; lines >> value; ++count) {
+    EXPECT_GE(value, 0);
+    EXPECT_LE(value, 1);
+  }
+  EXPECT_EQ(count, 642);
+  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
+                          pair_.file("source.obj"), "-o", pair_.file("map.vdb"), "--confidence-out",
+                          pair_.file("other.txt")}),
+                 1, "--confidence-out");
+}
+
+TEST_F(FitCommand, TakesTheRuleForOpenBoundaries) {
+  for (const std::string rule : {"auto", "free", "matched"}) {
+    ASSERT_EQ(pair_.fit("map.vdb", {"--boundaries", rule}).exit_code, 0);
+    EXPECT_EQ(info("map.vdb")["options"]["boundaries"], rule);
+  }
+  EXPECT_EQ(pair_.fit("map.vdb", {"--boundaries", "glued"}).exit_code, 1);
 }
 
 TEST_F(FitCommand, WritesTheSameBytesOnAnyNumberOfThreads) {

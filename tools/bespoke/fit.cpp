@@ -23,8 +23,10 @@ struct FitArguments {
   std::string output;
   std::string fitted;
   std::string fitted_out;
+  std::string confidence_out;
   std::string report;
   std::optional<SurfaceFitMethod> surface_fit;
+  std::optional<BoundaryRule> boundaries;
   std::optional<ElasticMethod> elastic;
   std::optional<RotationPath> path;
   std::optional<Length> lambda;
@@ -44,11 +46,13 @@ void require_consistent(const FitArguments& arguments) {
     throw CLI::ValidationError("--anchors", "is required unless --fitted gives the fitted source");
   if (arguments.add_corners && arguments.anchors.empty())
     throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
+  if (!arguments.confidence_out.empty() && !arguments.fitted.empty())
+    throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
   std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
   std::vector<std::filesystem::path> outputs{arguments.output};
   for (const std::string* input : {&arguments.anchors, &arguments.fitted})
     if (!input->empty()) inputs.emplace_back(*input);
-  for (const std::string* output : {&arguments.fitted_out, &arguments.report})
+  for (const std::string* output : {&arguments.fitted_out, &arguments.confidence_out, &arguments.report})
     if (!output->empty()) outputs.emplace_back(*output);
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
   require_safe_outputs(inputs, outputs);
@@ -62,6 +66,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
     options.path = RotationPath::euler;
   }
   if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
+  if (arguments.boundaries) options.fit.surface_fit.boundaries = *arguments.boundaries;
   if (arguments.elastic) options.fit.elastic = *arguments.elastic;
   if (arguments.path) options.path = *arguments.path;
   if (arguments.lambda) options.fit.lambda = arguments.lambda->in_mesh_units(source_diagonal);
@@ -72,6 +77,17 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
   if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
   options.keep_exact = arguments.keep_exact;
   return options;
+}
+
+/// One number a line, in the order of the source's vertices.
+std::string confidence_lines(const std::vector<double>& confidence) {
+  std::string lines;
+  char line[32];
+  for (const double value : confidence) {
+    std::snprintf(line, sizeof line, "%.4f\n", value);
+    lines += line;
+  }
+  return lines;
 }
 
 TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
@@ -125,6 +141,8 @@ void run(const FitArguments& arguments, const Progress& progress) {
     outputs.write(arguments.fitted_out, [&](const auto& path) {
       write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces});
     });
+  if (!arguments.confidence_out.empty())
+    outputs.write_text(arguments.confidence_out, confidence_lines(made.fit.confidence));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty()) outputs.write_text(arguments.report, fit_report(input, made, seconds));
   outputs.keep();
@@ -144,6 +162,11 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
       add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fit_methods,
                       with_default("How the source is laid onto the target",
                                    name_of(surface_fit_methods, defaults.fit.surface_fit.method)));
+  add_name_option(
+      fit, "--boundaries", arguments.boundaries, boundary_rules,
+      with_default("multiscale: whether open boundaries of the source meet the target's; free when the "
+                   "models were cut at different places",
+                   name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
   CLI::Option* elastic = add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
@@ -189,6 +212,9 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
       ->type_name("MESH");
   fit.add_option("--fitted-out", arguments.fitted_out, "Write the source as laid onto the target")
       ->type_name("MESH");
+  fit.add_option("--confidence-out", arguments.confidence_out,
+                 "Write how well each source vertex found its counterpart, 0 to 1, one line a vertex")
+      ->type_name("FILE");
   fit.add_flag("--require-certified", arguments.require_certified,
                "Write nothing unless the map is proved to be a bijection of space");
   fit.add_flag("--keep-exact", arguments.keep_exact,

@@ -205,9 +205,11 @@ void finish(FittedMapping& result, const TriangleMesh& source, const Anchors& an
   result.elastic = std::move(fit.map);
 
   const ElasticMap& elastic = *result.elastic;
-  const Points referenced = source.vertices(Eigen::all, pairs.referenced);
-  const Points wanted = result.fitted_vertices(Eigen::all, pairs.referenced);
-  result.vertex_residuals = summarize(distances(elastic(referenced), wanted));
+  const Points images = elastic(source.vertices);
+  result.vertex_residuals = summarize(
+      distances(images(Eigen::all, pairs.referenced), result.fitted_vertices(Eigen::all, pairs.referenced)));
+  if (options.fit_tolerance > 0)
+    result.unmet = unmet_vertices(source, images, result.fitted_vertices, options.fit_tolerance);
   result.anchor_residual =
       distances(result.target_from_source * elastic(source_points(anchors)), target_points(anchors));
   result.anchor_residuals = summarize(result.anchor_residual);
@@ -216,6 +218,7 @@ void finish(FittedMapping& result, const TriangleMesh& source, const Anchors& an
   std::snprintf(line, sizeof line, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
                 result.vertex_residuals.p95, result.vertex_residuals.max, result.anchor_residuals.max);
   fit.line += line;
+  if (!result.unmet.empty()) fit.line += "; " + to_string(result.unmet);
   if (pairs.unreferenced > 0)
     fit.line += "; " + std::to_string(pairs.unreferenced) + " unreferenced vertices left out";
   if (pairs.duplicates > 0)
@@ -223,6 +226,7 @@ void finish(FittedMapping& result, const TriangleMesh& source, const Anchors& an
   Json json = std::move(fit.json);
   json.update({{"lambda", options.lambda},
                {"vertex_residual", to_json(result.vertex_residuals)},
+               {"unmet_vertices", result.unmet.size()},
                {"anchor_residual", to_json(result.anchor_residuals)},
                {"unreferenced_vertices", pairs.unreferenced},
                {"duplicate_vertices", pairs.duplicates}});
@@ -269,6 +273,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
       fit_surface({source, warped, target_in_source, anchor_sources, anchor_targets, anchor_weights},
                   options.surface_fit, progress);
   result.fitted_vertices = std::move(fit.vertices);
+  result.confidence = std::move(fit.confidence);
   result.stages.push_back(surface_fit_report(fit.summary, options.surface_fit.method));
 
   finish(result, source, anchors, options, progress);

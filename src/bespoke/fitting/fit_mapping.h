@@ -7,6 +7,7 @@
 
 #include "bespoke/fitting/anchors.h"
 #include "bespoke/fitting/surface_fit.h"
+#include "bespoke/fitting/unmet_vertices.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/progress.h"
@@ -43,9 +44,11 @@ struct FittedMapping {
   RigidTransform target_from_source;          ///< Γ
   std::shared_ptr<const ElasticMap> elastic;  ///< E
   Points fitted_vertices;                     ///< H'_a, 3×n, source frame, mesh units
+  std::vector<double> confidence;             ///< of the surface fitting, n (surface_fit.h); empty without
   Statistics anchor_residuals;                ///< |Γ(E(q)) − q'|, mesh units
   std::vector<double> anchor_residual;        ///< the same, one per pair
   Statistics vertex_residuals;                ///< |E(vᵢ) − v'ᵢ|, mesh units
+  std::vector<UnmetVertex> unmet;             ///< beyond a fit tolerance above 0; none asked for at 0
   std::vector<StageReport> stages;
 };
 

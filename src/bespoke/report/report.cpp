@@ -19,6 +19,14 @@ Json model(const TriangleMesh& mesh) {
   return json;
 }
 
+Json unmet_vertices(const std::vector<UnmetVertex>& unmet) {
+  Json list = Json::array();
+  for (const UnmetVertex& vertex : unmet)
+    list.push_back(
+        {{"vertex", vertex.vertex}, {"residual", vertex.residual}, {"reason", to_string(vertex.reason)}});
+  return list;
+}
+
 }  // namespace
 
 std::size_t peak_memory() {
@@ -36,17 +44,19 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
   stages.push_back(stage("certificate", certificate.seconds, to_json(certificate)));
   stages.push_back(stage("preview", made.preview_seconds, Json::object()));
 
-  const Json json = {{"command", "fit"},
-                     {"unit", made.asset.record.unit},
-                     {"source", model(input.source)},
-                     {"target", model(input.target)},
-                     {"options", Json::parse(made.asset.record.options_json)},
-                     {"anchor_residuals", to_json(made.fit.anchor_residuals)},
-                     {"vertex_residuals", to_json(made.fit.vertex_residuals)},
-                     {"stages", std::move(stages)},
-                     {"voxels", made.asset.pyramid.voxel_count()},
-                     {"seconds", seconds},
-                     {"peak_memory", peak_memory()}};
+  Json json = {{"command", "fit"},
+               {"unit", made.asset.record.unit},
+               {"source", model(input.source)},
+               {"target", model(input.target)},
+               {"options", Json::parse(made.asset.record.options_json)},
+               {"anchor_residuals", to_json(made.fit.anchor_residuals)},
+               {"vertex_residuals", to_json(made.fit.vertex_residuals)},
+               {"unmet_vertices", unmet_vertices(made.fit.unmet)},
+               {"stages", std::move(stages)},
+               {"voxels", made.asset.pyramid.voxel_count()},
+               {"seconds", seconds},
+               {"peak_memory", peak_memory()}};
+  if (!made.fit.confidence.empty()) json["confidence"] = to_json(summarize(made.fit.confidence));
   return json.dump(2) + "\n";
 }
 
