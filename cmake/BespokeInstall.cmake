@@ -4,7 +4,7 @@ set(BESPOKE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bespoke)
 
 foreach(header
     apply/apply_mapping asset/asset asset/asset_io atomic_file error fitting/anchors fitting/exact_map_io
-    fitting/fit_mapping fitting/pffd fitting/surface_fit mapping/elastic_map mapping/mapping
+    fitting/fit_mapping fitting/pffd fitting/surface_fit fitting/unmet_vertices mapping/elastic_map mapping/mapping
     mesh/closest_point mesh/mesh_io mesh/product_io mesh/triangle_mesh parallel pipeline/make_map
     pipeline/method_names progress rbf/csrbf rbf/global_rbf rbf/kernels rbf/multiscale rbf/point_grid
     report/inspection report/report rigid/rigid_alignment rigid/rigid_transform statistics types volume/bake
