@@ -13,6 +13,11 @@ namespace bespoke {
 void parallel_for(std::size_t count, std::size_t grain,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// Calls body() on the calling thread in an arena that no worker has entered or will enter: its parallel
+/// loops, those inside third-party code included, run on this thread alone. A child forked inside the body
+/// may therefore go on with it, although the workers of its parent are gone.
+void run_alone(const std::function<void()>& body);
+
 /// Reduces chunk results in the order of the chunks, so that the result has the same bits at any thread
 /// count. `partial(begin, end)` returns a Result for one chunk of `grain` indices; `combine(a, b)` folds b
 /// into a.

@@ -20,6 +20,7 @@
 
 #include "bespoke/asset/grid_conversion.h"
 #include "bespoke/error.h"
+#include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
@@ -212,21 +213,25 @@ StoredFile stored_file_from_untrusted_vdb(std::string_view bytes) {
   const std::uint64_t address_space = address_space_in_use();
 
   int ends[2];
-  pid_t pid;
+  pid_t pid = -1;
+  int fork_error = 0;
   {
     // Two forks at a time would give each child the other's pipe, and no pipe would end with its child.
     static std::mutex one_fork_at_a_time;
     const std::lock_guard lock(one_fork_at_a_time);
     if (::pipe2(ends, O_CLOEXEC) != 0) throw FileError(std::string("pipe: ") + std::strerror(errno));
-    pid = ::fork();
-    if (pid == 0) {
+    // Alone, because OpenVDB destroys trees in parallel: in the child it would wait for workers that were
+    // just stealing from this thread and are gone.
+    run_alone([&] {
+      pid = ::fork();
+      fork_error = errno;
+      if (pid != 0) return;
       ::close(ends[0]);
       confine(limits, address_space);
       run_child(ends[1], bytes);
-    }
+    });
     ::close(ends[1]);
   }
-  const int fork_error = errno;
   Descriptor pipe(ends[0]);
   if (pid < 0) throw FileError(std::string("fork: ") + std::strerror(fork_error));
   Child child(pid);
