@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "bespoke/error.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
 
 namespace bespoke {
 namespace {
@@ -21,38 +22,26 @@ using ::testing::IsEmpty;
 
 class WriteAtomically : public ::testing::Test {
  protected:
-  void SetUp() override {
-    directory_ =
-        fs::path(::testing::TempDir()) /
-        ("write_atomically_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(directory_);
-    fs::create_directories(directory_);
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   static auto text(const std::string& content) {
     return [content](const fs::path& temporary) { std::ofstream(temporary) << content; };
   }
-  static std::string content(const fs::path& path) {
-    std::ifstream stream(path);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   std::vector<std::string> names() const {
     std::vector<std::string> result;
-    for (const auto& entry : fs::directory_iterator(directory_)) result.push_back(entry.path().filename());
+    for (const auto& entry : fs::directory_iterator(directory_.path()))
+      result.push_back(entry.path().filename());
     std::sort(result.begin(), result.end());
     return result;
   }
 
-  fs::path directory_;
+  test::ScratchDirectory directory_;
 };
 
 TEST_F(WriteAtomically, CreatesAndReplaces) {
   const fs::path path = directory_ / "file.txt";
   write_atomically(path, text("old"));
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(test::read_text(path), "old");
   write_atomically(path, text("new"));
-  EXPECT_EQ(content(path), "new");
+  EXPECT_EQ(test::read_text(path), "new");
   EXPECT_THAT(names(), ElementsAre("file.txt"));
 }
 
@@ -64,7 +53,7 @@ TEST_F(WriteAtomically, WritesToAHiddenNeighbourWithTheSameEnding) {
     EXPECT_EQ(temporary.filename().string().front(), '.');
     EXPECT_FALSE(fs::exists(path));
   });
-  EXPECT_EQ(content(path), "");
+  EXPECT_EQ(test::read_text(path), "");
 }
 
 TEST_F(WriteAtomically, LeavesTheOldContentAndNothingElseWhenTheWriterThrows) {
@@ -76,7 +65,7 @@ TEST_F(WriteAtomically, LeavesTheOldContentAndNothingElseWhenTheWriterThrows) {
                                   throw Interrupted("interrupted");
                                 }),
                Interrupted);
-  EXPECT_EQ(content(path), "old");
+  EXPECT_EQ(test::read_text(path), "old");
   EXPECT_THAT(names(), ElementsAre("file.txt"));
 }
 
@@ -99,7 +88,7 @@ TEST_F(WriteAtomically, NamesTheMissingDirectoryAndTheReason) {
 }
 
 TEST_F(WriteAtomically, RefusesADirectory) {
-  EXPECT_THROW(write_atomically(directory_, text("x")), FileError);
+  EXPECT_THROW(write_atomically(directory_.path(), text("x")), FileError);
   EXPECT_THROW(write_atomically(directory_ / "", text("x")), FileError);
   EXPECT_THAT(names(), IsEmpty());
 }
@@ -111,7 +100,7 @@ TEST_F(WriteAtomically, ReplacesWhatALinkPointsTo) {
   fs::create_symlink("file.txt", link);
   write_atomically(link, text("new"));
   EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_EQ(content(path), "new");
+  EXPECT_EQ(test::read_text(path), "new");
 }
 
 TEST_F(WriteAtomically, KeepsThePermissionsOfAnExistingFile) {

@@ -3,22 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "bespoke/error.h"
 
 namespace bespoke {
 
-Statistics summarize(std::vector<double> values) {
-  if (values.empty()) return {};
+std::vector<double> sorted_finite(std::vector<double> values) {
   for (const double value : values)
     if (!std::isfinite(value)) throw InvalidInput("statistics of a value that is not finite");
   std::sort(values.begin(), values.end());
-  const auto nearest_rank = [&](double fraction) {
-    const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(values.size())));
-    return values[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {values.size(),      values.front(),     nearest_rank(0.5),
-          nearest_rank(0.95), nearest_rank(0.99), values.back()};
+  return values;
+}
+
+double nearest_rank(const std::vector<double>& sorted, double fraction) {
+  const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(sorted.size())));
+  return sorted[std::max<std::size_t>(rank, 1) - 1];
+}
+
+Statistics summarize(std::vector<double> values) {
+  if (values.empty()) return {};
+  const std::vector<double> sorted = sorted_finite(std::move(values));
+  return {sorted.size(),
+          sorted.front(),
+          nearest_rank(sorted, 0.5),
+          nearest_rank(sorted, 0.95),
+          nearest_rank(sorted, 0.99),
+          sorted.back()};
 }
 
 std::string to_string(const Statistics& statistics) {

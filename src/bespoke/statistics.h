@@ -16,6 +16,12 @@ struct Statistics {
   double max = 0;
 };
 
+/// Ascending. Throws InvalidInput on a non-finite value.
+std::vector<double> sorted_finite(std::vector<double> values);
+
+/// The smallest value that at least `fraction` of the ascending values, not none, do not exceed.
+double nearest_rank(const std::vector<double>& sorted, double fraction);
+
 /// Nearest-rank percentiles: every reported value is one of the sample. Throws InvalidInput on a non-finite
 /// value.
 Statistics summarize(std::vector<double> values);

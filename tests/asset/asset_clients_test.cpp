@@ -58,7 +58,7 @@ TEST_F(AssetClients, VdbPrintShowsAllGridsAndMetadata) {
 TEST_F(AssetClients, PyopenvdbReadsAllGridsAndMetadata) {
   const std::string python = "/usr/bin/python3";
   if (is_missing(python + " -c 'import pyopenvdb'")) GTEST_SKIP() << "pyopenvdb is not installed";
-  test::write_bytes(directory_ / "read.py", R"(
+  test::write_text(directory_ / "read.py", R"(
 import json, sys
 import pyopenvdb as vdb
 grids, metadata = vdb.readAll(sys.argv[1])

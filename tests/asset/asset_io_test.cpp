@@ -25,10 +25,10 @@ class AssetIo : public testing::Test {
 
   std::string written(const Asset& asset) {
     write_asset(directory_ / "map.vdb", asset);
-    return test::bytes_of(directory_ / "map.vdb");
+    return test::read_text(directory_ / "map.vdb");
   }
   Asset read_bytes(const std::string& bytes, bool untrusted = false) {
-    test::write_bytes(directory_ / "read.vdb", bytes);
+    test::write_text(directory_ / "read.vdb", bytes);
     return read_asset(directory_ / "read.vdb", {.untrusted = untrusted});
   }
 };

@@ -1,53 +1,22 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/asset/preview.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
+#include "support/shapes.h"
 
 namespace bespoke::test {
 
-/// A closed surface around `center`: an octahedron, its faces divided `divisions` times and pushed to radius.
-inline TriangleMesh sphere(const Vector3& center, double radius, int divisions) {
-  std::vector<Vector3> vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  std::vector<std::array<int, 3>> faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
-                                           {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
-  for (int division = 0; division < divisions; ++division) {
-    std::map<std::pair<int, int>, int> middles;
-    const auto middle = [&](int a, int b) {
-      const auto [entry, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
-      if (is_new)
-        vertices.push_back(
-            (vertices[static_cast<std::size_t>(a)] + vertices[static_cast<std::size_t>(b)]).normalized());
-      return entry->second;
-    };
-    std::vector<std::array<int, 3>> finer;
-    for (const auto& [a, b, c] : faces) {
-      const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      for (const auto& face : {std::array{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
-        finer.push_back(face);
-    }
-    faces = finer;
-  }
-  TriangleMesh mesh;
-  mesh.vertices.resize(3, static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    mesh.vertices.col(static_cast<Eigen::Index>(i)) = center + radius * vertices[i];
-  mesh.faces.resize(3, static_cast<Eigen::Index>(faces.size()));
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    mesh.faces.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3i(faces[i][0], faces[i][1], faces[i][2]);
-  return mesh;
+/// A closed surface around `center`.
+inline TriangleMesh sphere(const Vector3& center, double radius, int levels) {
+  return shapes::moved(shapes::icosphere(levels), {radius * Matrix3::Identity(), center});
 }
 
 /// u(x) = (0.1 sin x, 0.1 sin y, 0.1 cos z), times a window that is zero at the ends of the leaves.
@@ -118,30 +87,5 @@ inline Asset tiny_asset() {
   asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
   return asset;
 }
-
-inline std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
-
-/// A directory of its own, removed at the end.
-class ScratchDirectory {
- public:
-  ScratchDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "bespoke_asset_XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ScratchDirectory() { std::filesystem::remove_all(path_); }
-  ScratchDirectory(const ScratchDirectory&) = delete;
-  ScratchDirectory& operator=(const ScratchDirectory&) = delete;
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace bespoke::test

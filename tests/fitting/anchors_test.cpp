@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "bespoke/error.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
 
 namespace bespoke {
 namespace {
@@ -17,12 +18,8 @@ using ::testing::HasSubstr;
 class ReadAnchors : public ::testing::Test {
  protected:
   std::filesystem::path write(const std::string& name, const std::string& text) {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    const auto folder =
-        std::filesystem::path(::testing::TempDir()) / (std::string("anchors_") + test->name());
-    std::filesystem::create_directories(folder);
-    std::ofstream(folder / name, std::ios::binary) << text;
-    return folder / name;
+    test::write_text(directory_ / name, text);
+    return directory_ / name;
   }
 
   std::string message_for(const std::string& name, const std::string& text) {
@@ -39,6 +36,8 @@ class ReadAnchors : public ::testing::Test {
     return message_for("anchors.json",
                        R"({"pairs": [{"name": "good", "a": [0,0,0], "b": [1,2,3]}, )" + pair + "]}");
   }
+
+  test::ScratchDirectory directory_;
 };
 
 TEST_F(ReadAnchors, ReadsJson) {
@@ -124,7 +123,7 @@ TEST_F(ReadAnchors, NamesTheCsvLineAtFault) {
 
 TEST_F(ReadAnchors, ReportsAFileThatCannotBeOpened) {
   EXPECT_THROW(read_anchors("/nonexistent/anchors.json"), FileError);
-  EXPECT_THROW(read_anchors(::testing::TempDir()), FileError);
+  EXPECT_THROW(read_anchors(directory_.path()), FileError);
 }
 
 TEST(AddBoxCorners, PairsTheCornersByTheirSides) {

@@ -6,14 +6,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <thread>
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_io.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -27,22 +27,9 @@ using ::testing::Not;
 
 class MeshFiles : public ::testing::Test {
  protected:
-  void SetUp() override {
-    directory_ =
-        fs::path(::testing::TempDir()) /
-        ("mesh_files_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(directory_);
-    fs::create_directories(directory_);
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   fs::path file(const std::string& name, const std::string& content) const {
-    std::ofstream(directory_ / name, std::ios::binary) << content;
+    test::write_text(directory_ / name, content);
     return directory_ / name;
-  }
-  static std::string content(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
   }
   static std::string complaint(const fs::path& path) {
     try {
@@ -56,7 +43,7 @@ class MeshFiles : public ::testing::Test {
     return complaint(file(name, content));
   }
 
-  fs::path directory_;
+  test::ScratchDirectory directory_;
 };
 
 using ReadProduct = MeshFiles;
@@ -341,7 +328,7 @@ TEST_F(WriteProduct, OfWhatWasReadGivesTheSameBytes) {
     write_product(directory_ / name, two_polygons());
     const fs::path again = directory_ / (std::string("again") + name);
     write_product(again, read_product(directory_ / name));
-    EXPECT_EQ(content(directory_ / name), content(again)) << name;
+    EXPECT_EQ(test::read_text(directory_ / name), test::read_text(again)) << name;
   }
 }
 
@@ -359,7 +346,7 @@ TEST_F(WriteProduct, RecomputesNormals) {
   product.corners = {0, 1, 2, 3};
   product.has_normals = true;
   write_product(directory_ / "a.obj", product);
-  EXPECT_THAT(content(directory_ / "a.obj"), HasSubstr("vn 0 0 1\n"));
+  EXPECT_THAT(test::read_text(directory_ / "a.obj"), HasSubstr("vn 0 0 1\n"));
   for (const char* name : {"a.obj", "a.ply", "a.off"}) {
     write_product(directory_ / name, product);
     EXPECT_TRUE(read_product(directory_ / name).has_normals) << name;
@@ -385,7 +372,7 @@ TEST_F(WriteProduct, RefusesWhatAFileCannotHold) {
   EXPECT_THROW(write_product(directory_ / "a.stl", product), InvalidInput);
   write_product(directory_ / "a.obj", product);
   EXPECT_EQ(read_product(directory_ / "a.obj").vertices.cols(), 5);
-  EXPECT_EQ(std::distance(fs::directory_iterator(directory_), {}), 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(directory_.path()), {}), 1);
 }
 
 TEST_F(ReadProduct, MayBeCalledFromSeveralThreads) {

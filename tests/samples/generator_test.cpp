@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <utility>
@@ -14,6 +13,8 @@
 #include "bespoke/mesh/mesh_io.h"
 #include "mannequin.h"
 #include "samples.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
 
 namespace bespoke {
 namespace {
@@ -208,9 +209,9 @@ TEST(WriteSample, WritesWhatReadsBack) {
   const AnchorPair pair{"tip", Vector3(0.1, 1.0 / 3, 2), Vector3(-1e-7, 4, 5e6)};
   const Sample sample{
       "folder", triangle, {{"hat", triangle}}, {{"", triangle, {pair}}, {"94", triangle, {pair}}}};
-  const std::filesystem::path directory = std::filesystem::path(::testing::TempDir()) / "write_sample";
+  const test::ScratchDirectory directory;
   std::vector<std::string> names;
-  for (const std::filesystem::path& path : write_sample(sample, directory)) {
+  for (const std::filesystem::path& path : write_sample(sample, directory.path())) {
     EXPECT_EQ(path.parent_path(), directory / "folder");
     names.push_back(path.filename().string());
     if (path.extension() == ".obj") {
@@ -229,8 +230,9 @@ TEST(WriteSample, WritesWhatReadsBack) {
 }
 
 TEST(WriteSample, RefusesADirectoryThatIsAFile) {
-  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "not_a_directory";
-  std::ofstream(file) << "text";
+  const test::ScratchDirectory directory;
+  const std::filesystem::path file = directory / "not_a_directory";
+  test::write_text(file, "text");
   EXPECT_THROW(write_sample({"folder", {}, {}, {}}, file), FileError);
 }
 

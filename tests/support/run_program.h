@@ -2,10 +2,10 @@
 
 #include <sys/types.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "support/file_text.h"
 #include "support/scratch_directory.h"
 
 namespace bespoke::test {
@@ -36,8 +36,5 @@ class RunningProgram {
 };
 
 ProgramResult run_program(const std::vector<std::string>& arguments);
-
-std::string read_text(const std::filesystem::path& path);
-void write_text(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace bespoke::test

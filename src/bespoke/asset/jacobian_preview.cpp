@@ -1,7 +1,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -22,16 +21,6 @@ constexpr double rounding = 1e-14;
 
 /// Per cell of level 0, in the order of CellMask: least bound of the finest cells in it, infinite for none.
 using RootBounds = std::array<double, leaf_nodes>;
-
-double largest_sum(const Pyramid& pyramid) {
-  double sum = 0;
-  for (const PyramidLevel& level : pyramid.levels) {
-    float largest = 0;
-    for (const float value : level.values) largest = std::max(largest, std::abs(value));
-    sum += largest;
-  }
-  return sum;
-}
 
 class RootBounder {
  public:

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -83,15 +84,13 @@ double angle(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 Spread spread(std::vector<double> values) {
   if (values.empty()) return {};
-  for (const double value : values)
-    if (!std::isfinite(value)) throw InvalidInput("spread of a value that is not finite");
-  std::sort(values.begin(), values.end());
-  const auto nearest_rank = [&](double share) {
-    const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-    return values[std::max<std::size_t>(rank, 1) - 1];
-  };
-  return {values.size(),     values.front(),     nearest_rank(0.01),
-          nearest_rank(0.5), nearest_rank(0.99), values.back()};
+  const std::vector<double> sorted = sorted_finite(std::move(values));
+  return {sorted.size(),
+          sorted.front(),
+          nearest_rank(sorted, 0.01),
+          nearest_rank(sorted, 0.5),
+          nearest_rank(sorted, 0.99),
+          sorted.back()};
 }
 
 std::string to_string(const Spread& spread) {

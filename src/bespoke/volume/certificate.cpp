@@ -36,17 +36,6 @@ Found combine(Found a, const Found& b) {
   return a;
 }
 
-// Largest |u| that the sum of the levels can take anywhere: bounds the rounding of that sum.
-double largest_sum(const Pyramid& pyramid) {
-  double sum = 0;
-  for (const PyramidLevel& level : pyramid.levels) {
-    float largest = 0;
-    for (const float value : level.values) largest = std::max(largest, std::abs(value));
-    sum += largest;
-  }
-  return sum;
-}
-
 class Certifier {
  public:
   Certifier(const Pyramid& pyramid, const Matrix3& affine, double t)

@@ -73,6 +73,16 @@ std::size_t Pyramid::byte_count() const {
   return bytes;
 }
 
+double largest_sum(const Pyramid& pyramid) {
+  double sum = 0;
+  for (const PyramidLevel& level : pyramid.levels) {
+    float largest = 0;
+    for (const float value : level.values) largest = std::max(largest, std::abs(value));
+    sum += largest;
+  }
+  return sum;
+}
+
 void require_valid(const Pyramid& pyramid) {
   if (!pyramid.origin.allFinite()) throw InvalidInput("pyramid: its origin is not finite");
   for (std::size_t level = 0; level < pyramid.levels.size(); ++level) {

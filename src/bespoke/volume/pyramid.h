@@ -38,6 +38,9 @@ struct Pyramid {
   std::size_t byte_count() const;   ///< of values and leaf coordinates
 };
 
+/// No component of the sum of the levels exceeds it anywhere: bounds the rounding of that sum. Mesh units.
+double largest_sum(const Pyramid& pyramid);
+
 /// Throws InvalidInput, naming the level, unless all of the above holds and every value is finite.
 void require_valid(const Pyramid& pyramid);
 
