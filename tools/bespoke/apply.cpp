@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "output_files.h"
 #include "run_options.h"
 #include "stored_exact_map.h"
+#include "time_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -143,16 +143,6 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
     std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary).c_str());
 }
 
-CLI::Validator finite_number() {
-  return CLI::Validator(
-      [](std::string& text) {
-        double value = 0;
-        const bool holds = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-        return holds ? std::string() : "'" + text + "' is not a finite number";
-      },
-      "");
-}
-
 }  // namespace
 
 void add_apply_command(CLI::App& app) {
@@ -166,11 +156,8 @@ void add_apply_command(CLI::App& app) {
   apply->add_option("-o,--output", arguments->output, "File to write, for one product")->type_name("OUT");
   apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")
       ->type_name("DIR");
-  CLI::Option* t = apply
-                       ->add_option("--t", arguments->t,
-                                    "How far the map goes: 0 is the source, 1 the target (default: 1)")
-                       ->check(finite_number())
-                       ->type_name("T");
+  CLI::Option* t = add_time_option(*apply, arguments->t,
+                                   "How far the map goes: 0 is the source, 1 the target (default: 1)");
   apply
       ->add_option("--frames", arguments->frames,
                    "Write N+1 files for t = 0, 1/N, …, 1, from one lookup: OUT_000.obj, OUT_001.obj, …")

@@ -6,6 +6,7 @@
 #include "bespoke/pipeline/summary_json.h"
 #include "commands.h"
 #include "run_options.h"
+#include "time_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -50,7 +51,7 @@ void add_check_command(CLI::App& app) {
   CLI::App* check =
       app.add_subcommand("check", "Prove from the file alone that a map does not fold, or say where it does");
   check->add_option("MAP", arguments->map, "Asset, .vdb")->required();
-  check->add_option("--t", arguments->t, "Time of the motion, 0 = identity, 1 = the map (default: 1)");
+  add_time_option(*check, arguments->t, "Time of the motion, 0 = identity, 1 = the map (default: 1)");
   check->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
   check->add_flag("--untrusted", arguments->untrusted,
                   "Check the file in a child process under limits first");

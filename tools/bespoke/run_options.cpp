@@ -13,7 +13,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                  "Threads to use (default: one a core); results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  app.add_flag("-q,--quiet", options.quiet, "Print nothing but errors and warnings");
+  app.add_flag("-q,--quiet", options.quiet,
+               "No progress and no summary; what was asked for, errors and warnings are still printed");
 }
 
 void run_with(const RunOptions& options, const std::function<void(const Progress&)>& body) {

@@ -1,0 +1,35 @@
+#include "derived_map_options.h"
+
+#include <cstdio>
+
+#include "bespoke/asset/asset_io.h"
+#include "output_files.h"
+
+namespace bespoke::command {
+
+BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
+  BakeOptions options;
+  options.tolerance = tolerance ? tolerance->in_mesh_units(model.box.diagonal().norm()) : otherwise;
+  return options;
+}
+
+void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
+                             const std::string& tolerance_description) {
+  app.add_option("-o,--output", options.output, "Asset to write")->required()->type_name("MAP.vdb");
+  add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
+  app.add_flag("--untrusted", options.untrusted, "Check what is read in a child process under limits first");
+  add_run_options(app, options.run);
+}
+
+void write_derived_map(const DerivedMapOptions& options, const DerivedMap& derived, const char* deviation) {
+  OutputFiles outputs;
+  outputs.write(options.output, [&](const auto& path) { write_asset(path, derived.asset); });
+  outputs.keep();
+  if (options.run.quiet) return;
+  std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());
+  std::printf("%-12s %s\n", "certificate", to_string(derived.asset.certificate).c_str());
+  std::printf("%-12s %s\n", deviation, to_string(derived.deviation).c_str());
+  std::printf("%-12s %s\n", "written", options.output.c_str());
+}
+
+}  // namespace bespoke::command
