@@ -1,10 +1,13 @@
 #include "output_files.h"
 
+#include <sys/stat.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <system_error>
 
 #include "bespoke/atomic_file.h"
@@ -15,25 +18,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool same_file(const fs::path& a, const fs::path& b) {
-  std::error_code ignored;
-  return fs::equivalent(a, b, ignored) || fs::weakly_canonical(a) == fs::weakly_canonical(b);
+/// The same for every name of a file, whether it is there already or not.
+std::string identity(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0)
+    return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+  return fs::weakly_canonical(path).string();
 }
 
 }  // namespace
 
 void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    for (const fs::path& input : inputs)
-      if (same_file(input, outputs[i]))
-        throw CLI::ValidationError(outputs[i].string(), "is an input of this run and would be overwritten");
-    for (std::size_t j = 0; j < i; ++j)
-      if (same_file(outputs[j], outputs[i]))
-        throw CLI::ValidationError(outputs[i].string(),
-                                   "would be written twice; give each output its own name");
-    const fs::path directory = outputs[i].parent_path();
+  std::set<std::string> read, written;
+  for (const fs::path& input : inputs) read.insert(identity(input));
+  for (const fs::path& output : outputs) {
+    if (read.count(identity(output)) > 0)
+      throw CLI::ValidationError(output.string(), "is an input of this run and would be overwritten");
+    if (!written.insert(identity(output)).second)
+      throw CLI::ValidationError(output.string(), "would be written twice; give each output its own name");
+    const fs::path directory = output.parent_path();
     if (!directory.empty() && !fs::is_directory(directory))
-      throw FileError(outputs[i].string() + ": the directory " + directory.string() + " does not exist");
+      throw FileError(output.string() + ": the directory " + directory.string() + " does not exist");
   }
 }
 
