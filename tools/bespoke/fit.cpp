@@ -235,6 +235,12 @@ void add_fit_command(CLI::App& app) {
   fit->add_option("--max-memory", arguments->max_memory,
                   "Bytes that a stage may take, for instance 4GiB (default: 8GiB)")
       ->transform(CLI::AsSizeValue(false))
+      // Runs first, although it comes second; "-1" would wrap to more than any machine has.
+      ->transform(CLI::Validator(
+          [](std::string& text) {
+            return text.starts_with('-') ? "'" + text + "' is not a number of bytes" : std::string();
+          },
+          ""))
       ->type_name("BYTES");
   add_run_options(*fit, arguments->run);
   fit->footer(

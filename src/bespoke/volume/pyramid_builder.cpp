@@ -118,9 +118,12 @@ void PyramidBuilder::require_room(std::size_t level, std::size_t leaves) const {
   int length = std::snprintf(
       text, sizeof text, "a tolerance of %.4g needs more than %zu MB at voxels of %.4g, the limit is %zu MB",
       options_.tolerance, needed >> 20, levels_[level].lattice.voxel_size, options_.max_memory >> 20);
+  char* const advice = text + length;
+  const std::size_t room = sizeof text - static_cast<std::size_t>(length);
   if (level > 0)
-    std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length),
-                  "; a tolerance of %.4g would fit", 1.5 * missed_[level - 1]);
+    std::snprintf(advice, room, "; a tolerance of %.4g would fit", 1.5 * missed_[level - 1]);
+  else
+    std::snprintf(advice, room, "; no tolerance fits, allow at least %zu MB", (needed >> 20) + 1);
   throw MemoryLimitError(text);
 }
 
