@@ -12,6 +12,12 @@ namespace {
 
 using testing::HasSubstr;
 
+nlohmann::json info(const ExamplePair& pair, const std::string& map) {
+  return nlohmann::json::parse(bespoke({"info", pair.file(map), "--json"}).out);
+}
+
+double tolerance(const ExamplePair& pair, const std::string& map) { return info(pair, map)["tolerance"]; }
+
 TEST(CheckCommand, ProvesTheBijectionFromTheFileAloneAtAnyTime) {
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb", {"--require-certified"}).exit_code, 0);
@@ -39,17 +45,22 @@ TEST(InvertCommand, LeadsBackAsTheCellsOfTheMapDo) {
   EXPECT_THAT(inverted.out, HasSubstr("round trip"));
   EXPECT_EQ(bespoke({"check", pair.file("back.vdb")}).exit_code, 0);
   const Points product = read_obj_points(pair.file("product.obj"));
-  const double length = (product.rowwise().maxCoeff() - product.rowwise().minCoeff()).norm();
+  const auto moved = [&](const char* name) {
+    return (read_obj_points(pair.file(name)) - product).colwise().norm().maxCoeff();
+  };
+  // Float files add their rounding: once for what goes in, a few times more where the way back stretches.
+  const double rounding = 10 * float_rounding(product);
 
   const ProgramResult cells = bespoke(
       {"apply", pair.file("map.vdb"), pair.file("there.obj"), "--inverse", "-o", pair.file("cells.obj")});
   ASSERT_EQ(cells.exit_code, 0) << cells.err;
-  EXPECT_LT((read_obj_points(pair.file("cells.obj")) - product).colwise().norm().maxCoeff(), 1e-5 * length);
+  EXPECT_LT(moved("cells.obj"),
+            1e-3 * info(pair, "map.vdb")["levels"].back()["voxel_size"].get<double>() + rounding);
 
   ASSERT_EQ(bespoke({"apply", pair.file("back.vdb"), pair.file("there.obj"), "-o", pair.file("baked.obj")})
                 .exit_code,
             0);
-  EXPECT_LT((read_obj_points(pair.file("baked.obj")) - product).colwise().norm().maxCoeff(), 0.01 * length);
+  EXPECT_LT(moved("baked.obj"), tolerance(pair, "map.vdb") + tolerance(pair, "back.vdb") + rounding);
 }
 
 TEST(ComposeCommand, JoinsMapsWhoseModelsMeet) {
@@ -61,8 +72,8 @@ TEST(ComposeCommand, JoinsMapsWhoseModelsMeet) {
   ASSERT_EQ(joined.exit_code, 0) << joined.err;
   ASSERT_EQ(pair.apply("round.vdb", {"-o", pair.file("same.obj")}).exit_code, 0);
   const Points product = read_obj_points(pair.file("product.obj"));
-  const double length = (product.rowwise().maxCoeff() - product.rowwise().minCoeff()).norm();
-  EXPECT_LT((read_obj_points(pair.file("same.obj")) - product).colwise().norm().maxCoeff(), 0.01 * length);
+  EXPECT_LT((read_obj_points(pair.file("same.obj")) - product).colwise().norm().maxCoeff(),
+            tolerance(pair, "round.vdb") + tolerance(pair, "back.vdb") + 10 * float_rounding(product));
 
   const ProgramResult apart =
       bespoke({"compose", pair.file("map.vdb"), pair.file("map.vdb"), "-o", pair.file("x.vdb")});
@@ -75,12 +86,72 @@ TEST(ComposeCommand, JoinsMapsWhoseModelsMeet) {
             0);
 }
 
+TEST(DerivedMaps, TakeATheirToleranceAndCheckWhatTheyReadInAChild) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& extra) {
+    arguments.insert(arguments.end(), {"--untrusted", "-q"});
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const ProgramResult result = bespoke(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  };
+  const std::vector<std::string> invert{"invert", pair.file("map.vdb"), "-o", pair.file("back.vdb")};
+  const std::vector<std::string> compose{"compose", pair.file("map.vdb"), pair.file("back.vdb"), "-o",
+                                         pair.file("round.vdb")};
+  run(invert, {});
+  EXPECT_EQ(tolerance(pair, "back.vdb"), tolerance(pair, "map.vdb"));
+  run(compose, {});
+  EXPECT_EQ(tolerance(pair, "round.vdb"), tolerance(pair, "map.vdb"));
+  // In mesh units, and in percent of the diagonal of the model that the map starts from.
+  run(invert, {"--tolerance", "0.03"});
+  EXPECT_EQ(tolerance(pair, "back.vdb"), 0.03);
+  run(compose, {"--tolerance", "1%"});
+  const Points source = read_obj_points(pair.file("source.obj"));
+  EXPECT_NEAR(tolerance(pair, "round.vdb"), 0.01 * extent(source), 0.01 * 2 * float_rounding(source));
+  for (std::vector<std::string> arguments : {invert, compose}) {
+    arguments.insert(arguments.end(), {"--tolerance", "-1"});
+    EXPECT_EQ(bespoke(arguments).exit_code, 1);
+  }
+}
+
+TEST(DerivedMaps, RefuseWhatTheyCannotRead) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto refused = [&](const std::vector<std::string>& arguments, int exit_code, const char* text) {
+    const ProgramResult result = bespoke(arguments);
+    EXPECT_EQ(result.exit_code, exit_code) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(text));
+    EXPECT_FALSE(pair.has("x.vdb"));
+  };
+  const std::string map = pair.file("map.vdb"), out = pair.file("x.vdb");
+  for (const char* mode : {"-q", "--untrusted"}) {
+    refused({"invert", pair.file("source.obj"), "-o", out, mode}, 2, "source.obj");
+    refused({"compose", map, pair.file("source.obj"), "-o", out, mode}, 2, "source.obj");
+  }
+  refused({"invert", pair.file("none.vdb"), "-o", out}, 4, "none.vdb");
+  refused({"compose", pair.file("none.vdb"), map, "-o", out}, 4, "none.vdb");
+  refused({"invert", map, "-o", map}, 1, "overwritten");
+  refused({"compose", map, map, "-o", map}, 1, "overwritten");
+  refused({"invert", map, "-o", pair.file("none/x.vdb")}, 4, "none");
+  refused({"invert", map}, 1, "--output");
+  refused({"compose", map}, 1, "BC");
+}
+
+TEST(CheckCommand, TakesAnyFiniteTime) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  for (const std::string t : {"nan", "inf", "half"}) {
+    const ProgramResult result = bespoke({"check", pair.file("map.vdb"), "--t", t});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, HasSubstr("'" + t + "' is not a finite number"));
+  }
+}
+
 // One vertex pulled far through its neighbours folds the space around it, and one uniform level repairs
 // nothing.
-TEST(CertifiedFit, WritesNothingUnlessCertifiedWhenAskedTo) {
+TEST(UncertifiedMap, IsWrittenOnlyUnlessACertificateIsRequiredAndHasNoInverse) {
   const ExamplePair pair;
-  const Points source = read_obj_points(pair.file("source.obj"));
-  const double length = (source.rowwise().maxCoeff() - source.rowwise().minCoeff()).norm();
+  const double length = extent(read_obj_points(pair.file("source.obj")));
   std::ifstream lines(pair.file("source.obj"));
   std::ofstream pulled(pair.file("pulled.obj"));
   bool first = true;
@@ -94,12 +165,29 @@ TEST(CertifiedFit, WritesNothingUnlessCertifiedWhenAskedTo) {
     }
   }
   pulled.close();
-  const ProgramResult result = bespoke({"fit", pair.file("source.obj"), pair.file("target.obj"), "--fitted",
-                                        pair.file("pulled.obj"), "--elastic", "csrbf", "--voxel-size", "1%",
-                                        "--require-certified", "-o", pair.file("map.vdb"), "--quiet"});
+  std::vector<std::string> fit{"fit",      pair.file("source.obj"), pair.file("target.obj"),
+                               "--fitted", pair.file("pulled.obj"), "--elastic",
+                               "csrbf",    "--voxel-size",          "1%",
+                               "-o",       pair.file("map.vdb"),    "--require-certified"};
+  const ProgramResult result = bespoke(fit);
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_THAT(result.err, HasSubstr("not certified"));
   EXPECT_FALSE(pair.has("map.vdb"));
+
+  fit.pop_back();
+  ASSERT_EQ(bespoke(fit).exit_code, 0);
+  const ProgramResult check = bespoke({"check", pair.file("map.vdb")});
+  EXPECT_EQ(check.exit_code, 3);
+  EXPECT_THAT(check.err, HasSubstr("map.vdb: not proved to be a bijection"));
+  EXPECT_THAT(check.out, HasSubstr("  level 0 at "));  // where it folds
+  EXPECT_FALSE(nlohmann::json::parse(bespoke({"check", pair.file("map.vdb"), "--json"}).out)["bijection"]);
+  const ProgramResult invert = bespoke({"invert", pair.file("map.vdb"), "-o", pair.file("back.vdb")});
+  EXPECT_EQ(invert.exit_code, 2);
+  EXPECT_THAT(invert.err, HasSubstr("not certified as a bijection"));
+  const ProgramResult apply = pair.apply("map.vdb", {"--inverse", "-o", pair.file("out.obj")});
+  EXPECT_EQ(apply.exit_code, 2);
+  EXPECT_THAT(apply.err, HasSubstr("map.vdb: is not certified as a bijection, so it has no inverse"));
+  EXPECT_FALSE(pair.has("back.vdb") || pair.has("out.obj"));
 }
 
 }  // namespace

@@ -121,6 +121,15 @@ Points read_obj_points(const std::string& path) {
   return points;
 }
 
+double float_rounding(const Points& points) {
+  const double unit_roundoff = 0x1p-24;
+  return std::sqrt(3.0) * unit_roundoff * points.cwiseAbs().maxCoeff();
+}
+
+double extent(const Points& points) {
+  return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
+}
+
 std::string obj_text(const Points& vertices, const Faces& faces) {
   std::ostringstream text;
   text.precision(9);

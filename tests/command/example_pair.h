@@ -35,6 +35,12 @@ ProgramResult bespoke(const std::vector<std::string>& arguments);
 /// 3×n from the `v` lines of an OBJ file.
 Points read_obj_points(const std::string& path);
 
+/// How far a point moves at most when its coordinates are written as floats.
+double float_rounding(const Points& points);
+
+/// Length of the diagonal of the points' bounding box.
+double extent(const Points& points);
+
 /// The text of an OBJ file.
 std::string obj_text(const Points& vertices, const Faces& faces);
 

@@ -15,8 +15,8 @@ TEST(InstalledPackage, BuildsAConsumer) {
       run_program({BESPOKE_CMAKE, "--install", BESPOKE_BINARY_DIR, "--prefix", prefix});
   ASSERT_EQ(install.exit_code, 0) << install.err;
   const ProgramResult configure =
-      run_program({BESPOKE_CMAKE, "-S", BESPOKE_SOURCE_DIR "/tests/consumer", "-B", pair.file("build"),
-                   "-DCMAKE_PREFIX_PATH=" + prefix, "-DCMAKE_BUILD_TYPE=Release",
+      run_program({BESPOKE_CMAKE, "-G", BESPOKE_GENERATOR, "-S", BESPOKE_SOURCE_DIR "/tests/consumer", "-B",
+                   pair.file("build"), "-DCMAKE_PREFIX_PATH=" + prefix, "-DCMAKE_BUILD_TYPE=Release",
                    "-DCMAKE_CXX_FLAGS=" BESPOKE_SANITIZE_FLAGS});
   ASSERT_EQ(configure.exit_code, 0) << configure.err;
   const ProgramResult build = run_program({BESPOKE_CMAKE, "--build", pair.file("build")});

@@ -58,6 +58,9 @@ TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
   std::vector<std::string> one_thread = options;
   one_thread.insert(one_thread.end(), {"--threads", "1"});
   EXPECT_EQ(measure(pair, one_thread).out, result.out);
+  std::vector<std::string> in_a_child = options;
+  in_a_child.push_back("--untrusted");
+  EXPECT_EQ(measure(pair, in_a_child).out, result.out);
 }
 
 TEST(MeasureCommand, RefusesOtherModelsThanTheMaps) {
@@ -67,6 +70,10 @@ TEST(MeasureCommand, RefusesOtherModelsThanTheMaps) {
                                          "--target", pair.file("source.obj")});
   EXPECT_EQ(swapped.exit_code, 2);
   EXPECT_THAT(swapped.err, HasSubstr("target.obj: is not the source that the map was made of"));
+  const ProgramResult same = bespoke({"measure", pair.file("map.vdb"), "--source", pair.file("source.obj"),
+                                      "--target", pair.file("source.obj")});
+  EXPECT_EQ(same.exit_code, 2);
+  EXPECT_THAT(same.err, HasSubstr("source.obj: is not the target that the map was made of"));
 }
 
 TEST(MeasureCommand, ExactDiffersFromTheGridsByNoMoreThanTheTolerance) {
@@ -97,6 +104,13 @@ TEST(MeasureCommand, NamesWhatIsWrong) {
   const ProgramResult no_exact_map = measure(pair, {"--exact"});
   EXPECT_EQ(no_exact_map.exit_code, 2);
   EXPECT_THAT(no_exact_map.err, HasSubstr("map.vdb: holds no exact map"));
+  write_text(pair.file("bad.obj"), "v 0 0\n");
+  const ProgramResult bad_product = measure(pair, {"--product", pair.file("bad.obj")});
+  EXPECT_EQ(bad_product.exit_code, 2);
+  EXPECT_THAT(bad_product.err, HasSubstr("bad.obj:1: missing z"));
+  const ProgramResult no_asset = bespoke({"measure", pair.file("source.obj"), "--source",
+                                          pair.file("source.obj"), "--target", pair.file("target.obj")});
+  EXPECT_EQ(no_asset.exit_code, 2);
   EXPECT_THAT(bespoke({"measure", "--help"}).out, HasSubstr("Examples:\n  bespoke measure"));
 }
 

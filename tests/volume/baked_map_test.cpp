@@ -6,6 +6,7 @@
 #include <random>
 
 #include "bespoke/error.h"
+#include "support/finite_differences.h"
 
 namespace bespoke {
 namespace {

@@ -1,0 +1,444 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/asset/grid_conversion.h"
+#include "bespoke/asset/record_json.h"
+#include "bespoke/asset/trailer.h"
+#include "command/example_pair.h"
+#include "support/shapes.h"
+
+// What the built command says of everything that it cannot use: one line, the file's name and the fault.
+namespace bespoke::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+void expect_refusal(const ProgramResult& result, int exit_code, const std::string& text) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  const std::string last = result.err.substr(result.err.rfind("bespoke: "));
+  EXPECT_THAT(last, AllOf(StartsWith("bespoke: "), HasSubstr(text)));
+  EXPECT_EQ(last.find('\n'), last.size() - 1) << "more than one line";
+}
+
+template <class Value>
+std::string bytes(Value value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+// ---- models
+
+struct BadFile {
+  const char* name;
+  std::string content;
+  const char* message;
+};
+
+class BadModels : public testing::Test {
+ protected:
+  /// Every file as the source of a fit: exit code 2, the message and the name, no asset.
+  void expect_refused(const std::vector<BadFile>& files) const {
+    for (const BadFile& file : files) {
+      write_text(pair_.file(file.name), file.content);
+      const ProgramResult result =
+          bespoke({"fit", pair_.file(file.name), pair_.file("target.obj"), "--anchors",
+                   pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "-q"});
+      expect_refusal(result, 2, file.message);
+      EXPECT_THAT(result.err, HasSubstr(file.name));
+      EXPECT_FALSE(pair_.has("map.vdb"));
+    }
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(BadModels, Obj) {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\n";
+  expect_refused({
+      {"a.obj", "", "the file is empty"},
+      {"a.obj", "# nothing\n", "the file has no vertices"},
+      {"a.obj", "v 0 0 0\nv 1 abc 0\n", "a.obj:2: y: 'abc' is not a number"},
+      {"a.obj", "v 0 0 0\nv 1 nan 0\n", "a.obj:2: y: 'nan' is not finite in single precision"},
+      {"a.obj", "v 0 0 0\nv 1 0\n", "a.obj:2: missing z"},
+      {"a.obj", corners + "f 1 2 9\n", "a.obj:6: a face names vertex 9 of 4"},
+      {"a.obj", corners + "f 1/1 2/1 3/2\n", "a.obj:6: a face names texture coordinate 2 of 1"},
+      {"a.obj", corners + "f 1//1 2//1 3//1\n", "a.obj:6: a face names normal 1 of 0"},
+      {"a.obj", corners + "f 1 2 0\n", "a.obj:6: a face names vertex 0 of 4"},
+      {"a.obj", corners + "f 1 2\n", "a.obj:6: a face of 2 corners"},
+      {"a.obj", corners + "f 1 2 2\n", "a.obj:6: a face names vertex 2 twice"},
+      {"a.obj", corners + "f 1 2 x\n", "a.obj:6: a face has the index 'x'"},
+      {"a.obj", corners + "f 1 2 3/\n", "a.obj:6: a face has the corner '3/'"},
+      {"a.obj", corners + "f 1/1 2/1 3\n", "a.obj:6: the corners of a face differ in form"},
+      {"a.obj", corners, "has no faces"},
+      {"a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "all vertices lie at one point"},
+  });
+}
+
+TEST_F(BadModels, Off) {
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
+  expect_refused({
+      {"a.off", "# nothing\n", "the file has no content"},
+      {"a.off", "4OFF\n1 0 0\n", "a.off:1: an OFF file begins with OFF"},
+      {"a.off", "OFF BINARY\n", "binary OFF is not read; save as PLY"},
+      {"a.off", "OFF\n", "missing number of vertices"},
+      {"a.off", "OFF\nmany 1 0\n", "a.off:2: number of vertices: 'many' is not a whole number"},
+      {"a.off", "OFF\n3\n", "a.off:2: missing number of faces"},
+      {"a.off", "OFF\n0 0 0\n", "the file has no vertices"},
+      {"a.off", "OFF\n3 -1 0\n", "a negative number of faces"},
+      {"a.off", "OFF\n4 1 0\n" + corners, "the file ends after 3 of 4 vertices"},
+      {"a.off", "OFF\n3 2 0\n" + corners + "3 0 1 2\n", "the file ends after 1 of 2 faces"},
+      {"a.off", "OFF\n3 1 0\n" + corners + "3 0 1 3\n", "a.off:6: a face names vertex 3, outside 0 … 2"},
+  });
+}
+
+TEST_F(BadModels, Ply) {
+  const std::string ascii = "ply\nformat ascii 1.0\n";
+  const std::string axes = "property float x\nproperty float y\nproperty float z\n";
+  const std::string faces = "element face 1\nproperty list char int vertex_indices\nend_header\n";
+  const std::string three = "element vertex 3\n" + axes + faces + "0 0 0\n1 0 0\n0 1 0\n";
+  const std::string binary = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" + axes;
+  expect_refused({
+      {"a.ply", "plywood\n", "a.ply:1: a PLY file begins with ply"},
+      {"a.ply", ascii, "the file ends before end_header"},
+      {"a.ply", "ply\nformat runes 1.0\n", "a.ply:2: unknown format 'runes'"},
+      {"a.ply", "ply\nend_header\n", "the header names no format"},
+      {"a.ply", ascii + "element vertex -1\n", "a.ply:3: cannot hold -1 elements"},
+      {"a.ply", ascii + "property float x\n", "a.ply:3: a property before the first element"},
+      {"a.ply", ascii + "element vertex 1\nproperty quad x\n", "a.ply:4: unknown type 'quad'"},
+      {"a.ply", ascii + "element face 1\nproperty list float int a\n",
+       "a.ply:4: the length of a list must be a whole number"},
+      {"a.ply", ascii + "vertices 3\n", "a.ply:3: unknown word 'vertices' in the header"},
+      {"a.ply", ascii + "end_header\n", "the file has no vertices"},
+      {"a.ply", ascii + "element vertex 1\nproperty float x\nend_header\n0\n", "vertices have no y"},
+      {"a.ply", ascii + three, "the file ends here"},
+      {"a.ply", ascii + three + "-3 0 1 2\n", "a list of negative length"},
+      {"a.ply", ascii + three + "3 0 1\n", "missing corner"},
+      {"a.ply", ascii + three + "3 0 1 3\n", "a face names vertex 3, outside 0 … 2"},
+      {"a.ply", binary + "end_header\n" + bytes(0.0f), "a.ply: vertex 0 of 1: the file ends here"},
+      {"a.ply", binary + "end_header\n" + bytes(0.0f) + bytes(std::numeric_limits<float>::infinity()),
+       "a.ply: vertex 0 of 1: y is not finite in single precision"},
+      {"a.ply",
+       "ply\nformat ascii 1.0\nelement note 1\nproperty list char int words\nelement vertex 1\n" + axes +
+           "end_header\n2 7\n0 0 0\n",
+       "missing words"},
+  });
+}
+
+TEST_F(BadModels, Stl) {
+  const std::string loop = "solid\nfacet normal 0 0 1\nouter loop\n";
+  const auto binary = [](std::uint32_t facets) { return std::string(80, ' ') + bytes(facets); };
+  const std::string infinite =
+      std::string(12, '\0') + bytes(std::numeric_limits<float>::infinity()) + std::string(34, '\0');
+  expect_refused({
+      {"a.stl", "facet\n", "neither text that begins with \"solid\" nor as long as"},
+      {"a.stl", "solid\nendsolid\n", "the file has no facets"},
+      {"a.stl", binary(0), "the file has no facets"},
+      {"a.stl", binary(2), "a binary STL file of 2 facets has 184 bytes, this one has 84"},
+      {"a.stl", binary(1) + infinite, "facet 0 has a coordinate that is not finite"},
+      {"a.stl", loop + "outer loop\n", "a.stl:4: a loop inside of a loop"},
+      {"a.stl", "solid\nvertex 0 0 0\n", "a.stl:2: a vertex that is none of the three of a loop"},
+      {"a.stl", loop + "vertex 0 0 0\nendloop\n", "a.stl:5: a loop of 1 vertices"},
+      {"a.stl", loop + "vertex 0 0 0\n", "the file ends inside of a loop"},
+      {"a.stl", loop + "corner 0 0 0\n", "a.stl:4: unknown word at the beginning of the line"},
+  });
+}
+
+TEST_F(BadModels, NotFilesAtAll) {
+  const auto fit = [&](const std::string& source) {
+    return bespoke({"fit", source, pair_.file("target.obj"), "--anchors", pair_.file("anchors.json"), "-o",
+                    pair_.file("map.vdb"), "-q"});
+  };
+  std::filesystem::create_directory(pair_.file("folder.obj"));
+  expect_refusal(fit(pair_.file("folder.obj")), 4, "folder.obj: not a regular file");
+  expect_refusal(fit(pair_.file("none.obj")), 4, "none.obj: No such file");
+  expect_refusal(fit(pair_.file("anchors.json")), 2, "the name must end in .obj, .ply, .stl or .off");
+}
+
+// ---- anchors
+
+class BadAnchors : public testing::Test {
+ protected:
+  ProgramResult fit_with(const std::string& name, const std::string& content,
+                         const std::vector<std::string>& extra = {}) const {
+    write_text(pair_.file(name), content);
+    std::vector<std::string> arguments{"fit",
+                                       pair_.file("source.obj"),
+                                       pair_.file("target.obj"),
+                                       "--anchors",
+                                       pair_.file(name),
+                                       "-o",
+                                       pair_.file("map.vdb"),
+                                       "-q"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return bespoke(arguments);
+  }
+  void expect_refused(const std::vector<BadFile>& files) const {
+    for (const BadFile& file : files) expect_refusal(fit_with(file.name, file.content), 2, file.message);
+    EXPECT_FALSE(pair_.has("map.vdb"));
+  }
+  /// An anchor file whose pairs stand at the same points on both models.
+  static std::string json_of(const std::vector<Vector3>& points) {
+    std::string pairs;
+    for (const Vector3& p : points) {
+      std::ostringstream point;
+      point.precision(17);
+      point << '[' << p.x() << ',' << p.y() << ',' << p.z() << ']';
+      pairs += (pairs.empty() ? "" : ",") + ("{\"a\":" + point.str() + ",\"b\":" + point.str() + "}");
+    }
+    return "{\"pairs\":[" + pairs + "]}";
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(BadAnchors, Json) {
+  const auto pairs = [](const std::string& pair) { return "{\"pairs\":[" + pair + "]}"; };
+  expect_refused({
+      {"a.json", "{", "a.json: not valid JSON"},
+      {"a.json", "[]", "must be an object with a key \"pairs\""},
+      {"a.json", "{}", "key \"pairs\" is missing"},
+      {"a.json", R"({"pairs":{}})", "\"pairs\" is object, not an array"},
+      {"a.json", R"({"units":7,"pairs":[]})", "\"units\" is number, not a string"},
+      {"a.json", R"({"units":"c\nm","pairs":[]})", "holds a control character"},
+      {"a.json", pairs("7"), "pair 0 is number, not an object"},
+      {"a.json", pairs(R"({"name":7})"), "pair 0: \"name\" is number, not a string"},
+      {"a.json", pairs("{\"name\":\"" + std::string(201, 'x') + "\"}"), "has 201 bytes, at most 200"},
+      {"a.json", pairs(R"({"name":"p"})"), "pair 0 (\"p\"): key \"a\" is missing"},
+      {"a.json", pairs(R"({"a":[0,0]})"), "\"a\" must be an array of three numbers"},
+      {"a.json", pairs(R"({"a":[0,0,"x"]})"), "\"a\"[2] is string, not a number"},
+      {"a.json", pairs(R"({"a":[0,0,0],"b":[0,0,0],"weight":0})"), "\"weight\" is 0, but must be > 0"},
+      {"a.json", pairs(R"({"name":"p","a":[0,0,0],"b":[0,0,0]},{"name":"p","a":[0,0,1],"b":[0,0,0]})"),
+       "two pairs are named \"p\""},
+  });
+}
+
+TEST_F(BadAnchors, Csv) {
+  expect_refused({
+      {"a.csv", "\n", "a.csv: no rows"},
+      {"a.csv", "p,0,0,0\n", "a.csv: line 1: 4 columns, but a row is name,ax,ay,az,bx,by,bz[,weight]"},
+      {"a.csv", "p,0,0,0,0,x,0\n", "line 1: by is \"x\", not a finite number"},
+      {"a.csv", "p,0,0,0,0,inf,0\n", "line 1: by is \"inf\", not a finite number"},
+      {"a.csv", "p,0,0,0,0,0,0,-1\n", "line 1: weight is -1, but must be > 0"},
+      {"a.csv", "p\x01,0,0,0,0,0,0\n", "holds a control character"},
+  });
+}
+
+TEST_F(BadAnchors, NotAFile) {
+  std::filesystem::create_directory(pair_.file("folder"));
+  for (const char* name : {"folder", "none.json"})
+    expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+                            pair_.file(name), "-o", pair_.file("map.vdb"), "-q"}),
+                   4, "cannot be opened for reading");
+}
+
+TEST_F(BadAnchors, ThatDoNotFixTheMap) {
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY(), z = Vector3::UnitZ(), o = Vector3::Zero();
+  expect_refusal(fit_with("a.json", json_of({})), 2,
+                 "needs 3 anchor pairs that are not collinear; there are 0");
+  expect_refusal(fit_with("a.json", json_of({o, x})), 2, "there are 2");
+  expect_refusal(fit_with("a.json", json_of({o, x, 2 * x})), 2,
+                 "the 3 anchor points on the source are collinear");
+  expect_refusal(fit_with("a.json", json_of({o, o, o})), 2, "all at one place");
+  expect_refusal(fit_with("a.json", json_of({o, x, y})), 2,
+                 "needs 4 anchor pairs that are not coplanar; there are 3");
+  // It names the direction that no anchor takes.
+  expect_refusal(fit_with("a.json", json_of({o, x, y, x + y})), 2, "leaves their plane along (0, 0, 1)");
+  expect_refusal(fit_with("a.json", json_of({o, x, y, z, x})), 2,
+                 "anchor pairs 1 and 4 have the same place on the source; remove one");
+  EXPECT_FALSE(pair_.has("map.vdb"));
+}
+
+TEST_F(BadAnchors, NamedAsTheCornersAre) {
+  const std::string pairs =
+      R"({"pairs":[{"name":"corner_011","a":[0,0,0],"b":[0,0,0]},{"a":[1,0,0],"b":[1,0,0]}]})";
+  expect_refusal(fit_with("a.json", pairs, {"--add-corners"}), 2,
+                 "an anchor is already named \"corner_011\"");
+}
+
+// ---- pairs of models
+
+class BadPairs : public testing::Test {
+ protected:
+  ProgramResult fit_to(const std::string& fitted, const std::vector<std::string>& extra = {}) const {
+    write_text(pair_.file("fitted.obj"), fitted);
+    std::vector<std::string> arguments{"fit",
+                                       pair_.file("source.obj"),
+                                       pair_.file("target.obj"),
+                                       "--fitted",
+                                       pair_.file("fitted.obj"),
+                                       "-o",
+                                       pair_.file("map.vdb"),
+                                       "-q"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return bespoke(arguments);
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(BadPairs, AFittedSourceOfOtherConnectivity) {
+  TriangleMesh fitted = shapes::icosphere(3);
+  fitted.faces.col(5).swap(fitted.faces.col(6));
+  expect_refusal(fit_to(obj_text(fitted.vertices, fitted.faces)), 2,
+                 "face 5 of the fitted mesh has other vertices than the source's");
+}
+
+TEST_F(BadPairs, AMirrorImage) {
+  const TriangleMesh sphere = shapes::icosphere(3);
+  Points mirrored = read_obj_points(pair_.file("source.obj"));
+  mirrored.row(0) *= -1;
+  expect_refusal(fit_to(obj_text(mirrored, sphere.faces)), 2, "mirror it back first");
+}
+
+TEST_F(BadPairs, SourcesThatCannotBeInterpolated) {
+  TriangleMesh flat = shapes::square_grid(5);
+  write_text(pair_.file("source.obj"), obj_text(flat.vertices, flat.faces));
+  expect_refusal(fit_to(obj_text(flat.vertices, flat.faces), {"--elastic", "csrbf"}), 2,
+                 "csrbf: the sources are coplanar: none leaves their plane along (0, 0, 1)");
+  // A needle: three points of a line.
+  const std::string needle = "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n";
+  write_text(pair_.file("source.obj"), needle);
+  expect_refusal(fit_to(needle), 2, "collinear");
+}
+
+TEST_F(BadPairs, ASourceWithoutArea) {
+  write_text(pair_.file("source.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+  const auto fit = [&](const char* option, const char* method) {
+    return bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+                    pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "-q", option, method});
+  };
+  expect_refusal(fit("--surface-fit", "multiscale"), 2, "the source of the surface fitting has no area");
+  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+                          pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "-q", "--surface-fit",
+                          "laplacian", "--elastic", "pffd"}),
+                 2, "no face of the source has any area");
+}
+
+// ---- products
+
+TEST(BadProducts, CannotBeWrittenInTheWantedFormat) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto apply = [&](const std::string& product, const char* out) {
+    write_text(pair.file("in.obj"), product);
+    return bespoke({"apply", pair.file("map.vdb"), pair.file("in.obj"), "-o", pair.file(out), "-q"});
+  };
+  expect_refusal(apply("v 0 0 0\nv 1 0 0\n", "out.stl"), 2, "STL holds triangles only, and there are none");
+  // The map turns the axes, so that the largest float leaves its range.
+  expect_refusal(apply("v 3.4e38 3.4e38 3.4e38\n", "out.obj"), 2, "not finite in single precision");
+  EXPECT_FALSE(pair.has("out.stl"));
+  EXPECT_FALSE(pair.has("out.obj"));
+}
+
+// ---- assets
+
+class BadAssets : public testing::Test {
+ protected:
+  BadAssets() {
+    EXPECT_EQ(pair_.fit("map.vdb", {"--voxel-size", "5%", "--keep-exact"}).exit_code, 0);
+    sound_ = read_text(pair_.file("map.vdb"));
+  }
+  void expect_refused(const std::string& bytes, const std::string& text) const {
+    write_text(pair_.file("bad.vdb"), bytes);
+    for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--untrusted"}}) {
+      std::vector<std::string> arguments{"info", pair_.file("bad.vdb")};
+      arguments.insert(arguments.end(), extra.begin(), extra.end());
+      const ProgramResult result = bespoke(arguments);
+      expect_refusal(result, 2, text);
+      EXPECT_THAT(result.err, HasSubstr("bad.vdb"));
+    }
+  }
+
+  ExamplePair pair_;
+  std::string sound_;
+};
+
+TEST_F(BadAssets, DamagedOnTheWay) {
+  expect_refused("", "not a bespoke asset");
+  expect_refused(sound_.substr(0, sound_.size() / 2), "not a bespoke asset, or cut short");
+  expect_refused(sound_ + "\n", "not a bespoke asset, or cut short");
+  std::string changed = sound_;
+  changed[sound_.size() / 3] ^= 1;
+  expect_refused(changed, "SHA-256 does not match: the file was damaged or changed");
+  // The trailer's fields: 8 bytes of magic, version, four of zero, two lengths, the digest.
+  const std::size_t trailer = sound_.size() - trailer_size;
+  changed = sound_;
+  changed[trailer + 8] = 2;
+  expect_refused(changed, "trailer version 2; this program reads version 1");
+  changed = sound_;
+  changed[trailer + 12] = 1;
+  expect_refused(changed, "trailer is damaged");
+  changed = sound_;
+  changed[trailer + 16] ^= 1;
+  expect_refused(changed, "bytes long before its trailer, which says otherwise");
+  expect_refused(std::string(unseal(sound_).vdb), "not a bespoke asset");
+  expect_refusal(bespoke({"info", pair_.file("")}), 4, "not a regular file");
+}
+
+// Sealed anew after each change, so that only the reader's own checks stand in its way.
+TEST_F(BadAssets, WellSealedButWrong) {
+  const auto refuses = [&](const std::function<void(StoredFile&)>& spoil, const std::string& why) {
+    StoredFile file = stored_file_from_vdb(unseal(sound_).vdb);
+    spoil(file);
+    expect_refused(seal({vdb_bytes(file), ""}), why);
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  refuses([](StoredFile& f) { f.metadata.erase(version_key); }, "bespoke:format_version is missing");
+  refuses([](StoredFile& f) { f.metadata[version_key] = std::int64_t{2}; },
+          "format version 2; this program reads version 1");
+  refuses([](StoredFile& f) { f.metadata[version_key] = 1.0; }, "not a 64-bit integer");
+  refuses([](StoredFile& f) { f.metadata.erase(record_key); }, "bespoke:record is missing");
+  refuses([](StoredFile& f) { f.metadata[record_key] = std::string("{"); }, "the record is not JSON");
+  refuses([](StoredFile& f) { f.metadata[record_key] = std::string(1000, '['); }, "nests deeper than");
+  refuses([](StoredFile& f) { f.metadata[record_key] = std::string("{}"); }, "is missing");
+  refuses([](StoredFile& f) { f.metadata.erase("bespoke:unit"); }, "bespoke:unit is missing");
+  refuses([](StoredFile& f) { f.metadata["bespoke:unit"] = std::string("mile"); }, "contradicts the record");
+  refuses([](StoredFile& f) { f.metadata["bespoke:more"] = 7.0; }, "unexpected metadata bespoke:more");
+  refuses([](StoredFile& f) { std::swap(f.grids[0], f.grids[3]); }, "in the place of u_0");
+  refuses([](StoredFile& f) { std::swap(f.grids[1], f.grids[2]); }, "in the place of source_distance");
+  refuses([](StoredFile& f) { f.grids.pop_back(); }, "3 grids, the record asks for 4");
+  refuses([](StoredFile& f) { f.grids[3] = f.grids[1], f.grids[3].name = "u_0"; }, "u_0 is no Vec3S grid");
+  refuses([](StoredFile& f) { f.grids[3].voxel_size *= 2; }, "transform of grid u_0 contradicts the record");
+  refuses([](StoredFile& f) { f.grids[3].background = 1; }, "background of grid u_0 is not 0");
+  refuses([&](StoredFile& f) { f.grids[3].values[5] = nan; }, "not finite");
+  refuses([&](StoredFile& f) { f.grids[0].values[5] = nan; }, "not finite");
+  refuses([](StoredFile& f) { f.grids[0].leaves.clear(), f.grids[0].values.clear(); }, "holds no values");
+  refuses([](StoredFile& f) { f.grids[1].grid_class = GridClass::unknown; }, "has the wrong class");
+  refuses([](StoredFile& f) { f.grids[3].active.assign(f.grids[3].leaves.size(), LeafMask{}); },
+          "inactive nodes");
+  refuses(
+      [](StoredFile& f) {
+        f.grids[3].leaves.pop_back(), f.grids[3].values.resize(f.grids[3].leaves.size() * 3 * leaf_nodes);
+      },
+      "leaves, the record says");
+}
+
+TEST_F(BadAssets, WithAnExactMapThatIsNone) {
+  const AssetSections sections = unseal(sound_);
+  const std::string exact(sections.exact_map);
+  const auto refuses = [&](const std::string& bytes, const std::string& why) {
+    write_text(pair_.file("bad.vdb"), seal({sections.vdb, bytes}));
+    expect_refusal(pair_.apply("bad.vdb", {"--exact", "-o", pair_.file("out.obj"), "-q"}), 2, why);
+    EXPECT_FALSE(pair_.has("out.obj"));
+  };
+  ASSERT_EQ(exact.substr(0, 8), "BSPKEXCT");
+  std::string other_version = exact, other_type = exact;
+  other_version[8] = 7;
+  other_type[12] = 7;
+  refuses("EXACT MAP", "exact map: does not begin as one");
+  refuses(exact.substr(0, exact.size() / 2), "the asset was damaged or written by another version");
+  refuses(exact + "x", "exact map: 1 bytes too many");
+  refuses(other_version, "exact map: version 7, only 1 is known");
+  refuses(other_type, "exact map: unknown type 7");
+}
+
+}  // namespace
+}  // namespace bespoke::test
