@@ -337,6 +337,20 @@ TEST_F(FitCommand, RefusesAnchorsThatDoNotFixTheMap) {
   expect_refusal(pair_.fit("map.vdb"), 2, "anchors.json");
 }
 
+TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
+  EXPECT_THAT(pair_.fit("map.vdb").err, Not(HasSubstr("warning")));
+  json anchors = read_json("anchors.json");
+  for (json& anchor : anchors["pairs"])
+    for (const char* side : {"a", "b"})
+      for (json& coordinate : anchor[side]) coordinate = 10 * coordinate.get<double>();
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  const ProgramResult fit = pair_.fit("map.vdb", {"--quiet"});
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  for (const char* role : {"source", "target"})
+    EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));
+  EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
+}
+
 TEST_F(FitCommand, TakesAnchorsAsCsv) {
   std::string rows = "name,ax,ay,az,bx,by,bz\n";
   const json anchors = read_json("anchors.json");

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/fitting/anchor_placement.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"
@@ -106,6 +107,14 @@ void print_stages(const MadeMap& made) {
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.vertex_residuals).c_str());
 }
 
+void warn_of_far_anchors(const std::string& role, const TriangleMesh& model, const Points& anchors,
+                         const std::string& unit) {
+  const AnchorPlacement placement = anchor_placement(model, anchors);
+  if (placement.is_far())
+    std::fprintf(stderr, "bespoke: warning: %s: %s; are both in one unit%s%s?\n", role.c_str(),
+                 to_string(placement).c_str(), unit.empty() ? "" : ", ", unit.c_str());
+}
+
 void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
                               const MadeMap& made) {
   if (made.bake.tolerance_met) return;
@@ -127,6 +136,9 @@ void run(const FitArguments& arguments, const Progress& progress) {
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
   if (arguments.add_corners)
     add_box_corners(anchors, bounding_box(source.vertices), bounding_box(target.vertices));
+
+  warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
+  warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
