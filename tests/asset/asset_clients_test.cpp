@@ -85,6 +85,7 @@ print('value', repr(u.getConstAccessor().getValue((3, 4, 2))))
 }
 
 TEST_F(AssetClients, NanovdbConvertsIt) {
+  // Not required even where the project is checked: Ubuntu 22.04 has no package of it.
   if (run("which nanovdb_convert").status != 0) GTEST_SKIP() << "nanovdb_convert is not installed";
   const ProgramRun convert =
       run("nanovdb_convert -f " + path_.string() + " " + (directory_ / "map.nvdb").string());

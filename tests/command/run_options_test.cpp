@@ -39,7 +39,7 @@ class EverySubcommand : public testing::Test {
   Arguments compose(const std::string& out) const {
     return {"compose", file("map.vdb"), file("back.vdb"), "-o", file(out)};
   }
-  Arguments check() const { return {"check", file("map.vdb")}; }
+  Arguments check() const { return {"check", file("map.vdb"), "--json"}; }
   Arguments measure() const {
     return {"measure", file("map.vdb"), "--source", file("source.obj"), "--target", file("target.obj")};
   }
@@ -135,6 +135,8 @@ struct LongRun {
   Arguments arguments;  ///< files stand in braces
   const char* stage;    ///< interrupted when it is announced
 };
+
+std::ostream& operator<<(std::ostream& stream, const LongRun& run) { return stream << run.name; }
 
 class Interrupted : public EverySubcommand, public testing::WithParamInterface<std::tuple<LongRun, int>> {
  protected:
