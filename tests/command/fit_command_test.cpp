@@ -344,7 +344,7 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
     for (const char* side : {"a", "b"})
       for (json& coordinate : anchor[side]) coordinate = 10 * coordinate.get<double>();
   write_text(pair_.file("anchors.json"), anchors.dump());
-  const ProgramResult fit = pair_.fit("map.vdb", {"--quiet"});
+  const ProgramResult fit = pair_.fit("map.vdb", {"--quiet", "--elastic", "pffd", "--voxel-size", "20%"});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));

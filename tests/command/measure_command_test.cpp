@@ -40,9 +40,13 @@ TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
   EXPECT_EQ(json["anchor_residuals"]["count"], 14);
   EXPECT_EQ(json["source_faces"], 1280);
   EXPECT_EQ(json["flipped_faces"], 0);
-  // The ellipsoids are 4 long: a fit that works leaves a small part of that.
-  EXPECT_LT(json["source_to_target"]["p99"].get<double>(), 0.05);
-  EXPECT_LT(json["target_to_source"]["p99"].get<double>(), 0.05);
+  // The bake adds at most its tolerance, and chords of either mesh lie up to 1 % of the largest radius, 1.4,
+  // below its ellipsoid.
+  const double off =
+      0.014 +
+      nlohmann::json::parse(bespoke({"info", pair.file("map.vdb"), "--json"}).out)["tolerance"].get<double>();
+  EXPECT_LT(json["source_to_target"]["p99"].get<double>(), off);
+  EXPECT_LT(json["target_to_source"]["p99"].get<double>(), off);
   EXPECT_GE(json["hausdorff"].get<double>(), json["source_to_target"]["max"].get<double>());
   EXPECT_GT(json["distortion"]["least_determinant"].get<double>(), 0);
   EXPECT_GE(json["distortion"]["conformal"]["min"].get<double>(), 1);
@@ -52,7 +56,7 @@ TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
   const auto& itself = json["products"][1];
   EXPECT_EQ(itself["clearance_before"]["max"], 0);
   EXPECT_EQ(itself["penetration_before"]["vertices"], 0);
-  EXPECT_LT(itself["clearance_change"]["p95"].get<double>(), 0.05);
+  EXPECT_LT(itself["clearance_change"]["p95"].get<double>(), off);
   EXPECT_EQ(itself["self_intersections_after"], 0);
   EXPECT_EQ(measure(pair, options).out, result.out);
   std::vector<std::string> one_thread = options;
