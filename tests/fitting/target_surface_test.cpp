@@ -10,7 +10,7 @@ namespace {
 
 TEST(TargetSurface, FindsThePointBelowWithItsNormal) {
   const TargetSurface surface(shapes::square_grid(4));
-  const auto found = surface.match(Vector3(0.3, 0.6, 0.2), Vector3(0, 0.6, 0.8), 0.5, 1);
+  const auto found = surface.match(Vector3(0.3, 0.6, 0.2), Vector3(0, 0.6, 0.8), {0.5, 1});
   ASSERT_TRUE(found);
   EXPECT_LT((found->point - Vector3(0.3, 0.6, 0)).norm(), 1e-12);
   EXPECT_LT((found->normal - Vector3(0, 0, 1)).norm(), 1e-12);
@@ -21,23 +21,23 @@ TEST(TargetSurface, FindsThePointBelowWithItsNormal) {
 TEST(TargetSurface, GivesNoPointOnItsBoundary) {
   const TargetSurface surface(shapes::square_grid(4));
   const Vector3 up(0, 0, 1);
-  EXPECT_FALSE(surface.match(Vector3(-0.1, 0.5, 0), up, 0, 1));   // beside an edge
-  EXPECT_FALSE(surface.match(Vector3(1.1, 1.2, 0.1), up, 0, 1));  // beyond a corner
-  EXPECT_TRUE(surface.match(Vector3(0.01, 0.5, 0), up, 0, 1));
+  EXPECT_FALSE(surface.match(Vector3(-0.1, 0.5, 0), up, {0, 1}));   // beside an edge
+  EXPECT_FALSE(surface.match(Vector3(1.1, 1.2, 0.1), up, {0, 1}));  // beyond a corner
+  EXPECT_TRUE(surface.match(Vector3(0.01, 0.5, 0), up, {0, 1}));
 }
 
 TEST(TargetSurface, GivesNoPointThatIsFarOrFacesAway) {
   const TargetSurface surface(shapes::square_grid(4));
-  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, 1), 0, 0.1));
-  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, -1), 0, 1));
-  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3::Zero(), 0, 1));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, 1), {0, 0.1}));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, -1), {0, 1}));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3::Zero(), {0, 1}));
 }
 
 TEST(TargetSurface, MovesWithItsBoundary) {
   const TriangleMesh square = shapes::square_grid(4);
   const TargetSurface lifted = TargetSurface(square).moved(square.vertices.colwise() + Vector3(0, 0, 2));
   EXPECT_NEAR(lifted.closest(Vector3(0.5, 0.5, 0)).squared_distance, 4, 1e-12);
-  EXPECT_FALSE(lifted.match(Vector3(-0.1, 0.5, 2), Vector3(0, 0, 1), 0, 1));
+  EXPECT_FALSE(lifted.match(Vector3(-0.1, 0.5, 2), Vector3(0, 0, 1), {0, 1}));
 }
 
 TEST(TargetSurface, KnowsAreasAndBoundary) {

@@ -176,6 +176,31 @@ TEST(ClosestPoint, WithNormalsAgreesWithAskingEveryFace) {
   }
 }
 
+TEST(ClosestPoint, CountsTheDifferenceOfNormalsLikeALength) {
+  constexpr double normal_length = 0.3, reach = 0.8;
+  const TriangleMesh soup = triangle_soup(300, 21);
+  const ClosestPointTree tree(soup);
+  const Points normals = face_normals(soup), queries = random_points(200, 1, 22);
+  for (Eigen::Index i = 0; i < queries.cols(); ++i) {
+    ClosestPointQuery query;
+    query.normal = Vector3(queries.col(i)).cross(Vector3(1, 2, 3)).normalized();
+    query.normal_length = normal_length;
+    query.max_distance = reach;
+    double least = reach * reach;
+    for (Eigen::Index face = 0; face < soup.faces.cols(); ++face) {
+      if (!(normals.col(face).dot(*query.normal) > 0)) continue;
+      least =
+          std::min(least, closest_on_face(soup, face, queries.col(i)).squared_distance +
+                              std::pow(normal_length, 2) * (normals.col(face) - *query.normal).squaredNorm());
+    }
+    const auto found = tree.closest(queries.col(i), query);
+    ASSERT_EQ(found.has_value(), least < reach * reach);
+    if (!found) continue;
+    EXPECT_NEAR(found->squared_distance, least, 1e-12);
+    expect_closest_on_triangle(soup, queries.col(i), *found);
+  }
+}
+
 TEST(ClosestPoint, OnFacesWithoutArea) {
   TriangleMesh mesh;
   mesh.vertices = Points{{0, 1, 2, 5, 5}, {0, 0, 0, 5, 5}, {0, 0, 0, 5, 5}};

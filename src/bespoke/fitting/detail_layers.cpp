@@ -108,7 +108,7 @@ std::vector<Residual> residuals(const DetailInput& input, const TriangleMesh& mo
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), min_cosine, within);
+      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), {min_cosine, within});
       if (!found) continue;
       const double weight = areas[i] * found->agreement * found->agreement;
       all[k].form = weight * (found->normal * found->normal.transpose() + slide * Matrix3::Identity());

@@ -37,7 +37,7 @@ std::vector<double> confidences(const TriangleMesh& fitted, const TargetSurface&
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      const auto found = target.match(fitted.vertices.col(i), normals.col(i), 0, 0.01 * diagonal);
+      const auto found = target.match(fitted.vertices.col(i), normals.col(i), {0, 0.01 * diagonal});
       if (!found) continue;
       const double offset = (found->point - fitted.vertices.col(i)).norm() / (near * diagonal);
       all[k] = found->agreement * std::exp(-offset * offset);

@@ -20,12 +20,15 @@ struct Level {
   int iterations;
   std::size_t samples, back_samples;  // pairs looked for, source to target and back
 };
-constexpr std::array levels = {Level{400, 10, 5000, 2000}, Level{1500, 6, 8000, 5000}};
+constexpr std::array levels = {Level{400, 10, 5000, 2000}, Level{2500, 6, 8000, 5000}};
 constexpr double coarsest_smoothing = 0.5, finest_smoothing = 0.01;  // of the diagonal
 constexpr double shape_share = 0.1;  // of the smoothing length: where local similarity begins to count
 constexpr int boundary_start = 4;    // iterations: anchors and surfaces come first
 constexpr double min_cosine = 0.3;
-constexpr double max_distance = 0.1;   // of the diagonal: farther points are no counterparts
+constexpr double max_distance = 0.1;  // of the diagonal: farther points are no counterparts
+// Of the diagonal: of points about as near the one that faces alike is the counterpart, so that bulges find
+// each other.
+constexpr double normal_length = 0.02;
 constexpr double outlier_medians = 4;  // residuals beyond lose their weight
 constexpr double anchor_growth =
     2;  // weight of all exact anchors after the first iteration; the surface has 1
@@ -248,6 +251,10 @@ class LevelFit {
   Points displacements_;
 };
 
+MatchLimits match_limits(double diagonal) {
+  return {min_cosine, max_distance * diagonal, normal_length * diagonal};
+}
+
 void keep_found(std::vector<PlaneObservation>& planes) {
   std::erase_if(planes, [](const PlaneObservation& plane) { return !(plane.weight > 0); });
 }
@@ -257,12 +264,12 @@ std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const 
   const std::size_t count = static_cast<std::size_t>(moved.vertices.cols());
   const std::size_t stride = (count + samples - 1) / samples;
   const Points normals = vertex_normals(moved);
+  const MatchLimits limits = match_limits(input.diagonal);
   std::vector<PlaneObservation> planes((count + stride - 1) / stride);
   parallel_for(planes.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
-      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), min_cosine,
-                                            max_distance * input.diagonal);
+      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), limits);
       if (!found) continue;
       planes[k] = {static_cast<int>(i), found->point, found->normal,
                    areas[i] * double(stride) * found->agreement * found->agreement};
@@ -276,6 +283,7 @@ std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const 
 std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const TargetSurface& surface,
                                                std::size_t samples) {
   const Points& points = input.target.mesh().vertices;
+  const MatchLimits limits = match_limits(input.diagonal);
   const std::size_t count = static_cast<std::size_t>(points.cols());
   const std::size_t stride = (count + samples - 1) / samples;
   std::vector<PlaneObservation> planes((count + stride - 1) / stride);
@@ -283,7 +291,7 @@ std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const 
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
       const Vector3 normal = input.target.normals().col(i);
-      const auto found = surface.match(points.col(i), normal, min_cosine, max_distance * input.diagonal);
+      const auto found = surface.match(points.col(i), normal, limits);
       if (!found) continue;
       int corner = 0;
       found->barycentric.maxCoeff(&corner);

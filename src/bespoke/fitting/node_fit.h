@@ -26,10 +26,10 @@ struct NodeFit {
 };
 
 /// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
-/// that (closest compatible points both ways, point to plane) + (anchors) + (boundaries) + ℓ⁴ (second
-/// differences along the surface) + (0.1 ℓ)² (deviation from local similarities) is least, with a smoothing
-/// length ℓ that falls from half to a hundredth of the diagonal. Where the target has nothing to offer, the
-/// last two extrapolate. Throws SolverError.
+/// that (compatible points both ways, nearest in place and normal, point to plane) + (anchors) + (boundaries)
+/// + ℓ⁴ (second differences along the surface) + (0.1 ℓ)² (deviation from local similarities) is least, with
+/// a smoothing length ℓ that falls from half to a hundredth of the diagonal. Where the target has nothing to
+/// offer, the last two extrapolate. Throws SolverError.
 NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress);
 
 }  // namespace bespoke

@@ -33,7 +33,7 @@ std::vector<PlaneResidual> plane_residuals(const Points& vertices, const Points&
   parallel_for(residuals.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
-      const auto found = target.match(vertices.col(i), normals.col(i), min_cosine, within);
+      const auto found = target.match(vertices.col(i), normals.col(i), {min_cosine, within});
       if (!found) continue;
       residuals[k] = {vertices.col(i), found->normal, found->normal.dot(found->point - vertices.col(i)),
                       areas[i]};

@@ -81,13 +81,14 @@ bool TargetSurface::on_boundary(const SurfacePoint& found) const {
   return false;
 }
 
-std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3& normal, double min_cosine,
-                                                 double max_distance) const {
+std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3& normal,
+                                                 const MatchLimits& limits) const {
   if (!(normal.squaredNorm() > 0)) return std::nullopt;
   ClosestPointQuery query;
-  query.max_distance = max_distance;
+  query.max_distance = limits.max_distance;
   query.normal = normal;
-  query.min_cosine = min_cosine;
+  query.min_cosine = limits.min_cosine;
+  query.normal_length = limits.normal_length;
   const std::optional<SurfacePoint> found = tree_.closest(x, query);
   if (!found || on_boundary(*found)) return std::nullopt;
   SurfaceMatch match;

@@ -18,6 +18,13 @@ struct SurfaceMatch {
   double agreement = 0;  ///< cosine between the query's normal and `normal`, in [0, 1]
 };
 
+/// What counts as compatible with a query.
+struct MatchLimits {
+  double min_cosine = 0;     ///< between the query's normal and that of the face
+  double max_distance = 0;   ///< mesh units
+  double normal_length = 0;  ///< mesh units; prefers faces of like normal (ClosestPointQuery)
+};
+
 /// A surface that answers closest compatible points. A point on its boundary is no answer: there the surface
 /// ends, not the body, and whatever lies beyond would collapse onto the boundary curve. Thread-safe.
 class TargetSurface {
@@ -28,10 +35,9 @@ class TargetSurface {
   /// The same faces with other vertices (3×n, mesh units).
   TargetSurface moved(Points vertices) const;
 
-  /// Closest point whose face normal has a cosine above `min_cosine` with `normal`; empty when there is none
-  /// within `max_distance` (mesh units), when it lies on the boundary, or when `normal` is zero.
-  std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, double min_cosine,
-                                    double max_distance) const;
+  /// Closest point within the limits; empty when there is none, when it lies on the boundary, or when
+  /// `normal` (unit) is zero.
+  std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, const MatchLimits& limits) const;
 
   /// Closest point, whatever the normals and on the boundary too.
   SurfacePoint closest(const Vector3& x) const;

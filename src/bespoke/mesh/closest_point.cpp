@@ -152,7 +152,10 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
     for (int i = first; i < first + count; ++i) {
       const auto k = static_cast<std::size_t>(i);
       if (query.normal && !(tree_->normals[k].dot(*query.normal) > query.min_cosine)) continue;
-      const Hit hit = closest_on(tree_->triangles[k], x);
+      Hit hit = closest_on(tree_->triangles[k], x);
+      if (query.normal)
+        hit.squared_distance +=
+            query.normal_length * query.normal_length * (tree_->normals[k] - *query.normal).squaredNorm();
       const bool better = hit.squared_distance < best.squared_distance;
       const bool tie = hit.squared_distance == best.squared_distance &&
                        (!nearest || tree_->triangles[k].face < nearest->face);

@@ -24,6 +24,9 @@ struct ClosestPointQuery {
   /// IV.C: within 90° is min_cosine 0). Without a normal every face answers.
   std::optional<Vector3> normal = std::nullopt;
   double min_cosine = 0;
+  /// With a normal: counts (normal_length · |n − normal|)² as squared distance too, mesh units, so that of
+  /// points about as near the one that faces alike answers. max_distance and squared_distance include it.
+  double normal_length = 0;
 };
 
 /// Bounding-volume tree over the triangles of a mesh; answers exact closest-point queries. Copies what it
