@@ -47,6 +47,19 @@ TEST(MendTurnedFaces, TakesBackAVertexDrawnAcrossItsNeighbours) {
   EXPECT_LT(mended.mended_vertices, 60u);
 }
 
+TEST(MendTurnedFaces, LeavesNoFaceTurnedWhereShortEdgesMeetLongOnes) {
+  TriangleMesh grid = shapes::square_grid(2 * side);
+  for (auto&& x : grid.vertices.colwise()) x.head<2>() = x.head<2>().array().cube();
+  Points after = grid.vertices;
+  for (auto&& x : after.colwise()) x += Vector3(0.4 * x[0], -0.3 * x[1], 0.2 * x[0] * x[0]);
+  const int drawn = vertex_at(grid, 0.125, 0.125);
+  after.col(drawn) += Vector3(0.1, 0.1, 0);
+  ASSERT_LT(least_cosine(grid, after), 0);
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.turned_faces, 0u);
+  EXPECT_GT(least_cosine(grid, mended.vertices), 0);
+}
+
 TEST(MendTurnedFaces, MovesNothingFarFromTheTurnedFaces) {
   const TriangleMesh grid = shapes::square_grid(side);
   Points after = grid.vertices;

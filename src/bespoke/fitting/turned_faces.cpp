@@ -2,6 +2,7 @@
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,27 +23,34 @@ std::vector<Eigen::Index> turned_faces(const Points& before_normals, const Trian
   return turned;
 }
 
-/// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours'.
-Points spread_harmonically(const VertexAdjacency& adjacency, const std::vector<int>& free,
-                           Points displacements) {
+/// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
+/// weighted by inverse length, so that displacements change as fast across short edges as across long ones.
+Points spread_harmonically(const Points& places, const VertexAdjacency& adjacency,
+                           const std::vector<int>& free, Points displacements) {
   constexpr int fixed = -1;
+  constexpr double shortest = 1e-6;  // of the diagonal: edges of no length weigh no more
+  const double least_length = shortest * diagonal(places);
   std::vector<int> row_of(static_cast<std::size_t>(displacements.cols()), fixed);
   for (std::size_t k = 0; k < free.size(); ++k) row_of[free[k]] = static_cast<int>(k);
   const auto count = static_cast<int>(free.size());
   std::vector<Eigen::Triplet<double>> entries;
-  Columns right(count, 3);
+  Columns right = Columns::Zero(count, 3);
   for (int row = 0; row < count; ++row) {
     const int vertex = free[row];
-    constexpr double keep = 1e-9;  // decides where a component is free as a whole
-    right.row(row) = keep * displacements.col(vertex).transpose();
+    double total = 0;
     for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k) {
       const int other = adjacency.neighbours[k];
+      const double length = (places.col(other) - places.col(vertex)).norm();
+      const double weight = least_length / std::max(length, least_length);
+      total += weight;
       if (row_of[other] == fixed)
-        right.row(row) += displacements.col(other).transpose();
+        right.row(row) += weight * displacements.col(other).transpose();
       else
-        entries.emplace_back(row, row_of[other], -1);
+        entries.emplace_back(row, row_of[other], -weight);
     }
-    entries.emplace_back(row, row, keep + adjacency.start[vertex + 1] - adjacency.start[vertex]);
+    const double keep = 1e-9 * total;  // decides where a component is free as a whole
+    right.row(row) += keep * displacements.col(vertex).transpose();
+    entries.emplace_back(row, row, total + keep);
   }
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -77,7 +85,8 @@ MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after)
         for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k)
           release(adjacency.neighbours[k]);
       }
-    mended.vertices = before.vertices + spread_harmonically(adjacency, free, after - before.vertices);
+    mended.vertices =
+        before.vertices + spread_harmonically(before.vertices, adjacency, free, after - before.vertices);
     turned = turned_faces(before_normals, mended);
   }
   return {std::move(mended.vertices), free.size(), turned.size()};
