@@ -118,6 +118,19 @@ TEST_F(EverySubcommand, LeavesNothingOnAFullDisk) {
   }
 }
 
+TEST_F(EverySubcommand, LeavesNothingWhenMemoryRunsOut) {
+  if (std::string(BESPOKE_SANITIZE_FLAGS) != "") GTEST_SKIP() << "sanitizers reserve more than the limit";
+  const Arguments before = pair_.files();
+  // Some 24 million voxels, which --max-memory allows, in 400 MB.
+  Arguments all{"sh", "-c", R"(ulimit -v 400000; exec "$0" "$@")", BESPOKE_COMMAND};
+  for (const std::string& argument : fit("x.vdb", {"--elastic", "pffd", "--voxel-size", "0.2%", "-q"}))
+    all.push_back(argument);
+  const ProgramResult result = run_program(all);
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("out of memory"));
+  EXPECT_EQ(pair_.files(), before);
+}
+
 TEST_F(EverySubcommand, DrawsABarOnATerminal) {
   // `script` gives the command a terminal for its standard error.
   std::string line = BESPOKE_COMMAND;
@@ -179,6 +192,14 @@ INSTANTIATE_TEST_SUITE_P(
                     {"apply", "{map.vdb}", "{product.obj}", "--out-dir", "{out}", "--frames", "5000"},
                     "apply: "},
             LongRun{"invert", {"invert", "{map.vdb}", "-o", "{x.vdb}", "--tolerance", "0.0005%"}, "bake: "},
+            LongRun{"measure",
+                    [] {
+                      Arguments all{"measure",  "{map.vdb}",    "--source", "{source.obj}",
+                                    "--target", "{target.obj}", "--json"};
+                      for (int i = 0; i < 50; ++i) all.insert(all.end(), {"--product", "{source.obj}"});
+                      return all;
+                    }(),
+                    "surfaces: "},
             LongRun{"compose",
                     {"compose", "{map.vdb}", "{back.vdb}", "-o", "{x.vdb}", "--tolerance", "0.0005%"},
                     "bake: "}),

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+
 #include "command/example_pair.h"
 
 namespace bespoke::test {
@@ -20,6 +22,23 @@ TEST(SamplesCommand, WritesOnlyWhatIsNamed) {
   }
   EXPECT_FALSE(std::filesystem::exists(directory / "made" / "dress"));
   EXPECT_THAT(bespoke({"samples", made, "shoe", "--quiet"}).out, IsEmpty());
+}
+
+TEST(SamplesCommand, LeavesWholeFilesWhenInterrupted) {
+  const ScratchDirectory directory;
+  RunningProgram samples({BESPOKE_COMMAND, "samples", directory.path().string(), "shoe", "glove"});
+  ASSERT_TRUE(samples.wait_for_error_text("samples: "));
+  samples.send(SIGINT);
+  const ProgramResult result = samples.wait();
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_THAT(result.err, HasSubstr("bespoke: interrupted\n"));
+  EXPECT_FALSE(std::filesystem::exists(directory / "glove"));
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(directory.path()))
+    if (entry.path().extension() == ".obj") {
+      EXPECT_GT(read_obj_points(entry.path().string()).cols(), 1000) << entry.path();
+    } else {
+      EXPECT_TRUE(entry.is_directory() || entry.path().filename() == "anchors.json") << entry.path();
+    }
 }
 
 TEST(SamplesCommand, ListsTheNamesItKnows) {
