@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "fitting/fitting_scene.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -129,17 +130,10 @@ TEST(DisplacementSmoother, RejectsAStiffnessThatIsNone) {
 
 // ---- the whole fitting
 
-struct Scene {
-  TriangleMesh source;
-  TriangleMesh target;
-  Points warped = source.vertices;
-  Points anchor_sources = Points(3, 0);
-  Points anchor_targets = Points(3, 0);
-  Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
-
+struct Scene : test::FittingScene {
   SurfaceFit fit(SurfaceFitOptions options = {}) const {
     options.method = SurfaceFitMethod::laplacian;
-    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
+    return FittingScene::fit(options);
   }
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "fitting/fitting_scene.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -14,20 +15,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-struct Scene {
-  TriangleMesh source;
-  TriangleMesh target;
-  Points warped = source.vertices;
-  Points anchor_sources = Points(3, 0);
-  Points anchor_targets = Points(3, 0);
-  Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
-
-  SurfaceFitOptions options = {};
-
-  SurfaceFit fit() const {
-    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
-  }
-};
+using Scene = test::FittingScene;
 
 TriangleMesh potato(int levels) {
   TriangleMesh mesh = shapes::icosphere(levels);
@@ -116,8 +104,9 @@ TEST(FitSurfaceMultiscale, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo
   scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
 
   const auto lowest = [&](BoundaryRule rule) {
-    scene.options.boundaries = rule;
-    const SurfaceFit fit = scene.fit();
+    SurfaceFitOptions options;
+    options.boundaries = rule;
+    const SurfaceFit fit = scene.fit(options);
     EXPECT_EQ(fit.summary.matched_boundaries, rule == BoundaryRule::free ? 0 : 1);
     return fit.vertices(2, scene.source.faces.reshaped()).minCoeff();
   };
