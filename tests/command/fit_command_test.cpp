@@ -194,6 +194,19 @@ TEST_F(FitCommand, AddsTheCornersOfTheBoxes) {
   EXPECT_EQ(info("map.vdb")["anchors"][14]["name"], "corner_000");
 }
 
+// The target is turned: corners of its box as it stands would tear the map apart.
+TEST_F(FitCommand, CornersDoNotHarmTheDefaultMethods) {
+  ASSERT_EQ(pair_.fit("plain.vdb").exit_code, 0);
+  const ProgramResult fit = pair_.fit("map.vdb", {"--add-corners"});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const json plain = info("plain.vdb"), corners = info("map.vdb");
+  ASSERT_EQ(corners["anchors"].size(), 22u);
+  EXPECT_TRUE(corners["certificate"]["bijection"]);
+  const double diagonal = 2 * Vector3(1, 1.4, 0.8).norm();
+  for (std::size_t i = 0; i < plain["anchors"].size(); ++i)
+    EXPECT_LE(corners["anchors"][i]["residual"], 0.01 * diagonal);
+}
+
 TEST_F(FitCommand, ReportsEveryStage) {
   ASSERT_EQ(pair_.fit("map.vdb", {"--report", pair_.file("report.json")}).exit_code, 0);
   const json report = read_json("report.json");

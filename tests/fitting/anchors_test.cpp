@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "bespoke/error.h"
+#include "bespoke/rigid/rigid_transform.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 
@@ -126,9 +128,18 @@ TEST_F(ReadAnchors, ReportsAFileThatCannotBeOpened) {
   EXPECT_THROW(read_anchors(directory_.path()), FileError);
 }
 
+// The corners of a box, and a point inside that must not matter.
+Points box_points(const Vector3& low, const Vector3& high) {
+  Points points(3, 3);
+  points << low, high, 0.5 * (low + high);
+  return points;
+}
+
 TEST(AddBoxCorners, PairsTheCornersByTheirSides) {
   Anchors anchors;
-  add_box_corners(anchors, Box(Vector3(0, 0, 0), Vector3(1, 2, 3)), Box(Vector3(4, 4, 4), Vector3(5, 6, 7)));
+  const Points source = box_points(Vector3(0, 0, 0), Vector3(1, 2, 3));
+  const Points target = box_points(Vector3(4, 4, 4), Vector3(5, 6, 7));
+  add_box_corners(anchors, source, target);
   ASSERT_EQ(anchors.pairs.size(), 8u);
   EXPECT_EQ(anchors.pairs[0].name, "corner_000");
   EXPECT_EQ(anchors.pairs[4].name, "corner_100");
@@ -136,10 +147,28 @@ TEST(AddBoxCorners, PairsTheCornersByTheirSides) {
   EXPECT_EQ(anchors.pairs[4].b, Vector3(5, 4, 4));
   EXPECT_EQ(anchors.pairs[7].a, Vector3(1, 2, 3));
   EXPECT_EQ(anchors.pairs[7].b, Vector3(5, 6, 7));
-  EXPECT_THROW(add_box_corners(anchors, Box(Vector3(0, 0, 0), Vector3(1, 2, 3)),
-                               Box(Vector3(4, 4, 4), Vector3(5, 6, 7))),
-               InvalidInput);
-  EXPECT_THROW(add_box_corners(anchors, Box(), Box()), InvalidInput);
+  EXPECT_THROW(add_box_corners(anchors, source, target), InvalidInput);
+  Anchors none;
+  EXPECT_THROW(add_box_corners(none, Points(3, 0), Points(3, 0)), InvalidInput);
+}
+
+// The box of a turned model has other corners than the turned box.
+TEST(AddBoxCorners, TurnWithTheTarget) {
+  const Matrix3 rotation = Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  const RigidTransform turn{rotation, Vector3(3, -1, 2)};
+  const Points source = Points::Random(3, 50);
+  Anchors anchors;
+  for (int i = 0; i < 4; ++i) {
+    AnchorPair pair;
+    pair.name = std::string(1, static_cast<char>('p' + i));
+    pair.a = source.col(i);
+    pair.b = turn * Points(pair.a);
+    anchors.pairs.push_back(pair);
+  }
+  add_box_corners(anchors, source, turn * source);
+  ASSERT_EQ(anchors.pairs.size(), 12u);
+  for (const AnchorPair& pair : anchors.pairs)
+    EXPECT_LT((turn * Points(pair.a) - Points(pair.b)).norm(), 1e-12) << pair.name;
 }
 
 }  // namespace

@@ -134,8 +134,7 @@ void run(const FitArguments& arguments, const Progress& progress) {
   if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
-  if (arguments.add_corners)
-    add_box_corners(anchors, bounding_box(source.vertices), bounding_box(target.vertices));
+  if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
@@ -189,7 +188,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
                "The printed method: --surface-fit laplacian --elastic csrbf --path euler")
       ->excludes(surface_fit, elastic, path);
   fit.add_flag("--add-corners", arguments.add_corners,
-               "Add the eight corners of the two bounding boxes as anchor pairs");
+               "Add the eight corners of the bounding boxes of the two models, aligned, as anchor pairs");
 }
 
 void add_length_options(CLI::App& fit, FitArguments& arguments) {

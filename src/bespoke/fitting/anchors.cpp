@@ -14,6 +14,8 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/rigid/rigid_alignment.h"
 
 namespace bespoke {
 namespace {
@@ -206,9 +208,15 @@ Anchors read_anchors(const std::filesystem::path& path) {
   return anchors;
 }
 
-void add_box_corners(Anchors& anchors, const Box& source_box, const Box& target_box) {
-  if (source_box.isEmpty() || target_box.isEmpty())
+void add_box_corners(Anchors& anchors, const Points& source_vertices, const Points& target_vertices) {
+  if (source_vertices.cols() == 0 || target_vertices.cols() == 0)
     throw InvalidInput("corners of an empty bounding box cannot serve as anchors");
+  constexpr std::size_t pairs_that_fix_a_turn = 3;
+  RigidTransform target_from_source;
+  if (anchors.pairs.size() >= pairs_that_fix_a_turn)
+    target_from_source = align_rigidly(source_points(anchors), target_points(anchors), weights(anchors));
+  const Box source_box = bounding_box(source_vertices);
+  const Box target_box = bounding_box(inverse(target_from_source) * target_vertices);
   for (int corner = 0; corner < 8; ++corner) {
     const int bits[3] = {corner >> 2 & 1, corner >> 1 & 1, corner & 1};
     AnchorPair pair;
@@ -218,6 +226,7 @@ void add_box_corners(Anchors& anchors, const Box& source_box, const Box& target_
       pair.a[axis] = bits[axis] ? source_box.max()[axis] : source_box.min()[axis];
       pair.b[axis] = bits[axis] ? target_box.max()[axis] : target_box.min()[axis];
     }
+    pair.b = target_from_source * pair.b;
     for (const AnchorPair& present : anchors.pairs)
       if (present.name == pair.name)
         throw InvalidInput("an anchor is already named \"" + pair.name +

@@ -30,8 +30,11 @@ struct Anchors {
 Anchors read_anchors(const std::filesystem::path& path);
 
 /// Appends the eight corners of the bounding boxes as exact pairs named "corner_000" … "corner_111" (x, y, z;
-/// Fig. 5).
-void add_box_corners(Anchors& anchors, const Box& source_box, const Box& target_box);
+/// Fig. 5). The boxes are those of the source and of the target in the source's frame, H'_b, which the pairs
+/// already there fix (Eq. 2–6): a model that is turned has other corners. With fewer than three pairs nothing
+/// is known of a turn, and the target is taken as it stands. Vertices: 3×n, mesh units. Throws InvalidInput
+/// when there are no vertices, the pairs are collinear, or a name is taken.
+void add_box_corners(Anchors& anchors, const Points& source_vertices, const Points& target_vertices);
 
 /// 3×n each, and n: the pairs as matrices.
 Points source_points(const Anchors& anchors);
