@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -174,6 +175,94 @@ TEST(Bake, RefusesValuesOutOfRange) {
 TEST(Bake, RefusesAMapThatIsNotFinite) {
   const AnalyticMap map({{Vector3::Zero(), 1.0, Vector3(std::nan(""), 0, 0)}});
   EXPECT_THROW(bake(map, uniform(0.1)), InvalidInput);
+}
+
+TEST(Bake, MeasuresWhatHalfPrecisionStores) {
+  const AnalyticMap map = two_bumps();
+  BakeOptions options;
+  options.tolerance = 2e-4;
+  options.error_points = 50000;
+  options.precision = ValuePrecision::half;
+  const Bake baked = bake(map, options);
+  EXPECT_TRUE(baked.summary.tolerance_met) << to_string(baked.summary);
+  EXPECT_NO_THROW(require_valid(baked.pyramid));  // every value is of half precision
+  for (const PyramidLevel& level : baked.pyramid.levels)
+    for (const float value : level.values) ASSERT_EQ(value, rounded_to_half(value));
+  const Points x = 1.5 * Points::Random(3, 50000);
+  const BakedMap result(map.affine(), baked.pyramid);
+  EXPECT_LE((result.displacement(x) - map.displacement(x)).colwise().norm().maxCoeff(),
+            1.1 * options.tolerance);
+}
+
+TEST(Bake, RefusesWhatHalfPrecisionCannotHold) {
+  const AnalyticMap map({{Vector3::Zero(), 1e6, Vector3(1e5, 0, 0)}});
+  BakeOptions options;
+  options.tolerance = 1e3;
+  options.error_points = 1000;
+  EXPECT_NO_THROW(bake(map, options));
+  options.precision = ValuePrecision::half;
+  EXPECT_THROW(bake(map, options), InvalidInput);
+}
+
+// Twice the identity's displacement on one side of a sphere, none on the other.
+class TornMap : public AnalyticMap {
+ public:
+  TornMap() : AnalyticMap({{Vector3::Zero(), 1.0, Vector3(0.2, 0, 0)}}) {}
+  Points displacement(const Points& x) const override {
+    Points u = AnalyticMap::displacement(x);
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      if (x.col(i).norm() > 0.3) u.col(i).setZero();
+    return u;
+  }
+};
+
+TEST(Bake, OfAMapThatJumpsEndsAndSaysThatItMisses) {
+  BakeOptions options;
+  options.tolerance = 4e-3;
+  options.error_points = 20000;
+  const Bake baked = bake(TornMap(), options);
+  EXPECT_FALSE(baked.summary.tolerance_met);
+  EXPECT_GE(baked.summary.levels.back().voxel_size, options.tolerance / 2);
+}
+
+TEST(Bake, RefusesEarlyAndAdvisesAToleranceThatFits) {
+  BakeOptions options;
+  options.tolerance = 4e-4;
+  options.error_points = 20000;
+  options.max_memory = std::size_t{600} << 20;
+  class Counted : public TornMap {
+   public:
+    Points displacement(const Points& x) const override {
+      points += x.cols();
+      return TornMap::displacement(x);
+    }
+    mutable std::atomic<Eigen::Index> points{0};
+  };
+  const Counted map;
+  std::string message;
+  try {
+    bake(map, options);
+  } catch (const MemoryLimitError& error) {
+    message = error.what();
+  }
+  const std::string before = "; a tolerance of ";
+  const std::size_t at = message.find(before);
+  ASSERT_NE(at, std::string::npos) << message;
+  EXPECT_LT(map.points, 3'000'000);
+  options.tolerance = std::stod(message.substr(at + before.size()));
+  const Bake fitting = bake(map, options);
+  EXPECT_LE(fitting.summary.peak_bytes, options.max_memory);
+}
+
+TEST(RoundedToHalf, IsTheNearestNumberOfElevenBits) {
+  EXPECT_EQ(rounded_to_half(0.0f), 0.0f);
+  EXPECT_EQ(rounded_to_half(1.0f), 1.0f);
+  EXPECT_EQ(rounded_to_half(1.0f + 0x1p-11f), 1.0f);  // a tie, to even
+  EXPECT_EQ(rounded_to_half(1.0f + 0x1.8p-11f), 1.0f + 0x1p-10f);
+  EXPECT_EQ(rounded_to_half(-0x1p-24f), -0x1p-24f);  // the least
+  EXPECT_EQ(rounded_to_half(0x1p-26f), 0.0f);
+  EXPECT_EQ(rounded_to_half(65519.0f), 65504.0f);
+  EXPECT_TRUE(std::isinf(rounded_to_half(65520.0f)));
 }
 
 TEST(Bake, StopsWhenAsked) {

@@ -21,11 +21,15 @@ Pyramid with_one_fold() {
   return pyramid;
 }
 
+std::vector<FoldedCell> folds_of(const Pyramid& pyramid, const AffineMap& affine = {}) {
+  return certify_listing_all(pyramid, affine).places;
+}
+
 TEST(RepairFolds, MendsAFoldAndLeavesFarNodesAlone) {
   const Pyramid folded = with_one_fold();
   ASSERT_GT(certify(folded, {}).folded, 0u);
   Pyramid repaired = folded;
-  const RepairSummary summary = repair_folds(repaired, {});
+  const RepairSummary summary = repair_folds(repaired, {}, folds_of(folded));
   EXPECT_EQ(summary.folded, 0u);
   EXPECT_EQ(summary.cells, certify(folded, {}).folded);
   EXPECT_TRUE(certify(repaired, {}).is_bijection());
@@ -49,7 +53,7 @@ TEST(RepairFolds, LeavesACertifiedPyramidAlone) {
   Pyramid pyramid;
   pyramid.levels.push_back({1, {{0, 0, 0}}, std::vector<float>(3 * leaf_nodes, 0.1f)});
   const std::vector<float> before = pyramid.levels[0].values;
-  const RepairSummary summary = repair_folds(pyramid, {});
+  const RepairSummary summary = repair_folds(pyramid, {}, folds_of(pyramid));
   EXPECT_EQ(summary.cells, 0u);
   EXPECT_EQ(summary.largest_change, 0);
   EXPECT_EQ(pyramid.levels[0].values, before);
@@ -59,7 +63,7 @@ TEST(RepairFolds, CannotMendTheAffinePart) {
   AffineMap mirrored;
   mirrored.linear = Vector3(1, 1, -1).asDiagonal();
   Pyramid pyramid = with_one_fold();
-  EXPECT_GT(repair_folds(pyramid, mirrored).folded, 0u);
+  EXPECT_GT(repair_folds(pyramid, mirrored, folds_of(pyramid, mirrored)).folded, 0u);
 }
 
 // det ∇E = 1 + ∂u₀/∂x at its least is 1 − 1.71 · amplitude / radius on the axis: the first map keeps its

@@ -23,6 +23,7 @@ std::string options_json(const MakeMapOptions& options, bool given_fitted) {
   json["lambda"] = options.fit.lambda;
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["tolerance"] = options.bake.tolerance;
+  if (options.bake.precision == ValuePrecision::half) json["half"] = true;
   if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;
   return json.dump();
 }
@@ -82,7 +83,9 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   made.fit = input.fitted
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
-  Bake baked = bake(*made.fit.elastic, options.bake, progress);
+  BakeOptions bake_options = options.bake;
+  bake_options.surface = &input.source;
+  Bake baked = bake(*made.fit.elastic, bake_options, progress);
   made.bake = baked.summary;
 
   Asset& asset = made.asset;

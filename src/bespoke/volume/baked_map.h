@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/volume/pyramid.h"
@@ -22,6 +23,9 @@ class BakedMap : public ElasticMap {
   Support support() const override;
 
   const Pyramid& pyramid() const { return pyramid_; }
+
+  /// The pyramid back, without a copy; the map is at an end.
+  Pyramid release() && { return std::move(pyramid_); }
 
  private:
   struct Index;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/volume/finest_cells.h"
 #include "bespoke/volume/jacobian_bound.h"
+#include "bespoke/volume/leaf_table.h"
 
 namespace bespoke {
 namespace {
@@ -50,6 +52,8 @@ class Certifier {
 
   std::size_t roots() const { return index_.levels.empty() ? 0 : index_.levels.front().size(); }
 
+  const PyramidIndex& index() const { return index_; }
+
   Found certify_roots(std::size_t begin, std::size_t end) const {
     Found found;
     for (std::size_t root = begin; root < end; ++root)
@@ -57,7 +61,6 @@ class Certifier {
     return found;
   }
 
- private:
   void certify_entry(const EntryCells& cells, Found& found) const {
     const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cells.level)].voxel_size;
     JacobianBlock block;
@@ -82,6 +85,7 @@ class Certifier {
     }
   }
 
+ private:
   Vector3 center(const EntryCells& cells, int cell, double voxel_size) const {
     const Vector3 corner(leaf_edge * cells.leaf[0] + cell / 64, leaf_edge * cells.leaf[1] + cell / 8 % 8,
                          leaf_edge * cells.leaf[2] + cell % 8);
@@ -147,6 +151,75 @@ Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine,
   certificate.places = std::move(found.places);
   certificate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return certificate;
+}
+
+struct FoldList::Cells {
+  Cells(const Pyramid& pyramid_in, const AffineMap& affine)
+      : pyramid(pyramid_in), certifier(pyramid_in, affine.linear, 1) {}
+
+  const Pyramid& pyramid;
+  Certifier certifier;  // refers to the values, so it sees their changes
+};
+
+FoldList::FoldList(const Pyramid& pyramid, const AffineMap& affine, std::vector<FoldedCell> places)
+    : cells_(std::make_unique<Cells>(pyramid, affine)), places_(std::move(places)) {}
+
+FoldList::~FoldList() = default;
+
+void FoldList::update(const std::vector<std::vector<std::array<int, 3>>>& changed) {
+  const Pyramid& pyramid = cells_->pyramid;
+  const PyramidIndex& index = cells_->certifier.index();
+  // Entries with a cell at a changed node, and the way down to them. What lies below them changes as well.
+  std::vector<LeafTable> stale(pyramid.levels.size()), above(pyramid.levels.size());
+  const auto insert = [](LeafTable& table, const LeafCoordinates& leaf) {
+    if (table.find(leaf) != no_leaf) return false;
+    table.insert(leaf, 0);
+    return true;
+  };
+  for (std::size_t level = 0; level < changed.size(); ++level)
+    for (const std::array<int, 3>& node : changed[level])
+      for (int corner = 0; corner < 8; ++corner) {
+        LeafCoordinates leaf = {(node[0] - (corner >> 2 & 1)) >> 3, (node[1] - (corner >> 1 & 1)) >> 3,
+                                (node[2] - (corner & 1)) >> 3};
+        if (!insert(stale[level], leaf)) continue;
+        for (std::size_t up = level; up-- > 0;) {
+          leaf = {leaf[0] >> 1, leaf[1] >> 1, leaf[2] >> 1};
+          if (!insert(above[up], leaf)) break;
+        }
+      }
+  const auto is_stale = [&](int level, LeafCoordinates leaf) {
+    for (; level >= 0; --level, leaf = {leaf[0] >> 1, leaf[1] >> 1, leaf[2] >> 1})
+      if (stale[static_cast<std::size_t>(level)].find(leaf) != no_leaf) return true;
+    return false;
+  };
+  const auto leaf_of = [&](const FoldedCell& cell) -> LeafCoordinates {
+    const double voxel_size = pyramid.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+    const Eigen::Vector3i node = ((cell.center - pyramid.origin) / voxel_size).array().floor().cast<int>();
+    return {node.x() >> 3, node.y() >> 3, node.z() >> 3};
+  };
+  std::erase_if(places_, [&](const FoldedCell& cell) { return is_stale(cell.level, leaf_of(cell)); });
+  std::vector<std::size_t> roots;
+  for (std::size_t root = 0; root < cells_->certifier.roots(); ++root) {
+    const LeafCoordinates& leaf = index.levels.front()[root].leaf;
+    if (stale.front().find(leaf) != no_leaf || above.front().find(leaf) != no_leaf) roots.push_back(root);
+  }
+  const Found found = parallel_reduce(
+      roots.size(), 1, Found{},
+      [&](std::size_t begin, std::size_t end) {
+        Found part;
+        for (std::size_t n = begin; n < end; ++n)
+          visit_finest_cells(
+              index, roots[n],
+              [&](int level, const LeafCoordinates& leaf) {
+                return above[static_cast<std::size_t>(level)].find(leaf) != no_leaf || is_stale(level, leaf);
+              },
+              [&](const EntryCells& cells) {
+                if (is_stale(cells.level, cells.leaf)) cells_->certifier.certify_entry(cells, part);
+              });
+        return part;
+      },
+      combine);
+  places_.insert(places_.end(), found.places.begin(), found.places.end());
 }
 
 }  // namespace bespoke

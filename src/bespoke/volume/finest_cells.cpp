@@ -71,16 +71,21 @@ void add_leaves(const PyramidEntry& entry, NodeBlock& sum) {
       }
 }
 
+using Enter = std::function<bool(int level, const LeafCoordinates& leaf)>;
+using Visit = std::function<void(const EntryCells&)>;
+
 class Visitor {
  public:
-  Visitor(const PyramidIndex& index, const std::function<void(const EntryCells&)>& visit)
-      : index_(index), visit_(visit), blocks_(index.levels.size()) {
+  /// An empty `enter` is true everywhere.
+  Visitor(const PyramidIndex& index, const Enter& enter, const Visit& visit)
+      : index_(index), enter_(enter), visit_(visit), blocks_(index.levels.size()) {
     for (auto& block : blocks_) block = std::make_unique<NodeBlock>();
   }
 
   void visit_root(std::size_t root) {
     for (auto& component : *blocks_[0]) component.fill(0);
     const PyramidEntry& entry = index_.levels[0][root];
+    if (enter_ && !enter_(0, entry.leaf)) return;
     descend(0, static_cast<std::int32_t>(root), nonzero_cells(entry));
   }
 
@@ -100,21 +105,26 @@ class Visitor {
     if (finest.any()) visit_({level, number, entry.leaf, &sum, finest});
     for (int octant = 0; octant < 8; ++octant) {
       if (entry.children[octant] == no_leaf) continue;
+      if (enter_ && !enter_(level + 1, index_.levels[level + 1][entry.children[octant]].leaf)) continue;
       refine_block(sum, octant, *blocks_[level + 1]);
       descend(level + 1, entry.children[octant], cells_of_groups(groups[octant]));
     }
   }
 
   const PyramidIndex& index_;
-  const std::function<void(const EntryCells&)>& visit_;
+  const Enter& enter_;
+  const Visit& visit_;
   std::vector<std::unique_ptr<NodeBlock>> blocks_;  // of the entry being visited, one a level
 };
 
 }  // namespace
 
-void visit_finest_cells(const PyramidIndex& index, std::size_t root,
-                        const std::function<void(const EntryCells&)>& visit) {
-  Visitor(index, visit).visit_root(root);
+void visit_finest_cells(const PyramidIndex& index, std::size_t root, const Visit& visit) {
+  Visitor(index, {}, visit).visit_root(root);
+}
+
+void visit_finest_cells(const PyramidIndex& index, std::size_t root, const Enter& enter, const Visit& visit) {
+  Visitor(index, enter, visit).visit_root(root);
 }
 
 void refine_block(const NodeBlock& coarse, int octant, NodeBlock& fine) {

@@ -35,6 +35,11 @@ struct EntryCells {
 void visit_finest_cells(const PyramidIndex& index, std::size_t root,
                         const std::function<void(const EntryCells&)>& visit);
 
+/// The same below those entries only for which `enter(level, leaf)` is true.
+void visit_finest_cells(const PyramidIndex& index, std::size_t root,
+                        const std::function<bool(int level, const LeafCoordinates& leaf)>& enter,
+                        const std::function<void(const EntryCells&)>& visit);
+
 /// The upper half (octant bit set) or lower half of a block along each axis, interpolated onto nodes of half
 /// the size.
 void refine_block(const NodeBlock& coarse, int octant, NodeBlock& fine);

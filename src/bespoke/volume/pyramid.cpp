@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "bespoke/error.h"
@@ -25,7 +26,7 @@ std::string name(const LeafCoordinates& leaf) {
          std::to_string(leaf[2]) + ")";
 }
 
-void require_valid_level(const PyramidLevel& level, std::size_t index) {
+void require_valid_level(const PyramidLevel& level, ValuePrecision precision, std::size_t index) {
   if (!(level.voxel_size > 0 && std::isfinite(level.voxel_size)))
     refuse(index, "voxel size " + std::to_string(level.voxel_size) + " is not positive and finite");
   if (level.leaves.empty()) refuse(index, "no leaf; leave the level out");
@@ -39,13 +40,15 @@ void require_valid_level(const PyramidLevel& level, std::size_t index) {
     if (i > 0 && !(level.leaves[i - 1] < level.leaves[i]))
       refuse(index, name(level.leaves[i]) + " is not in lexicographic order, or twice");
   }
-  const auto bad =
-      std::find_if(level.values.begin(), level.values.end(), [](float v) { return !std::isfinite(v); });
-  if (bad != level.values.end())
-    refuse(index,
-           "a value of " +
-               name(level.leaves[static_cast<std::size_t>(bad - level.values.begin()) / 3 / leaf_nodes]) +
-               " is not finite");
+  const auto require_all = [&](const auto& good, const char* what) {
+    const auto bad = std::find_if_not(level.values.begin(), level.values.end(), good);
+    if (bad == level.values.end()) return;
+    const auto leaf = static_cast<std::size_t>(bad - level.values.begin()) / 3 / leaf_nodes;
+    refuse(index, "a value of " + name(level.leaves[leaf]) + " is not " + what);
+  };
+  require_all([](float value) { return std::isfinite(value); }, "finite");
+  if (precision == ValuePrecision::half)
+    require_all([](float value) { return value == rounded_to_half(value); }, "of half precision");
 }
 
 void require_nested(const PyramidLevel& coarse, const PyramidLevel& fine, std::size_t index) {
@@ -59,6 +62,31 @@ void require_nested(const PyramidLevel& coarse, const PyramidLevel& fine, std::s
 }
 
 }  // namespace
+
+float rounded_to_half(float value) {
+  constexpr int least_exponent = -14;  // below it halves are evenly spaced
+  constexpr int stored_bits = 10;
+  constexpr float largest = 65504;
+  if (!std::isfinite(value) || value == 0) return value;
+  const float spacing = std::ldexp(1.0f, std::max(std::ilogb(value), least_exponent) - stored_bits);
+  const float rounded = std::nearbyint(value / spacing) * spacing;
+  return std::abs(rounded) <= largest ? rounded
+                                      : std::copysign(std::numeric_limits<float>::infinity(), value);
+}
+
+void round_values(std::span<float> values, double tolerance, ValuePrecision precision) {
+  constexpr double quantum_of_tolerance = 1.0 / 128;
+  const auto quantum = static_cast<float>(std::exp2(std::floor(std::log2(quantum_of_tolerance * tolerance))));
+  for (float& value : values) {
+    // A float beyond this is a multiple already.
+    if (std::abs(value) < 0x1p23f * quantum) value = std::nearbyint(value / quantum) * quantum;
+    if (precision == ValuePrecision::single) continue;
+    value = rounded_to_half(value);
+    if (!std::isfinite(value))
+      throw InvalidInput(
+          "a displacement exceeds 65504, the largest number of half precision; use single precision");
+  }
+}
 
 std::size_t Pyramid::voxel_count() const {
   std::size_t voxels = 0;
@@ -86,7 +114,7 @@ double largest_sum(const Pyramid& pyramid) {
 void require_valid(const Pyramid& pyramid) {
   if (!pyramid.origin.allFinite()) throw InvalidInput("pyramid: its origin is not finite");
   for (std::size_t level = 0; level < pyramid.levels.size(); ++level) {
-    require_valid_level(pyramid.levels[level], level);
+    require_valid_level(pyramid.levels[level], pyramid.precision, level);
     if (level > 0) require_nested(pyramid.levels[level - 1], pyramid.levels[level], level);
   }
 }

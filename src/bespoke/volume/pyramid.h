@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "bespoke/types.h"
@@ -16,6 +17,15 @@ using LeafCoordinates = std::array<int, 3>;
 /// copies them.
 inline constexpr int leaf_edge = 8;
 inline constexpr int leaf_nodes = leaf_edge * leaf_edge * leaf_edge;
+
+/// What values are rounded to and stored as.
+enum class ValuePrecision {
+  single,  ///< 32-bit floats
+  half,    ///< 16-bit floats (11 significant bits, up to 65504), in memory as the same 32-bit values
+};
+
+/// The nearest value of half precision, ties to even; infinite beyond its range.
+float rounded_to_half(float value);
 
 /// One lattice of the pyramid. Node (i, j, k) lies at origin + voxel_size·(i, j, k).
 struct PyramidLevel {
@@ -33,6 +43,7 @@ struct PyramidLevel {
 struct Pyramid {
   Vector3 origin = Vector3::Zero();  ///< mesh units; node (0, 0, 0) of every level
   std::vector<PyramidLevel> levels;  ///< coarse to fine, voxel_size halved from one to the next
+  ValuePrecision precision = ValuePrecision::single;
 
   std::size_t voxel_count() const;  ///< whole leaves, all levels
   std::size_t byte_count() const;   ///< of values and leaf coordinates
@@ -41,7 +52,13 @@ struct Pyramid {
 /// No component of the sum of the levels exceeds it anywhere: bounds the rounding of that sum. Mesh units.
 double largest_sum(const Pyramid& pyramid);
 
-/// Throws InvalidInput, naming the level, unless all of the above holds and every value is finite.
+/// Rounds u so that its bits say no more than the tolerance (mesh units) asks for, and as zeros compress: to
+/// multiples of a power of two that is at most a 128th of it, then to the precision. Zero stays zero. Throws
+/// InvalidInput where a value exceeds the range of half precision.
+void round_values(std::span<float> values, double tolerance, ValuePrecision precision);
+
+/// Throws InvalidInput, naming the level, unless all of the above holds, every value is finite and of the
+/// pyramid's precision.
 void require_valid(const Pyramid& pyramid);
 
 }  // namespace bespoke

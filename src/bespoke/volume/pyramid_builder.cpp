@@ -4,16 +4,16 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <span>
 #include <string>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/volume/octant_test.h"
 
 namespace bespoke {
 namespace {
 
-// Octants are tested at one point a cell; the largest of the cell lies a little higher.
-constexpr double test_margin = 0.8;
 // η of DESIGN: a rim may add this much to the gradient.
 constexpr double rim_gradient = 0.3;
 // Voxels of the coarsest level in the radius of the largest ball.
@@ -23,10 +23,15 @@ constexpr double coarsest_voxels_per_radius = 4;
 constexpr double resolving_voxels_per_radius = 4;
 
 constexpr std::size_t points_per_call = 1 << 16;
-constexpr int tested_nodes = 64;  // of an octant, one a cell
-// Samples, final values, coordinates and tables, and the index that the look-up needs.
-constexpr std::size_t bytes_per_leaf = 2 * 3 * leaf_nodes * sizeof(float) + 500;
+// Four arrays of values at most: the samples, a pyramid, the one that may replace it, and the stored sums
+// that the latter's residuals are taken against; coordinates, tables, and the index that the look-up needs
+// (measured: up to 8 entries of 112 bytes for a leaf that stands alone).
+constexpr std::size_t bytes_per_leaf = 4 * 3 * leaf_nodes * sizeof(float) + 1500;
 constexpr std::size_t fixed_bytes = std::size_t{48} << 20;
+// Below this many leaves a forecast costs more than it may save.
+constexpr std::size_t leaves_without_forecast = 4096;
+// A forecast errs: advice keeps this distance from the limit.
+constexpr double advice_margin = 1.3;
 
 int octant_number(const LeafCoordinates& leaf) {
   return (leaf[0] & 1) << 2 | (leaf[1] & 1) << 1 | (leaf[2] & 1);
@@ -48,14 +53,6 @@ double largest_radius(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0) radius = std::max(radius, cloud.radius);
   return radius;
-}
-
-// The node of cell `number` of an octant (4³ cells) at which it is tested: the cell's centre, or the middle
-// of a face or an edge, in turn, because harmonic displacements have no error at centres.
-std::array<int, 3> tested_node(int number) {
-  const std::array<int, 3> cell = {number / 16, number / 4 % 4, number % 4};
-  const int middle = 1 + (cell[0] + 2 * cell[1] + 4 * cell[2]) % 7;
-  return {2 * cell[0] + (middle >> 2 & 1), 2 * cell[1] + (middle >> 1 & 1), 2 * cell[2] + (middle & 1)};
 }
 
 // Blocks around a leaf (numbered as octants) that hold a corner of one of its cells.
@@ -111,19 +108,45 @@ std::size_t PyramidBuilder::leaf_count() const {
 
 std::size_t PyramidBuilder::byte_count() const { return fixed_bytes + bytes_per_leaf * leaf_count(); }
 
-void PyramidBuilder::require_room(std::size_t level, std::size_t leaves) const {
+bool PyramidBuilder::is_finest(std::size_t level) const {
+  return std::ldexp(coarsest_.voxel_size, -static_cast<int>(level) - 1) <
+         least_voxel_of_tolerance * options_.tolerance;
+}
+
+void PyramidBuilder::require_room(std::size_t leaves) {
   const std::size_t needed = byte_count() + bytes_per_leaf * leaves;
-  if (needed <= options_.max_memory) return;
+  const double room =
+      (static_cast<double>(options_.max_memory) - static_cast<double>(fixed_bytes)) / bytes_per_leaf;
+  const bool small = leaf_count() + leaves <= leaves_without_forecast && needed <= options_.max_memory / 16;
+  double expected = 0;
+  if (!small && !band_.empty()) {
+    if (!forecast_) {
+      forecast_ = std::make_shared<LeafForecast>(map_, coarsest_, band_, options_.tolerance, progress_);
+      evaluated_points_ += forecast_->evaluated_points();
+    }
+    expected = forecast_->leaves(options_.tolerance);
+  }
+  if (needed <= options_.max_memory && expected <= room) return;
+  const double bytes =
+      std::max(static_cast<double>(needed), static_cast<double>(fixed_bytes) + bytes_per_leaf * expected);
   char text[300];
   int length = std::snprintf(
-      text, sizeof text, "a tolerance of %.4g needs more than %zu MB at voxels of %.4g, the limit is %zu MB",
-      options_.tolerance, needed >> 20, levels_[level].lattice.voxel_size, options_.max_memory >> 20);
-  char* const advice = text + length;
-  const std::size_t room = sizeof text - static_cast<std::size_t>(length);
-  if (level > 0)
-    std::snprintf(advice, room, "; a tolerance of %.4g would fit", 1.5 * missed_[level - 1]);
+      text, sizeof text, "a tolerance of %.4g needs about %.0f MB for the bake, the limit is %.0f MB",
+      options_.tolerance, std::ceil(bytes / 0x1p20), static_cast<double>(options_.max_memory) / 0x1p20);
+  // Where the forecast was too low, what it says about other tolerances is too low as well.
+  const double shortfall =
+      expected > 0 ? std::max(1.0, static_cast<double>(leaf_count() + leaves) / expected) : 1;
+  const std::optional<double> fitting =
+      forecast_ ? forecast_->tolerance_for(room / (advice_margin * shortfall)) : std::nullopt;
+  if (fitting)
+    std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length),
+                  "; a tolerance of %.4g would fit", std::max(1.01 * *fitting, 1.1 * options_.tolerance));
   else
-    std::snprintf(advice, room, "; no tolerance fits, allow at least %zu MB", (needed >> 20) + 1);
+    std::snprintf(
+        text + length, sizeof text - static_cast<std::size_t>(length),
+        "; no tolerance fits, allow at least %.0f MB",
+        std::ceil((fixed_bytes + 2.0 * bytes_per_leaf * static_cast<double>(std::max(band_.size(), leaves))) /
+                  0x1p20));
   throw MemoryLimitError(text);
 }
 
@@ -132,7 +155,6 @@ PyramidBuilder::Level& PyramidBuilder::make_level(std::size_t level) {
     Level made;
     made.lattice = {coarsest_.origin, std::ldexp(coarsest_.voxel_size, -static_cast<int>(levels_.size()))};
     levels_.push_back(std::move(made));
-    missed_.push_back(0);
   }
   return levels_[level];
 }
@@ -147,15 +169,17 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
     for (const LeafCoordinates& leaf : leaves) parents.push_back(parent_of(leaf));
     add(level - 1, std::move(parents));
   }
-  require_room(level, leaves.size());
-  const std::vector<float> samples = sample_leaves(map_, levels_[level].lattice, leaves, progress_);
+  require_room(leaves.size());
+  const auto batch = std::make_shared<const std::vector<float>>(
+      sample_leaves(map_, levels_[level].lattice, leaves, progress_));
   evaluated_points_ += leaves.size() * leaf_nodes;
   Level& target = levels_[level];
-  for (const LeafCoordinates& leaf : leaves) {
-    target.table.insert(leaf, static_cast<std::int32_t>(target.leaves.size()));
-    target.leaves.push_back(leaf);
+  target.batches.push_back(batch);
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    target.table.insert(leaves[n], static_cast<std::int32_t>(target.leaves.size()));
+    target.leaves.push_back(leaves[n]);
+    target.samples.push_back(batch->data() + 3 * leaf_nodes * n);
   }
-  target.samples.insert(target.samples.end(), samples.begin(), samples.end());
   for (std::size_t finer = level; finer < levels_.size(); ++finer) levels_[finer].rims_known = false;
 }
 
@@ -165,7 +189,7 @@ void PyramidBuilder::sum_block(std::size_t level, const LeafCoordinates& leaf, N
   bool complete = true;
   for (int octant = 0; octant < 8; ++octant) {
     const int found = at.table.find(moved(leaf, octant >> 2 & 1, octant >> 1 & 1, octant & 1));
-    blocks[octant] = found == no_leaf ? nullptr : &at.samples[std::size_t{3} * leaf_nodes * found];
+    blocks[octant] = found == no_leaf ? nullptr : at.samples[static_cast<std::size_t>(found)];
     complete = complete && found != no_leaf;
   }
   if (!complete) coarse_block(level, leaf, sum);
@@ -210,7 +234,7 @@ std::vector<LeafCoordinates> PyramidBuilder::octants_in_question(std::size_t lev
         continue;
       }
       coarse_block(level, leaf, coarse);
-      const float* u = &at.samples[3 * leaf_nodes * (first + n)];
+      const float* u = at.samples[first + n];
       const double limit = options_.tolerance * options_.tolerance;
       for (int i = 0; i < leaf_edge; ++i)
         for (int j = 0; j < leaf_edge; ++j)
@@ -260,21 +284,25 @@ std::vector<LeafCoordinates> PyramidBuilder::octants_to_refine(std::size_t level
         const std::bitset<8> missing = missing_blocks(level, parent_of(octant));
         for (int number = 0; number < tested_nodes; ++number) {
           if (missing.any() && touches(missing, cell_of_octant(octant, number))) continue;
-          error[first + n] =
-              std::max(error[first + n], (u.col(static_cast<Eigen::Index>(n * tested_nodes) + number) -
-                                          value_at(refined, tested_node(number)))
-                                             .norm());
+          const Vector3 exact = u.col(static_cast<Eigen::Index>(n * tested_nodes) + number);
+          error[first + n] = std::max(
+              error[first + n], (exact - value_at(refined, tested_node(number))).norm() + rounding_at(exact));
         }
       }
     });
     evaluated_points_ += count * tested_nodes;
   }
   std::vector<LeafCoordinates> refined;
-  for (std::size_t n = 0; n < octants.size(); ++n) {
-    missed_[level] = std::max(missed_[level], error[n]);
+  for (std::size_t n = 0; n < octants.size(); ++n)
     if (!(error[n] <= test_margin * options_.tolerance)) refined.push_back(octants[n]);
-  }
   return refined;
+}
+
+// What storing u may cost where no finer leaf makes up for it, beyond the quantum, which the margin covers.
+double PyramidBuilder::rounding_at(const Vector3& u) const {
+  if (options_.precision == ValuePrecision::single) return 0;
+  constexpr double half_of_last_bit = 0x1p-12;
+  return half_of_last_bit * u.norm();
 }
 
 // Around a leaf, numbered as octants. Outside the band u is zero, so nothing is missing at the coarsest
@@ -309,7 +337,7 @@ std::vector<LeafCoordinates> PyramidBuilder::rim_neighbours(std::size_t level) c
         for (int i = from(0); i <= to(0); ++i)
           for (int j = from(1); j <= to(1); ++j)
             for (int k = from(2); k <= to(2); ++k)
-              largest = std::max(largest, squared_residual(&at.samples[3 * leaf_nodes * n], coarse, i, j, k));
+              largest = std::max(largest, squared_residual(at.samples[n], coarse, i, j, k));
         if (!(largest <= limit * limit)) found[n].push_back(neighbour);
       }
     }
@@ -335,7 +363,7 @@ void PyramidBuilder::refine() {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     if (levels_[level].tested == levels_[level].leaves.size()) continue;
     progress_.check();
-    if (level + 1 >= static_cast<std::size_t>(options_.max_levels)) {
+    if (is_finest(level)) {
       levels_[level].tested = levels_[level].leaves.size();
       continue;
     }
@@ -368,41 +396,65 @@ void PyramidBuilder::want_leaf_at(const Vector3& x, std::vector<std::vector<Leaf
     for (int block = 1; block < 8; ++block)
       if (missing[static_cast<std::size_t>(block)] && reaches_block(in_leaf, block))
         wanted[level].push_back(moved(leaf, block >> 2 & 1, block >> 1 & 1, block & 1));
-    if (!touches(missing, in_leaf) && level + 1 < static_cast<std::size_t>(options_.max_levels))
+    if (!touches(missing, in_leaf) && !is_finest(level))
       wanted[level + 1].push_back({cell.x() >> 2, cell.y() >> 2, cell.z() >> 2});
     return;
   }
 }
 
+// Fills stored.values with the rounded residuals of the level's leaves, taken in `order`, and replaces the
+// samples by what is stored so far at their nodes.
+void PyramidBuilder::round_level(PyramidLevel& stored, std::size_t level,
+                                 const std::vector<std::size_t>& order) {
+  Level& at = levels_[level];
+  const bool is_last = level + 1 == levels_.size();
+  const auto sums = std::make_shared<std::vector<float>>(is_last ? 0 : 3 * leaf_nodes * order.size());
+  parallel_for(order.size(), 16, [&](std::size_t begin, std::size_t end) {
+    NodeBlock coarse;
+    for (std::size_t n = begin; n < end; ++n) {
+      coarse_block(level, stored.leaves[n], coarse);
+      const float* u = at.samples[order[n]];
+      const std::span<float> values(&stored.values[3 * leaf_nodes * n], 3 * leaf_nodes);
+      const auto coarse_value = [&](int node, int c) {
+        return coarse[c][(node / 64 * block_edge + node / 8 % 8) * block_edge + node % 8];
+      };
+      for (int node = 0; node < leaf_nodes; ++node)
+        for (int c = 0; c < 3; ++c)
+          values[3 * node + c] = static_cast<float>(u[3 * node + c] - coarse_value(node, c));
+      round_values(values, options_.tolerance, options_.precision);
+      if (is_last) continue;
+      for (int node = 0; node < leaf_nodes; ++node)
+        for (int c = 0; c < 3; ++c)
+          (*sums)[3 * (leaf_nodes * n + node) + c] =
+              static_cast<float>(coarse_value(node, c) + values[3 * node + c]);
+    }
+  });
+  if (is_last) return;
+  for (std::size_t n = 0; n < order.size(); ++n) at.samples[order[n]] = sums->data() + 3 * leaf_nodes * n;
+  at.batches = {sums};
+}
+
 Pyramid PyramidBuilder::pyramid() const {
+  PyramidBuilder stored(*this);
   Pyramid result;
   result.origin = coarsest_.origin;
+  result.precision = options_.precision;
   result.levels.resize(levels_.size());
-  LeafTable finer;
-  for (std::size_t level = levels_.size(); level-- > 0;) {
-    const Level& from = levels_[level];
-    std::vector<std::size_t> order(from.leaves.size());
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const std::vector<LeafCoordinates>& leaves = levels_[level].leaves;
+    std::vector<std::size_t> order(leaves.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return from.leaves[a] < from.leaves[b]; });
+              [&](std::size_t a, std::size_t b) { return leaves[a] < leaves[b]; });
     PyramidLevel& to = result.levels[level];
-    to.voxel_size = from.lattice.voxel_size;
-    to.values.resize(from.samples.size());
-    to.leaves.resize(from.leaves.size());
-    parallel_for(order.size(), 16, [&](std::size_t begin, std::size_t end) {
-      NodeBlock coarse;
-      for (std::size_t n = begin; n < end; ++n) {
-        to.leaves[n] = from.leaves[order[n]];
-        coarse_block(level, to.leaves[n], coarse);
-        const float* u = &from.samples[3 * leaf_nodes * order[n]];
-        float* value = &to.values[3 * leaf_nodes * n];
-        for (int node = 0; node < leaf_nodes; ++node) {
-          const int in_block = (node / 64 * block_edge + node / 8 % 8) * block_edge + node % 8;
-          for (int c = 0; c < 3; ++c)
-            value[3 * node + c] = static_cast<float>(u[3 * node + c] - coarse[c][in_block]);
-        }
-      }
-    });
+    to.voxel_size = levels_[level].lattice.voxel_size;
+    to.values.resize(3 * leaf_nodes * leaves.size());
+    for (const std::size_t n : order) to.leaves.push_back(leaves[n]);
+    stored.round_level(to, level, order);
+  }
+  LeafTable finer;
+  for (std::size_t level = levels_.size(); level-- > 0;) {
+    PyramidLevel& to = result.levels[level];
     const auto has_child = [&](const LeafCoordinates& leaf) {
       for (int octant = 0; octant < 8; ++octant)
         if (finer.find(moved({2 * leaf[0], 2 * leaf[1], 2 * leaf[2]}, octant >> 2 & 1, octant >> 1 & 1,

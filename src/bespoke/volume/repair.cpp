@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "bespoke/volume/leaf_table.h"
 #include "bespoke/volume/pyramid_lookup.h"
@@ -21,6 +22,9 @@ constexpr double step_fraction = 0.7;
 // around, so they come last and for what is left only.
 constexpr int rounds_per_level = 10;
 constexpr int levels_upwards = 3;
+// A level is given up when so many rounds leave more than this share of its folds.
+constexpr std::size_t patience = 4;
+constexpr double least_left = 0.9;
 
 using Node = std::array<int, 3>;
 
@@ -60,6 +64,14 @@ class Repair {
     for (int level = 0; level < static_cast<int>(pyramid_.levels.size()); ++level) sweep_level(level);
   }
 
+  // By level.
+  std::vector<std::vector<Node>> movable() const {
+    std::vector<std::vector<Node>> nodes(pyramid_.levels.size());
+    for (const auto& [place, offset] : nodes_)
+      nodes[static_cast<std::size_t>(place.first)].push_back(place.second);
+    return nodes;
+  }
+
   double largest_change() const {
     double largest = 0;
     for (const auto& [place, change] : moved_) largest = std::max(largest, change.norm());
@@ -88,7 +100,10 @@ class Repair {
     for (auto at = begin; at != end; ++at, column += 7) {
       const Vector3 change = step_fraction * (u.middleCols(column + 1, 6).rowwise().mean() - u.col(column));
       float* value = &stored.values[at->second];
-      for (int c = 0; c < 3; ++c) value[c] += static_cast<float>(change[c]);
+      for (int c = 0; c < 3; ++c) {
+        value[c] += static_cast<float>(change[c]);
+        if (pyramid_.precision == ValuePrecision::half) value[c] = rounded_to_half(value[c]);
+      }
       moved_.try_emplace(at->first, Vector3::Zero()).first->second += change;
     }
   }
@@ -110,20 +125,28 @@ class Repair {
 
 }  // namespace
 
-RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress) {
+RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const std::vector<FoldedCell>& folds,
+                           const Progress& progress) {
   RepairSummary summary;
-  Certificate certificate = certify_listing_all(pyramid, affine, 1, progress);
-  summary.cells = summary.folded = certificate.folded + certificate.undecided;
-  if (summary.cells == 0 || !(certificate.affine_determinant > 0)) return summary;
+  summary.cells = summary.folded = folds.size();
+  if (summary.cells == 0 || !(affine.linear.determinant() > 0)) return summary;
   Repair repair(pyramid);
-  constexpr int rounds = rounds_per_level * levels_upwards;
-  for (int round = 0; round < rounds && summary.folded > 0; ++round) {
-    repair.forget_nodes();
-    for (const FoldedCell& cell : certificate.places) repair.add_corners(cell, round / rounds_per_level);
-    if (round % rounds_per_level > rounds_per_level / 2) repair.grow();
-    for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
-    certificate = certify_listing_all(pyramid, affine, 1, progress);
-    summary.folded = certificate.folded + certificate.undecided;
+  FoldList list(pyramid, affine, folds);
+  for (int coarser = 0; coarser < levels_upwards && summary.folded > 0; ++coarser) {
+    std::vector<std::size_t> left = {summary.folded};
+    for (int round = 0; round < rounds_per_level && summary.folded > 0; ++round) {
+      progress.check();
+      repair.forget_nodes();
+      for (const FoldedCell& cell : list.places()) repair.add_corners(cell, coarser);
+      if (round > rounds_per_level / 2) repair.grow();
+      for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
+      list.update(repair.movable());
+      summary.folded = list.places().size();
+      left.push_back(summary.folded);
+      if (left.size() > patience && static_cast<double>(summary.folded) >
+                                        least_left * static_cast<double>(left[left.size() - 1 - patience]))
+        break;
+    }
   }
   summary.largest_change = repair.largest_change();
   return summary;

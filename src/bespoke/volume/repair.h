@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "bespoke/progress.h"
 #include "bespoke/volume/certificate.h"
@@ -15,7 +16,10 @@ struct RepairSummary {
 
 /// Moves nodes of folded cells towards the mean of their neighbours, finest level first, then coarser ones
 /// for folds that are wider than their cells, until every cell is certified or it gives up. Only values
-/// change, no leaf is added; nodes far from a fold keep theirs. Folds of the affine part cannot be repaired.
-RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const Progress& progress = {});
+/// change, no leaf is added; nodes far from a fold keep theirs; values keep the pyramid's precision. Folds of
+/// the affine part cannot be repaired. It gives up on a level once several rounds mend next to nothing.
+/// `folds`: all folded and undecided cells of the pyramid's certificate.
+RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const std::vector<FoldedCell>& folds,
+                           const Progress& progress = {});
 
 }  // namespace bespoke

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "bespoke/parallel.h"
 #include "bespoke/volume/leaf_table.h"
 
 namespace bespoke {
@@ -23,6 +25,54 @@ void put_nodes(const Lattice& lattice, const LeafCoordinates& leaf, double* node
         for (int axis = 0; axis < 3; ++axis)
           *nodes++ = lattice.origin[axis] + lattice.voxel_size * (leaf_edge * leaf[axis] + local[axis]);
       }
+}
+
+void sort_unique(std::vector<FinestCell>& cells) {
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+class CellFinder {
+ public:
+  explicit CellFinder(const Pyramid& pyramid) : pyramid_(pyramid) {
+    for (const PyramidLevel& level : pyramid.levels) tables_.emplace_back(level.leaves);
+  }
+
+  FinestCell find(const Vector3& x) const {
+    FinestCell cell;
+    for (cell.level = static_cast<int>(tables_.size()) - 1;; --cell.level) {
+      const auto level = static_cast<std::size_t>(cell.level);
+      const Vector3 lattice = (x - pyramid_.origin) / pyramid_.levels[level].voxel_size;
+      for (int axis = 0; axis < 3; ++axis)
+        cell.node[static_cast<std::size_t>(axis)] = static_cast<int>(std::floor(lattice[axis]));
+      if (cell.level == 0 ||
+          tables_[level].find({cell.node[0] >> 3, cell.node[1] >> 3, cell.node[2] >> 3}) != no_leaf)
+        return cell;
+    }
+  }
+
+ private:
+  const Pyramid& pyramid_;
+  std::vector<LeafTable> tables_;
+};
+
+using Triangle = std::array<Vector3, 3>;
+
+// Halves the longest edge where it exceeds `length`.
+void split_if_longer(const Triangle& triangle, double length, std::vector<Triangle>& parts) {
+  std::size_t longest = 0;
+  double squared = 0;
+  for (std::size_t edge = 0; edge < 3; ++edge) {
+    const double found = (triangle[(edge + 1) % 3] - triangle[edge]).squaredNorm();
+    if (found > squared) longest = edge;
+    squared = std::max(squared, found);
+  }
+  if (!(squared > length * length)) return;
+  const Vector3 middle = 0.5 * (triangle[longest] + triangle[(longest + 1) % 3]);
+  for (const std::size_t kept : {longest, (longest + 1) % 3}) {
+    parts.push_back(triangle);
+    parts.back()[kept == longest ? (longest + 1) % 3 : longest] = middle;
+  }
 }
 
 [[noreturn]] void refuse_point(const Points& x, const Points& u) {
@@ -95,29 +145,63 @@ Points random_points(const Lattice& lattice, const std::vector<LeafCoordinates>&
   return x;
 }
 
-Points points_in_cells_at(const Pyramid& pyramid, const Points& at, std::size_t count, std::uint64_t seed) {
-  if (pyramid.levels.empty() || at.cols() == 0) return Points(3, 0);
-  std::vector<LeafTable> tables;
-  for (const PyramidLevel& level : pyramid.levels) tables.emplace_back(level.leaves);
-  const auto cells = std::min(static_cast<std::size_t>(at.cols()), count / 27);
+std::vector<FinestCell> finest_cells_at(const Pyramid& pyramid, const Points& at) {
+  if (pyramid.levels.empty()) return {};
+  const CellFinder finder(pyramid);
+  std::vector<FinestCell> cells;
+  for (Eigen::Index i = 0; i < at.cols(); ++i) cells.push_back(finder.find(at.col(i)));
+  sort_unique(cells);
+  return cells;
+}
+
+std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMesh& surface) {
+  if (pyramid.levels.empty()) return {};
+  const CellFinder finder(pyramid);
+  const auto faces = static_cast<std::size_t>(surface.faces.cols());
+  constexpr std::size_t grain = 1024;
+  std::vector<std::vector<FinestCell>> found((faces + grain - 1) / grain);
+  parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<FinestCell>& cells = found[begin / grain];
+    std::vector<Triangle> parts;
+    for (std::size_t face = begin; face < end; ++face) {
+      const auto corner = [&](int n) {
+        return Vector3(surface.vertices.col(surface.faces(n, static_cast<Eigen::Index>(face))));
+      };
+      parts.push_back({corner(0), corner(1), corner(2)});
+      while (!parts.empty()) {
+        const Triangle part = parts.back();
+        parts.pop_back();
+        double finest = std::numeric_limits<double>::infinity();
+        for (const Vector3& place : part) {
+          cells.push_back(finder.find(place));
+          finest = std::min(finest, pyramid.levels[static_cast<std::size_t>(cells.back().level)].voxel_size);
+        }
+        split_if_longer(part, finest, parts);
+      }
+    }
+    sort_unique(cells);
+  });
+  std::vector<FinestCell> cells;
+  for (const auto& part : found) cells.insert(cells.end(), part.begin(), part.end());
+  sort_unique(cells);
+  return cells;
+}
+
+Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& cells, std::size_t count,
+                       std::uint64_t seed) {
+  const std::size_t drawn = std::min(cells.size(), count / 27);
   std::mt19937_64 engine(seed);
   const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
-  Points x(3, static_cast<Eigen::Index>(27 * cells));
-  for (std::size_t i = 0; i < cells; ++i) {
-    const auto column = static_cast<Eigen::Index>(i * static_cast<std::size_t>(at.cols()) / cells);
-    std::size_t level = pyramid.levels.size();
-    Vector3 cell = Vector3::Zero();
-    bool found = false;
-    while (!found && level-- > 0) {
-      cell = ((at.col(column) - pyramid.origin) / pyramid.levels[level].voxel_size).array().floor();
-      const Eigen::Vector3i leaf = (cell / leaf_edge).array().floor().cast<int>();
-      found = tables[level].find({leaf.x(), leaf.y(), leaf.z()}) != no_leaf;
-    }
-    level = found ? level : 0;
+  // Another seed draws other cells.
+  const std::size_t start = engine() % std::max<std::size_t>(cells.size(), 1);
+  Points x(3, static_cast<Eigen::Index>(27 * drawn));
+  for (std::size_t i = 0; i < drawn; ++i) {
+    const FinestCell& cell = cells[(i * cells.size() + start) / drawn];
     for (int part = 0; part < 27; ++part) {
       const Vector3 place(part / 9 + fraction(), part / 3 % 3 + fraction(), part % 3 + fraction());
       x.col(static_cast<Eigen::Index>(27 * i) + part) =
-          pyramid.origin + pyramid.levels[level].voxel_size * (cell + place / 3);
+          pyramid.origin + pyramid.levels[static_cast<std::size_t>(cell.level)].voxel_size *
+                               (Vector3(cell.node[0], cell.node[1], cell.node[2]) + place / 3);
     }
   }
   return x;
