@@ -50,6 +50,35 @@ void expect_same(const Asset& a, const Asset& b) {
   EXPECT_EQ(a.exact_map, b.exact_map);
 }
 
+Asset in_half_precision(Asset asset) {
+  asset.pyramid.precision = ValuePrecision::half;
+  for (PyramidLevel& level : asset.pyramid.levels)
+    for (float& value : level.values) value = rounded_to_half(value);
+  return asset;
+}
+
+TEST_F(AssetIo, HalfPrecisionTakesLessRoomAndComesBackAsItWas) {
+  const Asset single = test::tiny_asset();
+  const Asset half = in_half_precision(single);
+  const std::string bytes = written(half);
+  EXPECT_LT(bytes.size(), written(single).size());
+  for (const bool untrusted : {false, true}) {
+    const Asset read = read_bytes(bytes, untrusted);
+    EXPECT_EQ(read.pyramid.precision, ValuePrecision::half);
+    expect_same(read, half);
+    EXPECT_EQ(written(read), bytes);
+    const Certificate before = certify(half.pyramid, half.affine), after = certify(read.pyramid, read.affine);
+    EXPECT_EQ(after.certified, before.certified);
+    EXPECT_EQ(after.least_determinant, before.least_determinant);
+  }
+}
+
+TEST_F(AssetIo, RefusesValuesThatHalfPrecisionWouldChange) {
+  Asset asset = in_half_precision(test::tiny_asset());
+  asset.pyramid.levels[0].values[5] = 0.1f;
+  EXPECT_THAT([&] { written(asset); }, ThrowsMessage<InvalidInput>(HasSubstr("half precision")));
+}
+
 TEST_F(AssetIo, ReadsBackWhatWasWritten) {
   Asset asset = test::tiny_asset();
   asset.path = RotationPath::euler;

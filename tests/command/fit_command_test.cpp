@@ -186,6 +186,21 @@ TEST_F(FitCommand, KeepsTheExactMapOnRequest) {
   EXPECT_GT(info("exact.vdb")["exact_map_bytes"], 0);
 }
 
+TEST_F(FitCommand, StoresHalfFloatsOnRequest) {
+  ASSERT_EQ(pair_.fit("single.vdb").exit_code, 0);
+  ASSERT_EQ(pair_.fit("half.vdb", {"--half"}).exit_code, 0);
+  EXPECT_EQ(info("single.vdb")["precision"], "single");
+  const json half = info("half.vdb");
+  EXPECT_EQ(half["precision"], "half");
+  EXPECT_LE(half["bake_error"]["max"], half["tolerance"]);
+  // What is proved is proved of the stored values.
+  const ProgramResult check = bespoke({"check", pair_.file("half.vdb"), "--json"});
+  EXPECT_EQ(json::parse(check.out)["certified"], half["certificate"]["certified"]);
+  EXPECT_EQ(json::parse(check.out)["least_determinant"], half["certificate"]["least_determinant"]);
+  EXPECT_EQ(bespoke({"invert", pair_.file("half.vdb"), "-o", pair_.file("back.vdb"), "--half"}).exit_code, 0);
+  EXPECT_EQ(info("back.vdb")["precision"], "half");
+}
+
 TEST_F(FitCommand, AddsTheCornersOfTheBoxes) {
   ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
   EXPECT_EQ(info("map.vdb")["anchors"].size(), 14u);

@@ -14,4 +14,8 @@ void add_compose_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
 
+/// Help of --half, wherever a map is baked.
+inline constexpr const char* half_help =
+    "Store 16-bit floats instead of 32-bit ones; error and certificate are of the rounded values";
+
 }  // namespace bespoke::command

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "bespoke/asset/asset_io.h"
+#include "commands.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -10,6 +11,7 @@ namespace bespoke::command {
 BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
   BakeOptions options;
   options.tolerance = tolerance ? tolerance->in_mesh_units(model.box.diagonal().norm()) : otherwise;
+  if (half) options.precision = ValuePrecision::half;
   return options;
 }
 
@@ -17,6 +19,7 @@ void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
                              const std::string& tolerance_description) {
   app.add_option("-o,--output", options.output, "Asset to write")->required()->type_name("MAP.vdb");
   add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
+  app.add_flag("--half", options.half, half_help);
   app.add_flag("--untrusted", options.untrusted, "Check what is read in a child process under limits first");
   add_run_options(app, options.run);
 }

@@ -13,6 +13,7 @@ namespace bespoke::command {
 struct DerivedMapOptions {
   std::string output;
   std::optional<Length> tolerance;
+  bool half = false;
   bool untrusted = false;
   RunOptions run;
 

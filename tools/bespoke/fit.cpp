@@ -36,6 +36,7 @@ struct FitArguments {
   std::optional<Length> voxel_size;
   std::optional<std::uint64_t> max_memory;
   bool keep_exact = false;
+  bool half = false;
   bool require_certified = false;
   bool add_corners = false;
   bool paper = false;
@@ -76,6 +77,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
   if (arguments.tolerance) options.bake.tolerance = arguments.tolerance->in_mesh_units(source_diagonal);
   if (arguments.voxel_size) options.bake.voxel_size = arguments.voxel_size->in_mesh_units(source_diagonal);
   if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
+  if (arguments.half) options.bake.precision = ValuePrecision::half;
   options.keep_exact = arguments.keep_exact;
   return options;
 }
@@ -228,6 +230,7 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
       ->type_name("FILE");
   fit.add_flag("--require-certified", arguments.require_certified,
                "Write nothing unless the map is proved to be a bijection of space");
+  fit.add_flag("--half", arguments.half, half_help);
   fit.add_flag("--keep-exact", arguments.keep_exact,
                "Store in the asset what `apply --exact` needs to evaluate the map without the grids");
   fit.add_option("--report", arguments.report,

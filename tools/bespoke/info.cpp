@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/error.h"
 #include "bespoke/report/inspection.h"
 #include "commands.h"
 
@@ -14,8 +15,18 @@ struct InfoArguments {
   bool untrusted = false;
 };
 
+void require_same(const Certificate& stored, const Certificate& found, const std::string& map) {
+  if (stored.certified == found.certified && stored.folded == found.folded &&
+      stored.undecided == found.undecided)
+    return;
+  throw FormatError(map + ": its certificate is not that of its map, which has: " + to_string(found));
+}
+
 void run(const InfoArguments& arguments) {
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
+  // What a file claims is worth what its author is.
+  if (arguments.untrusted)
+    require_same(asset.certificate, certify(asset.pyramid, asset.affine), arguments.map);
   std::cout << (arguments.json ? inspection_json(asset) : inspection_text(asset));
 }
 
@@ -26,7 +37,8 @@ void add_info_command(CLI::App& app) {
   CLI::App* info = app.add_subcommand("info", "Say what an asset holds and what is proved about it");
   info->add_option("MAP", arguments->map, "Asset, .vdb")->required();
   info->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
-  info->add_flag("--untrusted", arguments->untrusted, "Check the file in a child process under limits first");
+  info->add_flag("--untrusted", arguments->untrusted,
+                 "Check the file in a child process under limits first, and its certificate against its map");
   info->footer(
       "Examples:\n"
       "  bespoke info map.vdb\n"

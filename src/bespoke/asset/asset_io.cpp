@@ -84,7 +84,7 @@ std::string record_of(const Metadata& metadata) {
 }
 
 PyramidLevel level_from_grid(StoredGrid grid, std::size_t level, const Vector3& origin,
-                             const LevelRecord& record) {
+                             ValuePrecision precision, const LevelRecord& record) {
   require(grid.name == level_name(level),
           "grid " + grid.name + " stands in the place of " + level_name(level));
   require(grid.components == 3 && grid.grid_class == GridClass::unknown,
@@ -94,6 +94,8 @@ PyramidLevel level_from_grid(StoredGrid grid, std::size_t level, const Vector3& 
   require(grid.leaves.size() == record.leaves,
           "grid " + grid.name + " has " + std::to_string(grid.leaves.size()) + " leaves, the record says " +
               std::to_string(record.leaves));
+  require(grid.half == (precision == ValuePrecision::half),
+          "the precision of grid " + grid.name + " contradicts the record");
   require(grid.background == 0, "the background of grid " + grid.name + " is not 0");
   require(grid.active.empty(), "grid " + grid.name + " has inactive nodes in its leaves");
   require(grid.metadata.empty(), "grid " + grid.name + " has unexpected metadata");
@@ -110,7 +112,8 @@ Asset asset_from(StoredFile file, std::string_view exact_map) {
               std::to_string(preview_count + parsed.levels.size()));
   for (std::size_t level = 0; level < parsed.levels.size(); ++level)
     asset.pyramid.levels.push_back(level_from_grid(std::move(file.grids[preview_count + level]), level,
-                                                   asset.pyramid.origin, parsed.levels[level]));
+                                                   asset.pyramid.origin, asset.pyramid.precision,
+                                                   parsed.levels[level]));
   file.grids.resize(preview_count);
   asset.preview = std::make_shared<PreviewGrids>(std::move(file.grids));
   asset.exact_map = exact_map;
@@ -128,6 +131,7 @@ StoredFile stored_file_from(const Asset& asset) {
     grid.name = level_name(level);
     grid.voxel_size = asset.pyramid.levels[level].voxel_size;
     grid.origin = asset.pyramid.origin;
+    grid.half = asset.pyramid.precision == ValuePrecision::half;
     grid.leaves = asset.pyramid.levels[level].leaves;
     grid.values = asset.pyramid.levels[level].values;
     file.grids.push_back(std::move(grid));

@@ -129,6 +129,7 @@ openvdb::GridBase::Ptr to_vdb(const StoredGrid& stored) {
   const auto grid =
       stored.components == 3 ? to_vdb<openvdb::Vec3SGrid>(stored) : to_vdb<openvdb::FloatGrid>(stored);
   grid->setName(stored.name);
+  grid->setSaveFloatAsHalf(stored.half);
   // Transform's constructor from a map would recompute the voxel size from rounded positions.
   const auto transform = openvdb::math::Transform::createLinearTransform(stored.voxel_size);
   transform->postTranslate(openvdb::Vec3d(stored.origin.x(), stored.origin.y(), stored.origin.z()));
@@ -198,7 +199,7 @@ void read_lattice(const openvdb::GridBase& grid, StoredGrid& stored) {
 StoredGrid from_vdb(const openvdb::GridBase& grid) {
   StoredGrid stored;
   stored.name = grid.getName();
-  require(!grid.saveFloatAsHalf(), grid, "is of half precision");
+  stored.half = grid.saveFloatAsHalf();
   read_lattice(grid, stored);
   for (auto entry = grid.beginMeta(); entry != grid.endMeta(); ++entry)
     if (entry->first.rfind(own_prefix, 0) == 0)

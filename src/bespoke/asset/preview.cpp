@@ -115,6 +115,7 @@ PreviewGrids::PreviewGrids(std::vector<StoredGrid> grids) : grids_(std::move(gri
   if (grids_.size() != expected.size()) throw InvalidInput("there are not three preview grids");
   for (std::size_t i = 0; i < expected.size(); ++i) {
     require_valid(grids_[i]);
+    if (grids_[i].half) throw InvalidInput("grid " + grids_[i].name + " is of half precision");
     if (grids_[i].name != expected[i].first || grids_[i].components != expected[i].second)
       throw InvalidInput("grid " + grids_[i].name + " stands in the place of " + expected[i].first);
     if ((grids_[i].grid_class == GridClass::level_set) != (grids_[i].name == source_distance_name))

@@ -156,6 +156,7 @@ std::string to_bytes(const StoredFile& file) {
     writer.sequence(grid.name);
     writer.number(grid.components);
     writer.number(static_cast<std::uint8_t>(grid.grid_class == GridClass::level_set));
+    writer.number(static_cast<std::uint8_t>(grid.half));
     writer.number(grid.voxel_size);
     writer.vector(grid.origin);
     writer.number(grid.background);
@@ -177,6 +178,7 @@ StoredFile stored_file_from_bytes(std::string_view bytes) {
     grid.name = reader.sequence<std::string>();
     grid.components = reader.number<int>();
     grid.grid_class = reader.number<std::uint8_t>() != 0 ? GridClass::level_set : GridClass::unknown;
+    grid.half = reader.number<std::uint8_t>() != 0;
     grid.voxel_size = reader.number<double>();
     grid.origin = reader.vector();
     grid.background = reader.number<float>();

@@ -26,6 +26,7 @@ struct StoredGrid {
   std::string name;
   int components = 3;  ///< 3: Vec3S, contravariant-relative; 1: Float
   GridClass grid_class = GridClass::unknown;
+  bool half = false;                    ///< stored as 16-bit floats, which must hold every value exactly
   double voxel_size = 0;                ///< mesh units
   Vector3 origin = Vector3::Zero();     ///< mesh units
   float background = 0;                 ///< of every component

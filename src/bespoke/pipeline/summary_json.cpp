@@ -37,6 +37,9 @@ Json to_json(const BakeSummary& summary) {
     levels.push_back({{"voxel_size", level.voxel_size}, {"leaves", level.leaves}, {"voxels", level.voxels}});
   return {{"levels", std::move(levels)},
           {"error", to_json(summary.error)},
+          {"error_random_points", summary.error_random_points},
+          {"error_surface_points", summary.error_surface_points},
+          {"surface_cells", summary.surface_cells},
           {"tolerance_met", summary.tolerance_met},
           {"refined_folds", summary.refined_folds},
           {"repaired_cells", summary.repaired_cells},

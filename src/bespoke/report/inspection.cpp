@@ -108,7 +108,8 @@ std::string inspection_text(const Asset& asset) {
          << level.leaves.size() * leaf_nodes << " voxels in " << level.leaves.size() << " leaves\n";
   }
   text << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
-       << number(record.tolerance) << '\n'
+       << number(record.tolerance) << ", "
+       << (asset.pyramid.precision == ValuePrecision::half ? "half" : "single") << " precision\n"
        << "certificate  " << certificate_text(asset.certificate) << '\n'
        << "source       " << model(record.source) << '\n'
        << "target       " << model(record.target) << '\n'
@@ -136,6 +137,7 @@ std::string inspection_json(const Asset& asset) {
                      {"lambda", record.lambda},
                      {"tolerance", record.tolerance},
                      {"bake_error", bespoke::to_json(record.bake_error)},
+                     {"precision", asset.pyramid.precision == ValuePrecision::half ? "half" : "single"},
                      {"voxels", asset.pyramid.voxel_count()},
                      {"levels", std::move(levels)},
                      {"certificate", bespoke::to_json(asset.certificate)},

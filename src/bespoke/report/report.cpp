@@ -40,7 +40,11 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
   for (const StageReport& found : made.fit.stages)
     stages.push_back(stage(found.name, found.seconds, Json::parse(found.json)));
   const Certificate& certificate = made.asset.certificate;
-  stages.push_back(stage("bake", made.bake.seconds, to_json(made.bake)));
+  Json bake = to_json(made.bake);
+  bake["refine_seconds"] = made.bake.refine_seconds;
+  bake["measure_seconds"] = made.bake.measure_seconds;
+  bake["mend_seconds"] = made.bake.mend_seconds;
+  stages.push_back(stage("bake", made.bake.seconds, std::move(bake)));
   stages.push_back(stage("certificate", certificate.seconds, to_json(certificate)));
   stages.push_back(stage("preview", made.preview_seconds, Json::object()));
 
