@@ -1,10 +1,13 @@
 // Prints, for every shared case, what the nested pyramid, its certificate and its inverse come to. Not a
 // timed loop: each case is one run.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "bespoke/fitting/fit_mapping.h"
 #include "bespoke/mesh/mesh_io.h"
@@ -17,9 +20,28 @@
 namespace bespoke {
 namespace {
 
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+// Wall seconds, and those of all threads: on a busy machine the latter say what the work costs.
+class Stopwatch {
+ public:
+  std::string lap() {
+    const Reading now;
+    char text[64];
+    std::snprintf(text, sizeof text, "%.2f s (CPU %.2f s)", now.wall - last_.wall, now.cpu - last_.cpu);
+    last_ = Reading();
+    return text;
+  }
+
+ private:
+  struct Reading {
+    double wall = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    double cpu = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  };
+  Reading last_;
+};
+
+double megabytes(std::size_t voxels) { return static_cast<double>(voxels * 3 * sizeof(float)) / 1e6; }
+
+double largest_distance(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
 
 // Largest error at x of one uniform level, formed point by point because the level itself would not fit.
 double uniform_error(const ElasticMap& map, const Points& x, const Lattice& lattice) {
@@ -44,62 +66,107 @@ double uniform_error(const ElasticMap& map, const Points& x, const Lattice& latt
   return largest;
 }
 
-void print_case(const std::filesystem::path& directory) {
-  const TriangleMesh source = read_triangle_mesh(directory / "reference_a.obj");
-  const TriangleMesh target = read_triangle_mesh(directory / "reference_b.obj");
-  const double length = diagonal(source.vertices);
-  FitOptions fit_options;
-  fit_options.surface_fit.method = SurfaceFitMethod::multiscale;
-  fit_options.elastic = ElasticMethod::diffeomorphic;
-  fit_options.lambda = 0.1 * length;
-  fit_options.fit_tolerance = 1e-4 * length;
-  const FittedMapping fit =
-      fit_mapping(source, target, read_anchors(directory / "anchors.json"), fit_options);
+struct Pair {
+  TriangleMesh source, target;
+  Anchors anchors;
+};
 
-  BakeOptions options;
-  options.tolerance = 0.00025 * length;
-  const Bake baked = bake(*fit.elastic, options);
-  std::printf("%s\n  %s\n  %.2f MB;", directory.filename().c_str(), to_string(baked.summary).c_str(),
-              static_cast<double>(baked.pyramid.byte_count()) / 1e6);
+Pair turned(Pair pair) {
+  std::swap(pair.source, pair.target);
+  for (AnchorPair& anchor : pair.anchors.pairs) std::swap(anchor.a, anchor.b);
+  return pair;
+}
+
+FittedMapping fit(const Pair& pair) {
+  const double length = diagonal(pair.source.vertices);
+  FitOptions options;
+  options.surface_fit.method = SurfaceFitMethod::multiscale;
+  options.elastic = ElasticMethod::diffeomorphic;
+  options.lambda = 0.1 * length;
+  options.fit_tolerance = 1e-4 * length;
+  return fit_mapping(pair.source, pair.target, pair.anchors, options);
+}
+
+void print_levels(const ElasticMap& exact, const Bake& baked, const TriangleMesh& source) {
   for (const BakeLevelSummary& level : baked.summary.levels)
-    std::printf(" %.4g: %zu", level.voxel_size, level.voxels);
-
-  const BakedMap map(fit.elastic->affine(), baked.pyramid);
-  const Support support = fit.elastic->support();
-  const Points near_surface = points_in_cells_at(baked.pyramid, source.vertices, 100'000, 5);
-  const std::vector<double> errors = displacement_errors(map, *fit.elastic, near_surface, {});
+    std::printf("    voxel %-8.4g %8zu voxels  %7.2f MB\n", level.voxel_size, level.voxels,
+                megabytes(level.voxels));
+  const BakedMap map(exact.affine(), baked.pyramid);
+  const Points x = points_in_cells(baked.pyramid, finest_cells_on(baked.pyramid, source), 200'000, 5);
+  const std::vector<double> errors = displacement_errors(map, exact, x, {});
   const double error = *std::max_element(errors.begin(), errors.end());
+  const Support support = exact.support();
   Lattice lattice{bounding_box(support).min(), baked.pyramid.levels.front().voxel_size};
-  while (uniform_error(*fit.elastic, near_surface, lattice) > error) lattice.voxel_size /= std::sqrt(2.0);
-  const auto uniform = static_cast<double>(count_band_leaves(support, lattice) * leaf_nodes);
+  while (uniform_error(exact, x, lattice) > error) lattice.voxel_size /= std::sqrt(2.0);
+  const std::size_t uniform = count_band_leaves(support, lattice) * leaf_nodes;
   std::printf(
-      "\n  one uniform level of the same error near the surface (%.3g): voxel %.3g, %.3g M voxels, %.0f "
-      "times\n",
-      error, lattice.voxel_size, uniform / 1e6, uniform / static_cast<double>(baked.pyramid.voxel_count()));
+      "  %zu voxels, %.2f MB; one uniform level of the same error on the surface (%.3g): voxel %.3g, %.3g M "
+      "voxels, %.0f MB: %.0f times\n",
+      baked.pyramid.voxel_count(), megabytes(baked.pyramid.voxel_count()), error, lattice.voxel_size,
+      static_cast<double>(uniform) / 1e6, megabytes(uniform),
+      static_cast<double>(uniform) / static_cast<double>(baked.pyramid.voxel_count()));
+}
 
+void print_inverses(const BakedMap& map, const RigidTransform& target_from_source, const Points& x,
+                    const BakeOptions& options) {
+  Stopwatch watch;
+  const double round_trip = largest_distance(PointwiseInverse(map)(map(x)), x);
+  std::printf("  pointwise inverse: largest round trip of %ld band points %.2g of the finest voxel, %s\n",
+              static_cast<long>(x.cols()), round_trip / map.pyramid().levels.back().voxel_size,
+              watch.lap().c_str());
+  const InverseMap exact_back(map, target_from_source);
+  const Bake baked_back = bake(exact_back, options);
+  const std::string time = watch.lap();
+  const BakedMap back(exact_back.affine(), baked_back.pyramid);
+  const Points returned = inverse(target_from_source) * back(target_from_source * map(x));
+  std::printf("  baked inverse: %zu voxels, largest round trip %.3g (tolerance %.3g), %s\n",
+              baked_back.pyramid.voxel_count(), largest_distance(returned, x), options.tolerance,
+              time.c_str());
+}
+
+// a to b and then b to a, each fitted for itself: two maps that know nothing of one another.
+void print_composition(const BakedMap& map, const RigidTransform& target_from_source, const Pair& pair,
+                       const Points& x, const BakeOptions& options) {
+  const FittedMapping way_back = fit(turned(pair));
+  const BakedMap back(way_back.elastic->affine(), bake(*way_back.elastic, options).pyramid);
+  Stopwatch watch;
+  const ComposedMap exact(map, target_from_source, back);
+  const Bake baked = bake(exact, options);
+  const std::string time = watch.lap();
+  const BakedMap both(exact.affine(), baked.pyramid);
+  const RigidTransform source_from_source = way_back.target_from_source * target_from_source;
+  const Points in_turn = way_back.target_from_source * back(target_from_source * map(x));
+  std::printf("  composed with the fitted way back: %zu voxels, largest error %.3g (tolerance %.3g), %s\n",
+              baked.pyramid.voxel_count(), largest_distance(source_from_source * both(x), in_turn),
+              options.tolerance, time.c_str());
+}
+
+void print_case(const std::filesystem::path& directory) {
+  const Pair pair{read_triangle_mesh(directory / "reference_a.obj"),
+                  read_triangle_mesh(directory / "reference_b.obj"),
+                  read_anchors(directory / "anchors.json")};
+  const FittedMapping fitted = fit(pair);
+  BakeOptions options;
+  options.tolerance = 0.00025 * diagonal(pair.source.vertices);
+  Stopwatch watch;
+  BakeOptions with_surface = options;
+  with_surface.surface = &pair.source;
+  const Bake baked = bake(*fitted.elastic, with_surface);
+  std::printf("%s\n  %s\n  bake %s\n", directory.filename().c_str(), to_string(baked.summary).c_str(),
+              watch.lap().c_str());
+  if (baked.pyramid.levels.empty()) return;
+  print_levels(*fitted.elastic, baked, pair.source);
+
+  const BakedMap map(fitted.elastic->affine(), baked.pyramid);
+  watch.lap();
   const Certificate certificate = certify(baked.pyramid, map.affine());
-  std::printf("  %s (%.1f M cells/s)\n", to_string(certificate).c_str(),
-              static_cast<double>(certificate.certified) / certificate.seconds / 1e6);
-  if (!certificate.is_bijection()) return;
+  std::printf("  %s, %.1f M cells/s, %s\n", to_string(certificate).c_str(),
+              static_cast<double>(certificate.certified) / certificate.seconds / 1e6, watch.lap().c_str());
   const PyramidLevel& coarsest = baked.pyramid.levels.front();
   const Points x = random_points({baked.pyramid.origin, coarsest.voxel_size}, coarsest.leaves, 1'000'000, 6);
-  double start = seconds();
-  const double round_trip = (PointwiseInverse(map)(map(x)) - x).colwise().norm().maxCoeff();
-  std::printf("  pointwise inverse: largest round trip of 1 M band points %.2g of the finest voxel, %.2f s\n",
-              round_trip / baked.pyramid.levels.back().voxel_size, seconds() - start);
-  start = seconds();
-  const InverseMap exact_back(map, fit.target_from_source);
-  const Bake baked_back = bake(exact_back, options);
-  const BakedMap back(exact_back.affine(), baked_back.pyramid);
-  const Points returned = inverse(fit.target_from_source) * back(fit.target_from_source * map(x));
-  std::printf("  baked inverse: %zu voxels, largest round trip %.3g (tolerance %.3g), %.2f s\n",
-              baked_back.pyramid.voxel_count(), (returned - x).colwise().norm().maxCoeff(), options.tolerance,
-              seconds() - start);
-  const ComposedMap exact_both(map, fit.target_from_source, back);
-  const Bake baked_both = bake(exact_both, options);
-  const BakedMap both(exact_both.affine(), baked_both.pyramid);
-  std::printf("  composed with it: %zu voxels, largest error %.3g\n", baked_both.pyramid.voxel_count(),
-              (both(x) - exact_both(x)).colwise().norm().maxCoeff());
+  if (certificate.is_bijection()) print_inverses(map, fitted.target_from_source, x, options);
+  print_composition(map, fitted.target_from_source, pair, x, options);
+  std::fflush(stdout);
 }
 
 }  // namespace
