@@ -14,12 +14,12 @@ namespace bespoke {
 inline constexpr double least_voxel_of_tolerance = 0.5;
 
 /// How many leaves a nested pyramid will take, before they are: a random sample of octants is refined all the
-/// way, a few hundred a level, each standing for as many others as were not drawn. What one sample says about
+/// way, a thousand a level, each standing for as many others as were not drawn. What one sample says about
 /// a tolerance it says about all larger ones as well, because an octant's error is known, not only whether it
 /// passes.
 class LeafForecast {
  public:
-  /// `band`: the leaves of the lattice `coarsest`. Evaluates the map at some hundred thousand points.
+  /// `band`: the leaves of the lattice `coarsest`. Evaluates the map at up to a million points or two.
   LeafForecast(const ElasticMap& map, const Lattice& coarsest, const std::vector<LeafCoordinates>& band,
                double tolerance, const Progress& progress);
 

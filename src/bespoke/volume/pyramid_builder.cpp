@@ -31,7 +31,7 @@ constexpr std::size_t fixed_bytes = std::size_t{48} << 20;
 // Below this many leaves a forecast costs more than it may save.
 constexpr std::size_t leaves_without_forecast = 4096;
 // A forecast errs: advice keeps this distance from the limit.
-constexpr double advice_margin = 1.3;
+constexpr double advice_margin = 1.6;
 
 int octant_number(const LeafCoordinates& leaf) {
   return (leaf[0] & 1) << 2 | (leaf[1] & 1) << 1 | (leaf[2] & 1);
