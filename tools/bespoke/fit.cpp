@@ -136,10 +136,9 @@ void run(const FitArguments& arguments, const Progress& progress) {
   if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
-  if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
-
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
+  if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
