@@ -31,7 +31,7 @@ class SolverError : public Error {
   using Error::Error;
 };
 
-/// The work would need more memory than the caller allowed.
+/// The work would need more memory than the caller allowed, or than there is.
 class MemoryLimitError : public Error {
   using Error::Error;
 };

@@ -117,13 +117,21 @@ void warn_of_far_anchors(const std::string& role, const TriangleMesh& model, con
                  to_string(placement).c_str(), unit.empty() ? "" : ", ", unit.c_str());
 }
 
+/// Why the bake's error exceeds the tolerance, and what lowers it.
+std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
+  if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
+  if (bake.repaired_cells > 0)
+    return "mending " + std::to_string(bake.repaired_cells) +
+           " folded cells moved nodes; where the map is that flat, no tolerance is met without folds";
+  return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
+}
+
 void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
                               const MadeMap& made) {
   if (made.bake.tolerance_met) return;
-  std::fprintf(
-      stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
-      made.bake.error.max, options.bake.tolerance,
-      arguments.voxel_size ? "a smaller --voxel-size lowers it" : "ask for a smaller one to get below it");
+  std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
+               made.bake.error.max, options.bake.tolerance,
+               cause_of_missed_tolerance(arguments, made.bake).c_str());
 }
 
 void run(const FitArguments& arguments, const Progress& progress) {

@@ -151,7 +151,7 @@ Asset read_asset(const std::filesystem::path& path, const ReadAssetOptions& opti
   } catch (const FileError&) {
     throw;
   } catch (const std::bad_alloc&) {
-    throw FormatError(name_for_message(path) + ": does not fit into memory");
+    throw MemoryLimitError(name_for_message(path) + ": does not fit into memory");
   } catch (const std::exception& error) {
     throw FormatError(name_for_message(path) + ": " + one_line(error.what(), longest_reason));
   }
