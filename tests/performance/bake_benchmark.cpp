@@ -11,7 +11,7 @@ void BakeOfACheapMap(benchmark::State& state) {
   const AnalyticMap map({{Vector3::Zero(), 1.0, Vector3(0.1, 0.05, -0.02)}});
   BakeOptions options;
   options.tolerance = 1e-3;
-  options.voxel_size = 0.0105;  // about 5 M voxels
+  options.voxel_size = 0.0095;  // about 5 M voxels
   options.error_points = 1000;
   std::size_t voxels = 0;
   for (auto _ : state) voxels = bake(map, options).pyramid.voxel_count();
