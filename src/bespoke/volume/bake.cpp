@@ -34,7 +34,7 @@ constexpr std::size_t most_mendable_folds = 20'000;
 // sample finds just below, the next will find just above.
 constexpr double refined_share = 0.85;
 // Of the points on the surface, in error_points.
-constexpr std::size_t most_surface_points = 4;
+constexpr std::size_t most_surface_points = 8;
 
 class Stopwatch {
  public:

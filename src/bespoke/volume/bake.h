@@ -20,7 +20,7 @@ struct BakeOptions {
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
   std::size_t error_points = 1'000'000;  ///< random points of the band at which the error is measured
   /// The source, in its frame: the error is measured at 27 points of every finest cell that it passes through
-  /// (of every so many, beyond 4·error_points points). Without it, of some cells of every leaf. Must outlive
+  /// (of every so many, beyond 8·error_points points). Without it, of some cells of every leaf. Must outlive
   /// the call.
   const TriangleMesh* surface = nullptr;
   /// Half precision stores 16 bits a number. Error, certificate and all decisions are about the rounded
