@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <bit>
 #include <functional>
 
@@ -16,7 +17,9 @@
 namespace bespoke {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 using testing::ThrowsMessage;
 
 class AssetIo : public testing::Test {
@@ -71,6 +74,54 @@ TEST_F(AssetIo, HalfPrecisionTakesLessRoomAndComesBackAsItWas) {
     EXPECT_EQ(after.certified, before.certified);
     EXPECT_EQ(after.least_determinant, before.least_determinant);
   }
+}
+
+// What the first assets of version 1 hold. The reader takes nothing less and nothing more, so any other set
+// would make files of one version that programs of that version refuse. Half precision came later.
+TEST_F(AssetIo, SinglePrecisionKeepsToTheKeysOfTheFirstAssets) {
+  const std::vector<std::string> first = {"affine_determinant",
+                                          "affine_offset",
+                                          "affine_row_0",
+                                          "affine_row_1",
+                                          "affine_row_2",
+                                          "cells_certified",
+                                          "cells_folded",
+                                          "cells_undecided",
+                                          "convention",
+                                          "direction",
+                                          "elastic_method",
+                                          "error_max",
+                                          "error_p99",
+                                          "format_version",
+                                          "is_bijection",
+                                          "lambda",
+                                          "least_determinant",
+                                          "levels",
+                                          "record",
+                                          "rotation_path",
+                                          "rotation_row_0",
+                                          "rotation_row_1",
+                                          "rotation_row_2",
+                                          "source_box_max",
+                                          "source_box_min",
+                                          "source_hash",
+                                          "surface_fit_method",
+                                          "target_box_max",
+                                          "target_box_min",
+                                          "target_hash",
+                                          "tolerance",
+                                          "translation",
+                                          "unit"};
+  const auto keys_of = [](const Asset& asset) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : file_metadata(record_json(asset)))
+      keys.push_back(key.substr(std::string("bespoke:").size()));
+    std::sort(keys.begin(), keys.end());
+    return keys;
+  };
+  EXPECT_EQ(keys_of(test::tiny_asset()), first);
+  EXPECT_THAT(record_json(test::tiny_asset()), Not(HasSubstr("precision")));
+  EXPECT_THAT(keys_of(in_half_precision(test::tiny_asset())), Contains("precision"));
 }
 
 TEST_F(AssetIo, RefusesValuesThatHalfPrecisionWouldChange) {

@@ -9,8 +9,7 @@ namespace bespoke {
 
 /// The bytes of a .vdb file (Blosc and active-mask compression, seekable) with these grids in this order. The
 /// header's UUID, random in OpenVDB, is derived from the content, so that the same content gives the same
-/// bytes. Float values come back with the same bits, in
-/// half precision where they have it.
+/// bytes. Float values come back with the same bits; a half grid's must be of half precision.
 std::string vdb_bytes(const StoredFile& file);
 
 /// The grids and metadata of a .vdb file in memory. Refuses grids and metadata of types that an asset does

@@ -53,17 +53,14 @@ Json to_json(const AnchorRecord& anchor) {
           {"residual", anchor.residual}};
 }
 
-const char* name_of(ValuePrecision precision) {
-  return precision == ValuePrecision::half ? "half" : "single";
-}
-
 Json to_json(const Pyramid& pyramid) {
   Json levels = Json::array();
   for (const PyramidLevel& level : pyramid.levels)
     levels.push_back({{"voxel_size", level.voxel_size}, {"leaves", level.leaves.size()}});
-  return {{"origin", to_json(pyramid.origin)},
-          {"precision", name_of(pyramid.precision)},
-          {"levels", std::move(levels)}};
+  Json json = {{"origin", to_json(pyramid.origin)}, {"levels", std::move(levels)}};
+  // Only where it is not single, so that all other assets stay what version 1 has been from the beginning.
+  if (pyramid.precision != ValuePrecision::single) json["precision"] = name_of(pyramid.precision);
+  return json;
 }
 
 Json parse(std::string_view text) {
@@ -100,6 +97,7 @@ class Field {
     if (found == json_.end()) throw FormatError(path + " is missing");
     return {*found, path};
   }
+  bool has(const char* key) const { return json_.is_object() && json_.contains(key); }
   std::vector<Field> items() const {
     if (!json_.is_array()) fail("is not an array");
     std::vector<Field> fields;
@@ -190,10 +188,11 @@ RotationPath parse_path(const Field& field) {
   field.fail("is neither geodesic nor euler");
 }
 
-ValuePrecision parse_precision(const Field& field) {
-  if (field.is("single")) return ValuePrecision::single;
-  if (field.is("half")) return ValuePrecision::half;
-  field.fail("is neither single nor half");
+ValuePrecision parse_precision(const Field& pyramid) {
+  if (!pyramid.has("precision")) return ValuePrecision::single;
+  const Field field = pyramid["precision"];
+  if (!field.is(name_of(ValuePrecision::half))) field.fail("is not half; single is not written");
+  return ValuePrecision::half;
 }
 
 ParsedRecord parse_fields(const Field& field) {
@@ -218,7 +217,7 @@ ParsedRecord parse_fields(const Field& field) {
   record.source = parse_model(field["source"]);
   record.target = parse_model(field["target"]);
   asset.pyramid.origin = field["pyramid"]["origin"].vector();
-  asset.pyramid.precision = parse_precision(field["pyramid"]["precision"]);
+  asset.pyramid.precision = parse_precision(field["pyramid"]);
   for (const Field& level : field["pyramid"]["levels"].items())
     parsed.levels.push_back({level["voxel_size"].number(), level["leaves"].count()});
   return parsed;
@@ -289,11 +288,8 @@ Metadata file_metadata(const std::string& json) {
   metadata["bespoke:tolerance"] = record.tolerance;
   metadata["bespoke:error_max"] = record.bake_error.max;
   metadata["bespoke:error_p99"] = record.bake_error.p99;
-  metadata["bespoke:error_points"] = static_cast<std::int64_t>(record.bake_error.count);
-  metadata["bespoke:error_meaning"] = std::string(
-      "largest and 99th percentile of |stored - exact| over error_points random points, which no decision "
-      "about the levels used; a sample, not a bound");
-  metadata["bespoke:precision"] = std::string(name_of(asset.pyramid.precision));
+  if (asset.pyramid.precision != ValuePrecision::single)
+    metadata["bespoke:precision"] = std::string(name_of(asset.pyramid.precision));
   metadata["bespoke:cells_certified"] = static_cast<std::int64_t>(asset.certificate.certified);
   metadata["bespoke:cells_undecided"] = static_cast<std::int64_t>(asset.certificate.undecided);
   metadata["bespoke:cells_folded"] = static_cast<std::int64_t>(asset.certificate.folded);

@@ -108,8 +108,7 @@ std::string inspection_text(const Asset& asset) {
          << level.leaves.size() * leaf_nodes << " voxels in " << level.leaves.size() << " leaves\n";
   }
   text << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
-       << number(record.tolerance) << ", "
-       << (asset.pyramid.precision == ValuePrecision::half ? "half" : "single") << " precision\n"
+       << number(record.tolerance) << ", " << name_of(asset.pyramid.precision) << " precision\n"
        << "certificate  " << certificate_text(asset.certificate) << '\n'
        << "source       " << model(record.source) << '\n'
        << "target       " << model(record.target) << '\n'
@@ -137,7 +136,7 @@ std::string inspection_json(const Asset& asset) {
                      {"lambda", record.lambda},
                      {"tolerance", record.tolerance},
                      {"bake_error", bespoke::to_json(record.bake_error)},
-                     {"precision", asset.pyramid.precision == ValuePrecision::half ? "half" : "single"},
+                     {"precision", name_of(asset.pyramid.precision)},
                      {"voxels", asset.pyramid.voxel_count()},
                      {"levels", std::move(levels)},
                      {"certificate", bespoke::to_json(asset.certificate)},

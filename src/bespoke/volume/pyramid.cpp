@@ -63,6 +63,10 @@ void require_nested(const PyramidLevel& coarse, const PyramidLevel& fine, std::s
 
 }  // namespace
 
+const char* name_of(ValuePrecision precision) {
+  return precision == ValuePrecision::half ? "half" : "single";
+}
+
 float rounded_to_half(float value) {
   constexpr int least_exponent = -14;  // below it halves are evenly spaced
   constexpr int stored_bits = 10;

@@ -24,6 +24,9 @@ enum class ValuePrecision {
   half,    ///< 16-bit floats (11 significant bits, up to 65504), in memory as the same 32-bit values
 };
 
+/// "single" or "half".
+const char* name_of(ValuePrecision precision);
+
 /// The nearest value of half precision, ties to even; infinite beyond its range.
 float rounded_to_half(float value);
 
