@@ -1,7 +1,6 @@
 #include "bespoke/fitting/fit_mapping.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -15,21 +14,12 @@
 #include "bespoke/rbf/global_rbf.h"
 #include "bespoke/rbf/multiscale.h"
 #include "bespoke/rigid/rigid_alignment.h"
+#include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Json to_json(const Statistics& statistics) {
   return {{"count", statistics.count}, {"min", statistics.min}, {"median", statistics.median},

@@ -2,13 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
 
 #include "bespoke/error.h"
+#include "bespoke/stopwatch.h"
 #include "bespoke/volume/baked_map.h"
 #include "bespoke/volume/certificate.h"
 #include "bespoke/volume/pyramid_builder.h"
@@ -36,20 +36,6 @@ constexpr double refined_share = 0.85;
 // Of the points on the surface, in error_points.
 constexpr std::size_t most_surface_points = 8;
 
-class Stopwatch {
- public:
-  // Seconds since the last call, or since it was made.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    const double seconds = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return seconds;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 bool is_empty(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0) return false;
@@ -59,16 +45,17 @@ bool is_empty(const Support& support) {
 // Where detail is: as many in a small leaf as in a large one.
 std::vector<FinestCell> cells_in_all_leaves(const Pyramid& pyramid, std::uint64_t seed) {
   constexpr std::size_t cells_per_leaf = 16;
-  std::vector<FinestCell> cells;
+  std::size_t leaves = 0;
+  for (const PyramidLevel& level : pyramid.levels) leaves += level.leaves.size();
+  Points x(3, static_cast<Eigen::Index>(cells_per_leaf * leaves));
+  Eigen::Index column = 0;
   for (const PyramidLevel& level : pyramid.levels) {
-    const Points x = random_points({pyramid.origin, level.voxel_size}, level.leaves,
-                                   cells_per_leaf * level.leaves.size(), seed);
-    const std::vector<FinestCell> found = finest_cells_at(pyramid, x);
-    cells.insert(cells.end(), found.begin(), found.end());
+    const auto count = static_cast<Eigen::Index>(cells_per_leaf * level.leaves.size());
+    x.middleCols(column, count) = random_points({pyramid.origin, level.voxel_size}, level.leaves,
+                                                cells_per_leaf * level.leaves.size(), seed);
+    column += count;
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
+  return finest_cells_at(pyramid, x);
 }
 
 // Compares pyramids with the map at points that no decision used before.
@@ -308,7 +295,7 @@ std::string to_string(const BakeSummary& summary) {
 }
 
 Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   if (!(options.tolerance > 0 && std::isfinite(options.tolerance)))
     throw InvalidInput("bake tolerance " + std::to_string(options.tolerance) + " is not positive and finite");
   if (options.voxel_size && !(*options.voxel_size > 0 && std::isfinite(*options.voxel_size)))
@@ -321,7 +308,7 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
   for (const PyramidLevel& level : result.pyramid.levels)
     summary.levels.push_back({level.voxel_size, level.leaves.size(), level.leaves.size() * leaf_nodes});
   summary.tolerance_met = summary.error.max <= options.tolerance;
-  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.seconds = watch.seconds();
   return result;
 }
 
