@@ -83,15 +83,16 @@ TEST(DeformationNodes, WorkOnATriangleAndOnASoup) {
   EXPECT_GT(nodes.size(), 40);
 }
 
-TEST(BendingStencils, IgnoreAffineDisplacementsAndSeeOthers) {
+TEST(BendingStencils, IgnoreAffineDisplacementsOfTheGivenPlacesAndSeeOthers) {
   const DeformationNodes nodes = make_deformation_nodes(shapes::icosphere(4), 0.3);
   Matrix3 linear;
   linear << 0.3, 0.1, -0.4, 0.2, 0.5, 0.1, -0.2, 0.3, 0.6;
-  const Points affine = (linear * nodes.rest).colwise() + Vector3(1, 2, 3);
-  const Points bent = nodes.rest.array().square().matrix();
+  const Points places = nodes.rest + 0.3 * nodes.rest.array().square().matrix();
+  const Points affine = (linear * places).colwise() + Vector3(1, 2, 3);
+  const Points bent = places.array().square().matrix();
   const auto energy = [&](const Points& displacements) {
     double sum = 0;
-    for (const BendingStencil& stencil : bending_stencils(nodes)) {
+    for (const BendingStencil& stencil : bending_stencils(nodes, places)) {
       const Points local = displacements(Eigen::all, stencil.ids);
       sum += (local * stencil.quadratic * local.transpose()).trace();
     }

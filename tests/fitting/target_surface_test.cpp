@@ -14,6 +14,7 @@ TEST(TargetSurface, FindsThePointBelowWithItsNormal) {
   ASSERT_TRUE(found);
   EXPECT_LT((found->point - Vector3(0.3, 0.6, 0)).norm(), 1e-12);
   EXPECT_LT((found->normal - Vector3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((found->halfway - Vector3(0, 0.6, 1.8).normalized()).norm(), 1e-12);
   EXPECT_NEAR(found->agreement, 0.8, 1e-12);
   EXPECT_NEAR(surface.closest(Vector3(0.3, 0.6, -0.2)).squared_distance, 0.04, 1e-12);
 }

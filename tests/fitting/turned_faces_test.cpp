@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+#include <random>
+
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -24,7 +28,7 @@ double least_cosine(const TriangleMesh& before, const Points& after) {
 TEST(MendTurnedFaces, LeavesASurfaceWithoutTurnedFacesAsItIs) {
   const TriangleMesh grid = shapes::square_grid(side);
   Points after = grid.vertices;
-  for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], std::sin(5 * x[0]));
+  for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], 0.2 * std::sin(5 * x[0]));
   const MendedSurface mended = mend_turned_faces(grid, after);
   EXPECT_EQ(mended.vertices, after);
   EXPECT_EQ(mended.mended_vertices, 0u);
@@ -45,6 +49,33 @@ TEST(MendTurnedFaces, TakesBackAVertexDrawnAcrossItsNeighbours) {
   EXPECT_TRUE(mended.vertices.isApprox(Points(grid.vertices.colwise() + shift), 1e-6));
   EXPECT_GT(mended.mended_vertices, 0u);
   EXPECT_LT(mended.mended_vertices, 60u);
+}
+
+TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-1, 1);
+  const TriangleMesh grid = shapes::square_grid(4 * side);
+  for (int trial = 0; trial < 20; ++trial) {
+    Points after = grid.vertices;
+    for (auto&& x : after.colwise())
+      if ((x - Vector3(0.5, 0.5, 0)).norm() < 1.5 * square)
+        x += square * Vector3(shift(random), shift(random), 2 * shift(random));
+    ASSERT_LT(least_cosine(grid, after), 0);
+    const MendedSurface mended = mend_turned_faces(grid, after);
+    EXPECT_EQ(mended.turned_faces, 0u);
+    EXPECT_GT(least_cosine(grid, mended.vertices), 0);
+  }
+}
+
+TEST(MendTurnedFaces, TakesBackWhatTurnedFartherThanItsLimitOnly) {
+  const TriangleMesh two = shapes::joined(shapes::square_grid(2), shapes::square_grid(2));
+  for (const double beyond : {-1.0, 1.0}) {
+    const double angle = (most_degrees_turned + beyond) * std::numbers::pi / 180;
+    Points after = two.vertices;
+    const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
+    after.leftCols(9) = turn * two.vertices.leftCols(9);
+    EXPECT_EQ(mend_turned_faces(two, after).mended_vertices, beyond > 0 ? 9u : 0u);
+  }
 }
 
 TEST(MendTurnedFaces, LeavesNoFaceTurnedWhereShortEdgesMeetLongOnes) {

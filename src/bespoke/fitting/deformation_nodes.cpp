@@ -259,7 +259,7 @@ DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing
   return nodes;
 }
 
-std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes) {
+std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places) {
   constexpr double slope_penalty = 1e-3;  // decides slopes across a flat neighbourhood, which no node shows
   std::vector<BendingStencil> stencils(static_cast<std::size_t>(nodes.size()));
   for (int node = 0; node < nodes.size(); ++node) {
@@ -270,7 +270,7 @@ std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes) {
     Eigen::MatrixXd basis(count, 4);
     Eigen::VectorXd weight(count);
     for (Eigen::Index a = 0; a < count; ++a) {
-      const Vector3 arm = (nodes.rest.col(stencil.ids[a]) - nodes.rest.col(node)) / nodes.spacing;
+      const Vector3 arm = (places.col(stencil.ids[a]) - places.col(node)) / nodes.spacing;
       basis.row(a) << 1, arm.transpose();
       // The floor keeps distant components tied.
       weight[a] = std::max(std::exp(-arm.squaredNorm() / 3), 1e-2);

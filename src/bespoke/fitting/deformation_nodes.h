@@ -36,7 +36,7 @@ struct BendingStencil {
   Eigen::MatrixXd quadratic;
 };
 
-/// One per node: the node and its neighbours.
-std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes);
+/// One per node: the node and its neighbours, which are now at `places` (3×k, mesh units).
+std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places);
 
 }  // namespace bespoke

@@ -111,7 +111,7 @@ std::vector<Residual> residuals(const DetailInput& input, const TriangleMesh& mo
       const auto found = input.target.match(moved.vertices.col(i), normals.col(i), {min_cosine, within});
       if (!found) continue;
       const double weight = areas[i] * found->agreement * found->agreement;
-      all[k].form = weight * (found->normal * found->normal.transpose() + slide * Matrix3::Identity());
+      all[k].form = weight * (found->halfway * found->halfway.transpose() + slide * Matrix3::Identity());
       all[k].pull = all[k].form * (found->point - moved.vertices.col(i));
     }
   });

@@ -101,7 +101,7 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
     exact_sources = nodes.anchor_sources(Eigen::all, exact);
     const DetailFit details =
         fit_details({surface, target, exact_sources, exact_targets, scaled_diagonal}, progress);
-    const MendedSurface mended = mend_turned_faces(surface, details.vertices);
+    const MendedSurface mended = mend_turned_faces({nodes.coarse_vertices, surface.faces}, details.vertices);
     surface.vertices = mended.vertices;
     fit.summary.mended_vertices = mended.mended_vertices;
     exact_sources = details.anchor_sources;

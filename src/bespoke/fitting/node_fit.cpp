@@ -10,6 +10,7 @@
 
 #include "bespoke/fitting/block_system.h"
 #include "bespoke/fitting/deformation_nodes.h"
+#include "bespoke/fitting/informative_areas.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -52,7 +53,6 @@ class LevelFit {
       : input_(input),
         total_area_(areas.sum()),
         nodes_(make_deformation_nodes(input.rest, spacing(total_area_, level.nodes))),
-        stencils_(bending_stencils(nodes_)),
         anchors_(anchor_combinations(anchor_feet)),
         system_(adjacency()),
         displacements_(starting_displacements(vertices)) {}
@@ -119,7 +119,11 @@ class LevelFit {
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
     };
-    for (const BendingStencil& stencil : stencils_) tie(stencil.ids);
+    for (int node = 0; node < nodes_.size(); ++node) {
+      std::vector<int> stencil = nodes_.neighbours[node];
+      stencil.push_back(node);
+      tie(stencil);
+    }
     for (const NodeWeights& anchor : anchors_) {
       std::vector<int> ids;
       for (const auto& entry : anchor) ids.push_back(entry.first);
@@ -198,8 +202,9 @@ class LevelFit {
   }
 
   void add_bending(double weight) {
+    const std::vector<BendingStencil> stencils = bending_stencils(nodes_, nodes_.rest + displacements_);
     for (int node = 0; node < nodes_.size(); ++node) {
-      const BendingStencil& stencil = stencils_[node];
+      const BendingStencil& stencil = stencils[node];
       const double share = weight * nodes_.areas[node];
       for (std::size_t a = 0; a < stencil.ids.size(); ++a)
         for (std::size_t b = 0; b < stencil.ids.size(); ++b)
@@ -245,7 +250,6 @@ class LevelFit {
   const NodeFitInput& input_;
   double total_area_;  // mesh units squared
   DeformationNodes nodes_;
-  std::vector<BendingStencil> stencils_;
   std::vector<NodeWeights> anchors_;
   BlockSystem system_;
   Points displacements_;
@@ -271,7 +275,7 @@ std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const 
       const auto i = static_cast<Eigen::Index>(k * stride);
       const auto found = input.target.match(moved.vertices.col(i), normals.col(i), limits);
       if (!found) continue;
-      planes[k] = {static_cast<int>(i), found->point, found->normal,
+      planes[k] = {static_cast<int>(i), found->point, found->halfway,
                    areas[i] * double(stride) * found->agreement * found->agreement};
     }
   });
@@ -281,7 +285,7 @@ std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const 
 
 /// What the target's points find on the moved source, as pulls on the nearest corner of the face found.
 std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const TargetSurface& surface,
-                                               std::size_t samples) {
+                                               const Eigen::VectorXd& areas, std::size_t samples) {
   const Points& points = input.target.mesh().vertices;
   const MatchLimits limits = match_limits(input.diagonal);
   const std::size_t count = static_cast<std::size_t>(points.cols());
@@ -296,9 +300,8 @@ std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const 
       int corner = 0;
       found->barycentric.maxCoeff(&corner);
       const int vertex = surface.mesh().faces(corner, found->face);
-      planes[k] = {
-          vertex, points.col(i) + surface.mesh().vertices.col(vertex) - found->point, normal,
-          back_share * input.target.areas()[i] * double(stride) * found->agreement * found->agreement};
+      planes[k] = {vertex, points.col(i) + surface.mesh().vertices.col(vertex) - found->point, found->halfway,
+                   back_share * areas[i] * double(stride) * found->agreement * found->agreement};
     }
   });
   keep_found(planes);
@@ -308,7 +311,8 @@ std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const 
 }  // namespace
 
 NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
-  const Eigen::VectorXd areas = vertex_areas(input.rest);
+  const Eigen::VectorXd areas = informative_areas(input.rest, input.diagonal);
+  const Eigen::VectorXd target_areas = informative_areas(input.target.mesh(), input.diagonal);
   const TargetSurface rest(input.rest);
   std::vector<SurfacePoint> feet;
   for (const auto& anchor : input.anchor_sources.colwise()) feet.push_back(rest.closest(anchor));
@@ -319,6 +323,7 @@ NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
   NodeFit result;
   TriangleMesh moved = input.rest;
   for (const Level& level : levels) {
+    if (result.iterations == levels.front().iterations) result.coarse_vertices = moved.vertices;
     LevelFit fit(input, level, moved.vertices, areas, feet);
     for (int iteration = 0; iteration < level.iterations; ++iteration, ++result.iterations) {
       progress.step("surface-fit", static_cast<std::size_t>(result.iterations),
@@ -327,7 +332,8 @@ NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
       // Before the anchors are met, closest points mislead.
       if (result.iterations > 0 || feet.empty()) {
         planes = source_to_target(input, moved, areas, level.samples);
-        const auto back = target_to_source(input, rest.moved(moved.vertices), level.back_samples);
+        const auto back =
+            target_to_source(input, rest.moved(moved.vertices), target_areas, level.back_samples);
         planes.insert(planes.end(), back.begin(), back.end());
       }
       if (result.iterations == boundary_start) boundaries.decide(moved.vertices);

@@ -13,6 +13,9 @@ namespace bespoke {
 struct SurfaceMatch {
   Vector3 point;   ///< mesh units
   Vector3 normal;  ///< unit, interpolated from the vertices
+  /// Unit, halfway between `normal` and the query's: a residual along it lets two bent surfaces slide into
+  /// each other, where one along `normal` alone takes the target for flat (symmetric point to plane).
+  Vector3 halfway;
   int face = 0;
   Vector3 barycentric;
   double agreement = 0;  ///< cosine between the query's normal and `normal`, in [0, 1]

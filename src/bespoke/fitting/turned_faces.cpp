@@ -3,6 +3,8 @@
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,12 +16,16 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
-/// Faces whose normals are more than 90° apart; a face without area has not turned.
+const double least_cosine = std::cos(most_degrees_turned * std::numbers::pi / 180);
+
+/// Faces whose normals are farther apart; a face without area has not turned.
 std::vector<Eigen::Index> turned_faces(const Points& before_normals, const TriangleMesh& after) {
   const Points normals = face_normals(after);
   std::vector<Eigen::Index> turned;
   for (Eigen::Index face = 0; face < normals.cols(); ++face)
-    if (normals.col(face).dot(before_normals.col(face)) < 0) turned.push_back(face);
+    if (normals.col(face).squaredNorm() * before_normals.col(face).squaredNorm() > 0 &&
+        normals.col(face).dot(before_normals.col(face)) < least_cosine)
+      turned.push_back(face);
   return turned;
 }
 
@@ -62,6 +68,24 @@ Points spread_harmonically(const Points& places, const VertexAdjacency& adjacenc
   return displacements;
 }
 
+/// The faces' corners and the vertices at most `rings` edges away from one.
+std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacency,
+                        const std::vector<Eigen::Index>& faces, int rings) {
+  std::vector<int> patch;
+  std::vector<char> in_patch(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+  const auto add = [&](int vertex) {
+    if (!std::exchange(in_patch[vertex], 1)) patch.push_back(vertex);
+  };
+  for (const Eigen::Index face : faces)
+    for (const int vertex : mesh.faces.col(face)) add(vertex);
+  std::size_t begin = 0;
+  for (int ring = 0; ring < rings; ++ring)
+    for (const std::size_t end = patch.size(); begin < end; ++begin)
+      for (int k = adjacency.start[patch[begin]]; k < adjacency.start[patch[begin] + 1]; ++k)
+        add(adjacency.neighbours[k]);
+  return patch;
+}
+
 }  // namespace
 
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after) {
@@ -72,19 +96,9 @@ MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after)
   std::vector<Eigen::Index> turned = turned_faces(before_normals, mended);
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
-  for (int ring = 0; ring < most_rings && !turned.empty(); ++ring) {
-    // All that this ring releases counts from the next ring on.
-    const std::vector<char> was_free = is_free;
-    const auto release = [&](int vertex) {
+  for (int rings = 0; rings < most_rings && !turned.empty(); ++rings) {
+    for (const int vertex : around(before, adjacency, turned, rings))
       if (!std::exchange(is_free[vertex], 1)) free.push_back(vertex);
-    };
-    for (const Eigen::Index face : turned)
-      for (const int vertex : before.faces.col(face)) {
-        release(vertex);
-        if (!was_free[vertex]) continue;
-        for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k)
-          release(adjacency.neighbours[k]);
-      }
     mended.vertices =
         before.vertices + spread_harmonically(before.vertices, adjacency, free, after - before.vertices);
     turned = turned_faces(before_normals, mended);
