@@ -249,6 +249,33 @@ TEST(ClosestPoint, OfManyFacesAtOnePlaceAndOfGeometricallyShrinkingOnes) {
   for (int i = 1; i < 40; ++i) EXPECT_EQ(tree.closest({0, 0, std::exp2(-i)})->face, i);
 }
 
+TEST(ClosestPoint, OfAMovedTreeIsThatOfANewOne) {
+  const TriangleMesh mesh = triangle_soup(3000, 8);
+  const ClosestPointTree tree(mesh);
+  const Points queries = random_points(500, 2, 9);
+  for (const double strength : {0.0, 0.1, 5.0}) {
+    TriangleMesh bent = mesh;
+    for (auto&& x : bent.vertices.colwise())
+      x += strength * Vector3(std::sin(9 * x[1]), x[0] * x[2], std::cos(7 * x[0]));
+    const ClosestPointTree fresh(bent), moved = tree.moved(bent), back = moved.moved(mesh);
+    for (const auto& x : queries.colwise()) {
+      const SurfacePoint expected = fresh.closest(x).value(), at = moved.closest(x).value();
+      EXPECT_EQ(at.face, expected.face);
+      EXPECT_EQ(at.point, expected.point);
+      EXPECT_EQ(at.barycentric, expected.barycentric);
+      EXPECT_EQ(back.closest(x).value().point, tree.closest(x).value().point);
+    }
+  }
+}
+
+TEST(ClosestPoint, RefusesToMoveToOtherFacesOrNonFiniteVertices) {
+  const ClosestPointTree tree(shapes::icosphere(1));
+  EXPECT_THROW(tree.moved(shapes::icosphere(2)), InvalidInput);
+  TriangleMesh broken = shapes::icosphere(1);
+  broken.vertices(2, 5) = std::nan("");
+  EXPECT_THROW(tree.moved(broken), InvalidInput);
+}
+
 TEST(ClosestPoint, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(ClosestPointTree({}), InvalidInput);
   TriangleMesh mesh = shapes::triangle();

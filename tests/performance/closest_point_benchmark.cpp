@@ -59,7 +59,15 @@ void build(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * input.target.faces.cols());
 }
 
+void move(benchmark::State& state) {
+  const Scene input = scene(0);
+  const ClosestPointTree tree(input.target);
+  for (auto _ : state) benchmark::DoNotOptimize(tree.moved(input.target));
+  state.SetItemsProcessed(state.iterations() * input.target.faces.cols());
+}
+
 BENCHMARK(build)->Unit(benchmark::kMillisecond);
+BENCHMARK(move)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(closest, near, 0.002, false)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(closest, near_compatible, 0.002, true)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(closest, middle, 0.02, false)->Unit(benchmark::kMillisecond);

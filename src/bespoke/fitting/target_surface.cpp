@@ -55,17 +55,21 @@ std::shared_ptr<const TargetSurface::Boundary> TargetSurface::boundary_of(const 
   return boundary;
 }
 
-TargetSurface::TargetSurface(TriangleMesh mesh, std::shared_ptr<const Boundary> boundary)
+TargetSurface::TargetSurface(TriangleMesh mesh, ClosestPointTree tree,
+                             std::shared_ptr<const Boundary> boundary)
     : mesh_(std::move(mesh)),
-      tree_(mesh_),
+      tree_(std::move(tree)),
       normals_(vertex_normals(mesh_)),
       areas_(vertex_areas(mesh_)),
       boundary_(std::move(boundary)) {}
 
-TargetSurface::TargetSurface(TriangleMesh mesh) : TargetSurface(mesh, boundary_of(mesh)) {}
+TargetSurface::TargetSurface(TriangleMesh mesh)
+    : TargetSurface(mesh, ClosestPointTree(mesh), boundary_of(mesh)) {}
 
 TargetSurface TargetSurface::moved(Points vertices) const {
-  return TargetSurface({std::move(vertices), mesh_.faces}, boundary_);
+  TriangleMesh mesh{std::move(vertices), mesh_.faces};
+  ClosestPointTree tree = tree_.moved(mesh);
+  return TargetSurface(std::move(mesh), std::move(tree), boundary_);
 }
 
 bool TargetSurface::on_boundary(const SurfacePoint& found) const {

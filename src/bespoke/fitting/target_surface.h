@@ -57,7 +57,7 @@ class TargetSurface {
     std::vector<unsigned char> face_bits;  // bit k where edge (k, k+1) belongs to one face
     std::vector<char> vertices;
   };
-  TargetSurface(TriangleMesh mesh, std::shared_ptr<const Boundary> boundary);
+  TargetSurface(TriangleMesh mesh, ClosestPointTree tree, std::shared_ptr<const Boundary> boundary);
   static std::shared_ptr<const Boundary> boundary_of(const TriangleMesh& mesh);
   bool on_boundary(const SurfacePoint& found) const;
 

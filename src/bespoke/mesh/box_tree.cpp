@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -22,6 +23,13 @@ struct Range {
   int depth;
   int size() const { return end - begin; }
 };
+
+void set_bounds(Node& node, std::size_t i, const Box& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.low[axis][i] = round_down(box.min()(axis));
+    node.high[axis][i] = round_up(box.max()(axis));
+  }
+}
 
 class Builder {
  public:
@@ -63,10 +71,7 @@ class Builder {
   }
 
   static void set_child(Node& node, std::size_t i, const Box& box, int first, int count) {
-    for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][i] = count < 0 ? 0 : round_down(box.min()(axis));
-      node.high[axis][i] = count < 0 ? 0 : round_up(box.max()(axis));
-    }
+    set_bounds(node, i, count < 0 ? Box(Vector3::Zero()) : box);
     node.child[i] = first;
     node.count[i] = count;
   }
@@ -148,6 +153,33 @@ class Builder {
 BoxTree build_box_tree(const std::vector<Box>& boxes) {
   assert(!boxes.empty());
   return Builder(boxes).build();
+}
+
+void refit(BoxTree& tree, const std::vector<Box>& boxes) {
+  assert(boxes.size() == tree.order.size());
+  for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // a node's children come after it
+    Node& node = tree.nodes[n];
+    for (std::size_t i = 0; i < width; ++i) {
+      const auto first = static_cast<std::size_t>(node.child[i]);
+      if (node.count[i] > 0) {
+        Box box;
+        for (std::size_t k = first; k < first + static_cast<std::size_t>(node.count[i]); ++k)
+          box.extend(boxes[static_cast<std::size_t>(tree.order[k])]);
+        set_bounds(node, i, box);
+      } else if (node.count[i] == 0) {
+        const Node& child = tree.nodes[first];
+        for (int axis = 0; axis < 3; ++axis) {
+          node.low[axis][i] = std::numeric_limits<float>::infinity();
+          node.high[axis][i] = -std::numeric_limits<float>::infinity();
+          for (int k = 0; k < width; ++k) {
+            if (child.count[k] < 0) continue;
+            node.low[axis][i] = std::min(node.low[axis][i], child.low[axis][k]);
+            node.high[axis][i] = std::max(node.high[axis][i], child.high[axis][k]);
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace bespoke

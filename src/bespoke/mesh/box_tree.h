@@ -33,6 +33,10 @@ struct BoxTree {
 /// at most 40 levels of three waiting nodes. `boxes` must not be empty, nor any of its elements.
 BoxTree build_box_tree(const std::vector<Box>& boxes);
 
+/// Fits the tree to the same boxes at other places, a fraction of the cost of building it. Answers stay
+/// exact; walks get slower where boxes that were neighbours have parted.
+void refit(BoxTree& tree, const std::vector<Box>& boxes);
+
 /// Calls visit(index) for every box that meets `box`, and perhaps for a few more, in the order of the tree.
 template <class Visit>
 void for_each_overlapping(const BoxTree& tree, const Box& box, const Visit& visit);

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/box_tree.h"
+#include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
@@ -106,22 +109,48 @@ struct ClosestPointTree::Tree {
   std::vector<Vector3> normals;     ///< of the triangles; NaN without area, so that no condition holds
 };
 
-ClosestPointTree::ClosestPointTree(const TriangleMesh& mesh) {
+namespace {
+
+std::vector<Box> face_boxes(const TriangleMesh& mesh) {
   require_valid(mesh, "the mesh of a closest-point tree");
-  auto tree = std::make_unique<Tree>();
   std::vector<Box> boxes(static_cast<std::size_t>(mesh.faces.cols()));
   for (std::size_t face = 0; face < boxes.size(); ++face)
     for (const int vertex : mesh.faces.col(static_cast<Eigen::Index>(face)))
       boxes[face].extend(mesh.vertices.col(vertex));
-  tree->boxes = build_box_tree(boxes);
+  return boxes;
+}
+
+}  // namespace
+
+ClosestPointTree::ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh) {
+  constexpr std::size_t grain = 1024;
+  auto tree = std::make_unique<Tree>();
+  tree->triangles.resize(boxes.order.size());
+  tree->normals.resize(boxes.order.size());
   const Points normals = face_normals(mesh);
-  for (const int face : tree->boxes.order) {
-    tree->triangles.push_back(prepare(mesh, face));
-    tree->normals.push_back(normals.col(face));
-    if (normals.col(face).isZero(0))
-      tree->normals.back().setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
+  parallel_for(boxes.order.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const int face = boxes.order[k];
+      tree->triangles[k] = prepare(mesh, face);
+      tree->normals[k] = normals.col(face);
+      if (normals.col(face).isZero(0)) tree->normals[k].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  });
+  tree->boxes = std::move(boxes);
   tree_ = std::move(tree);
+}
+
+ClosestPointTree::ClosestPointTree(const TriangleMesh& mesh)
+    : ClosestPointTree(build_box_tree(face_boxes(mesh)), mesh) {}
+
+ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh) const {
+  const std::vector<Box> places = face_boxes(mesh);
+  if (places.size() != tree_->boxes.order.size())
+    throw InvalidInput("a closest-point tree over " + std::to_string(tree_->boxes.order.size()) +
+                       " faces cannot move to a mesh of " + std::to_string(places.size()));
+  BoxTree boxes = tree_->boxes;
+  refit(boxes, places);
+  return ClosestPointTree(std::move(boxes), mesh);
 }
 
 ClosestPointTree::~ClosestPointTree() = default;

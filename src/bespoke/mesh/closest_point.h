@@ -8,6 +8,8 @@
 
 namespace bespoke {
 
+struct BoxTree;
+
 /// A point on a surface.
 struct SurfacePoint {
   Vector3 point;  ///< mesh units
@@ -45,12 +47,17 @@ class ClosestPointTree {
   ClosestPointTree(ClosestPointTree&&) noexcept;
   ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
 
+  /// For the mesh this was built from with its vertices elsewhere: the same answers as a new tree, made in a
+  /// fraction of the time, and slower to ask the more the mesh was deformed. Throws as the constructor.
+  ClosestPointTree moved(const TriangleMesh& mesh) const;
+
   /// Empty when no face satisfies the query. Throws InvalidInput when x is not finite or max_distance is not
   /// at least 0.
   std::optional<SurfacePoint> closest(const Vector3& x, const ClosestPointQuery& query = {}) const;
 
  private:
   struct Tree;
+  ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh);
   std::unique_ptr<const Tree> tree_;
 };
 
