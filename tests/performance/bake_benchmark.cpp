@@ -1,6 +1,10 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "bespoke/volume/bake.h"
+#include "bespoke/volume/band.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {
@@ -19,6 +23,27 @@ void BakeOfACheapMap(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * voxels));
 }
 
+// Small balls all over a sphere, as the finest layers of a map leave them.
+void BandOfManySmallBalls(benchmark::State& state) {
+  const Eigen::Index count = state.range(0);
+  Support support;
+  BallCloud cloud{Points(3, count), 2 / std::sqrt(static_cast<double>(count))};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double z = 1 - (2.0 * static_cast<double>(i) + 1) / static_cast<double>(count);
+    const double angle = static_cast<double>(i) * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double radius = std::sqrt(1 - z * z);
+    cloud.centers.col(i) << radius * std::cos(angle), radius * std::sin(angle), z;
+  }
+  support.clouds.push_back(cloud);
+  for (auto _ : state) benchmark::DoNotOptimize(band_leaves(support, {Vector3::Zero(), cloud.radius / 8}));
+  state.SetItemsProcessed(state.iterations() * count);
+}
+
+BENCHMARK(BandOfManySmallBalls)
+    ->Arg(10'000)
+    ->Arg(100'000)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 BENCHMARK(BakeOfACheapMap)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -48,23 +49,32 @@ std::vector<Ball> balls_of(const Support& support) {
 // Descends an octree of boxes of leaves, keeping for each box the balls that its nodes may touch.
 class BandSearch {
  public:
-  BandSearch(const Support& support, const Lattice& lattice)
-      : frame_(support.frame), lattice_(lattice), box_(bounding_box(support)), balls_(balls_of(support)) {
+  BandSearch(const Support& support, const Lattice& lattice) : frame_(support.frame), lattice_(lattice) {
+    const std::vector<Ball> balls = balls_of(support);
+    const Box box = bounding_box(support);
     if (!(lattice.voxel_size > 0 && std::isfinite(lattice.voxel_size) && lattice.origin.allFinite()))
       throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is not positive and finite");
-    if (balls_.empty()) return;
+    if (balls.empty()) return;
     const double leaf_size = leaf_edge * lattice.voxel_size;
-    const Vector3 low = (box_.min() - lattice.origin) / leaf_size;
-    const Vector3 high = (box_.max() - lattice.origin) / leaf_size;
+    const Vector3 low = (box.min() - lattice.origin) / leaf_size;
+    const Vector3 high = (box.max() - lattice.origin) / leaf_size;
     if (!(low.minCoeff() > -largest_leaf && high.maxCoeff() < largest_leaf))
       throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is too fine for a band of " +
-                         std::to_string(box_.sizes().maxCoeff()) + " mesh units");
-    while (leaf_size * (1 << depth_) < 2 * balls_.front().radius && depth_ < 20) ++depth_;
+                         std::to_string(box.sizes().maxCoeff()) + " mesh units");
+    while ((high - low).maxCoeff() > (1 << depth_)) ++depth_;
     // One node of slack: a node of the leaf below may touch the box by rounding.
     const auto root = [&](double leaf) { return static_cast<int>(std::floor(leaf)) >> depth_; };
     for (int i = root(low.x() - 0.5); i <= root(high.x() + 0.5); ++i)
       for (int j = root(low.y() - 0.5); j <= root(high.y() + 0.5); ++j)
-        for (int k = root(low.z() - 0.5); k <= root(high.z() + 0.5); ++k) roots_.push_back({i, j, k});
+        for (int k = root(low.z() - 0.5); k <= root(high.z() + 0.5); ++k) add_root({i, j, k}, balls, depth_);
+    // Enough of them for all threads; every ball is asked once a level by the few boxes near it.
+    constexpr std::size_t enough_roots = 256;
+    for (; depth_ > 0 && roots_.size() < enough_roots; --depth_) {
+      const std::vector<Root> parents = std::exchange(roots_, {});
+      for (const Root& parent : parents)
+        for (int octant = 0; octant < 8; ++octant)
+          add_root(child(parent.at, octant), parent.touching, depth_ - 1);
+    }
   }
 
   std::size_t roots() const { return roots_.size(); }
@@ -72,13 +82,30 @@ class BandSearch {
   // emit(corner, depth): all 8^depth leaves from `corner` · 2^depth on.
   template <class Emit>
   void search(std::size_t root, const Emit& emit) const {
-    descend(roots_[root], depth_, balls_, emit);
+    descend(roots_[root].at, depth_, roots_[root].touching, emit);
   }
 
  private:
-  template <class Emit>
-  void descend(const LeafCoordinates& at, int depth, const std::vector<Ball>& candidates,
-               const Emit& emit) const {
+  struct Root {
+    LeafCoordinates at;
+    std::vector<Ball> touching;
+  };
+
+  static LeafCoordinates child(const LeafCoordinates& at, int octant) {
+    return {2 * at[0] + (octant >> 2 & 1), 2 * at[1] + (octant >> 1 & 1), 2 * at[2] + (octant & 1)};
+  }
+
+  void add_root(const LeafCoordinates& at, const std::vector<Ball>& candidates, int depth) {
+    std::vector<Ball> touching = touching_balls(at, depth, candidates).balls;
+    if (!touching.empty()) roots_.push_back({at, std::move(touching)});
+  }
+
+  struct Touching {
+    std::vector<Ball> balls;
+    bool one_holds_all = false;  // and is then the only one listed
+  };
+
+  Touching touching_balls(const LeafCoordinates& at, int depth, const std::vector<Ball>& candidates) const {
     const double half_edge = 0.5 * ((leaf_edge << depth) - 1) * lattice_.voxel_size;
     const double corner = static_cast<double>(leaf_edge << depth) * lattice_.voxel_size;
     const Vector3 middle = frame_ * Vector3(lattice_.origin + corner * Vector3(at[0], at[1], at[2]) +
@@ -89,25 +116,28 @@ class BandSearch {
                                                        sign & 2 ? half_edge : -half_edge))
                                   .norm());
     reach *= 1 + 1e-12;  // rounding must not lose a leaf that touches
-    std::vector<Ball> touching;
+    Touching touching;
     for (const Ball& ball : candidates) {
       const double distance = (middle - ball.center).norm();
-      if (distance + reach <= ball.radius) return emit(at, depth);
-      if (distance - reach <= ball.radius * (1 + 1e-12)) touching.push_back(ball);
+      if (distance + reach <= ball.radius) return {{ball}, true};
+      if (distance - reach <= ball.radius * (1 + 1e-12)) touching.balls.push_back(ball);
     }
-    if (touching.empty()) return;
-    if (depth == 0) return emit(at, 0);
-    for (int octant = 0; octant < 8; ++octant)
-      descend({2 * at[0] + (octant >> 2 & 1), 2 * at[1] + (octant >> 1 & 1), 2 * at[2] + (octant & 1)},
-              depth - 1, touching, emit);
+    return touching;
+  }
+
+  template <class Emit>
+  void descend(const LeafCoordinates& at, int depth, const std::vector<Ball>& candidates,
+               const Emit& emit) const {
+    const Touching touching = touching_balls(at, depth, candidates);
+    if (touching.balls.empty()) return;
+    if (depth == 0 || touching.one_holds_all) return emit(at, depth);
+    for (int octant = 0; octant < 8; ++octant) descend(child(at, octant), depth - 1, touching.balls, emit);
   }
 
   AffineMap frame_;
   Lattice lattice_;
-  Box box_;
-  std::vector<Ball> balls_;
   int depth_ = 0;
-  std::vector<LeafCoordinates> roots_;
+  std::vector<Root> roots_;  // of edge 2^depth_ leaves
 };
 
 }  // namespace
