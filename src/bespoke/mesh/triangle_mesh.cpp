@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "bespoke/error.h"
+#include "bespoke/parallel.h"
 #include "bespoke/sha256.h"
 
 namespace bespoke {
@@ -22,6 +23,15 @@ struct Edge {
   int backward;  ///< faces that run from b to a
   int faces() const { return forward + backward; }
 };
+
+/// In parallel: visit(face) may write what is that face's alone.
+template <class Visit>
+void for_each_face(const TriangleMesh& mesh, const Visit& visit) {
+  constexpr std::size_t grain = 1024;
+  parallel_for(static_cast<std::size_t>(mesh.faces.cols()), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t face = begin; face < end; ++face) visit(static_cast<Eigen::Index>(face));
+  });
+}
 
 bool has_three_vertices(const Faces& faces, Eigen::Index face) {
   return faces(0, face) != faces(1, face) && faces(1, face) != faces(2, face) &&
@@ -183,7 +193,7 @@ double diagonal(const Points& points) {
 
 Points face_normals(const TriangleMesh& mesh) {
   Points normals(3, mesh.faces.cols());
-  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
+  for_each_face(mesh, [&](Eigen::Index face) {
     const auto corner = [&](int k) { return mesh.vertices.col(mesh.faces(k, face)); };
     const double longest =
         std::max({(corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(1)).squaredNorm(),
@@ -193,27 +203,29 @@ Points face_normals(const TriangleMesh& mesh) {
       normals.col(face) = area.stableNormalized();
     else
       normals.col(face).setZero();
-  }
+  });
   return normals;
 }
 
 Points vertex_normals(const TriangleMesh& mesh) {
   const Points of_faces = face_normals(mesh);
+  Points corner_angles(3, mesh.faces.cols());  // 0 where the face has no area
+  for_each_face(mesh, [&](Eigen::Index face) {
+    for (int k = 0; k < 3; ++k) {
+      const auto vertex = mesh.vertices.col(mesh.faces(k, face));
+      const Vector3 to_next = mesh.vertices.col(mesh.faces((k + 1) % 3, face)) - vertex;
+      const Vector3 to_last = mesh.vertices.col(mesh.faces((k + 2) % 3, face)) - vertex;
+      corner_angles(k, face) =
+          of_faces.col(face).isZero(0) ? 0 : std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
+    }
+  });
   Points normals = Points::Zero(3, mesh.vertices.cols());
   Eigen::VectorXd angles = Eigen::VectorXd::Zero(mesh.vertices.cols());
-  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
-    if (of_faces.col(face).isZero(0)) continue;
-    for (int corner = 0; corner < 3; ++corner) {
-      const int vertex = mesh.faces(corner, face);
-      const Vector3 to_next =
-          mesh.vertices.col(mesh.faces((corner + 1) % 3, face)) - mesh.vertices.col(vertex);
-      const Vector3 to_last =
-          mesh.vertices.col(mesh.faces((corner + 2) % 3, face)) - mesh.vertices.col(vertex);
-      const double angle = std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
-      normals.col(vertex) += angle * of_faces.col(face);
-      angles(vertex) += angle;
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face)
+    for (int k = 0; k < 3; ++k) {
+      normals.col(mesh.faces(k, face)) += corner_angles(k, face) * of_faces.col(face);
+      angles(mesh.faces(k, face)) += corner_angles(k, face);
     }
-  }
   // Faces that face each other cancel up to rounding, which must not pass for a direction.
   for (Eigen::Index vertex = 0; vertex < normals.cols(); ++vertex) {
     if (normals.col(vertex).norm() > 1e-12 * angles(vertex))
