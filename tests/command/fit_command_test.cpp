@@ -379,6 +379,26 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
 }
 
+TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {
+  json anchors = read_json("anchors.json");
+  json twin = anchors["pairs"][0];
+  twin["name"] = "twin";
+  twin["a"][0] = twin["a"][0].get<double>() + 0.1;
+  twin["b"][1] = twin["b"][1].get<double>() + 0.5;
+  anchors["pairs"].push_back(twin);
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd", "--voxel-size", "20%"};
+  ProgramResult fit = pair_.fit("map.vdb", quick);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("and \"twin\" ("));
+  EXPECT_THAT(fit.err, HasSubstr("contradict each other; give those that are not exact a weight"));
+  anchors["pairs"].back()["weight"] = 1;
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  fit = pair_.fit("map.vdb", quick);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, Not(HasSubstr("contradict")));
+}
+
 TEST_F(FitCommand, TakesAnchorsAsCsv) {
   std::string rows = "name,ax,ay,az,bx,by,bz\n";
   const json anchors = read_json("anchors.json");

@@ -58,13 +58,23 @@ TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
   for (int trial = 0; trial < 20; ++trial) {
     Points after = grid.vertices;
     for (auto&& x : after.colwise())
-      if ((x - Vector3(0.5, 0.5, 0)).norm() < 1.5 * square)
+      if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.75 * square)
         x += square * Vector3(shift(random), shift(random), 2 * shift(random));
     ASSERT_LT(least_cosine(grid, after), 0);
     const MendedSurface mended = mend_turned_faces(grid, after);
     EXPECT_EQ(mended.turned_faces, 0u);
     EXPECT_GT(least_cosine(grid, mended.vertices), 0);
   }
+}
+
+TEST(MendTurnedFaces, LeavesTheFitWhereMostOfItTurned) {
+  const TriangleMesh grid = shapes::square_grid(4 * side);
+  Points after = grid.vertices;
+  after.topRows(1) = 1 - after.topRows(1).array();  // a mirror image: every face has turned
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.vertices, after);
+  EXPECT_EQ(mended.mended_vertices, 0u);
+  EXPECT_EQ(mended.turned_faces, static_cast<std::size_t>(grid.faces.cols()));
 }
 
 TEST(MendTurnedFaces, TakesBackWhatTurnedFartherThanItsLimitOnly) {

@@ -5,6 +5,7 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/fitting/anchor_placement.h"
+#include "bespoke/fitting/contradicting_anchors.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"
@@ -117,6 +118,11 @@ void warn_of_far_anchors(const std::string& role, const TriangleMesh& model, con
                  to_string(placement).c_str(), unit.empty() ? "" : ", ", unit.c_str());
 }
 
+void warn_of_contradictions(const Anchors& anchors) {
+  const std::string text = to_string(contradicting_anchors(anchors), anchors);
+  if (!text.empty()) std::fprintf(stderr, "bespoke: warning: %s\n", text.c_str());
+}
+
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
   if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
@@ -146,6 +152,7 @@ void run(const FitArguments& arguments, const Progress& progress) {
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
+  warn_of_contradictions(anchors);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};

@@ -115,17 +115,13 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
 }
 
 std::string to_string(const AnchorAudit& audit, const Anchors& anchors) {
-  const auto label = [&](std::size_t index) {
-    const std::string& name = anchors.pairs[index].name;
-    return name.empty() ? "pair " + std::to_string(index + 1) : "\"" + name + "\"";
-  };
   std::string text;
   for (const SuspiciousAnchor& anchor : audit.suspicious) {
     char distance[120];
     std::snprintf(distance, sizeof distance, " lies %.4g from where the others put it (typical: %.4g)",
                   anchor.distance, audit.typical_distance);
-    text += (text.empty() ? "anchor " : "; anchor ") + label(anchor.index) + distance;
-    if (anchor.swapped_with) text += ", looks swapped with " + label(*anchor.swapped_with);
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + distance;
+    if (anchor.swapped_with) text += ", looks swapped with " + label(anchors, *anchor.swapped_with);
   }
   return text;
 }

@@ -246,4 +246,9 @@ Eigen::VectorXd weights(const Anchors& anchors) {
   return result;
 }
 
+std::string label(const Anchors& anchors, std::size_t index) {
+  const std::string& name = anchors.pairs[index].name;
+  return name.empty() ? "pair " + std::to_string(index + 1) : "\"" + name + "\"";
+}
+
 }  // namespace bespoke

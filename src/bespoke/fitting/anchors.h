@@ -41,4 +41,7 @@ Points source_points(const Anchors& anchors);
 Points target_points(const Anchors& anchors);
 Eigen::VectorXd weights(const Anchors& anchors);
 
+/// How messages call a pair: its name in quotes, or "pair 3" for the third.
+std::string label(const Anchors& anchors, std::size_t index);
+
 }  // namespace bespoke

@@ -9,6 +9,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/fitting/anchor_audit.h"
+#include "bespoke/fitting/contradicting_anchors.h"
 #include "bespoke/fitting/pffd.h"
 #include "bespoke/rbf/csrbf.h"
 #include "bespoke/rbf/global_rbf.h"
@@ -60,8 +61,16 @@ StageReport coarse_report(const Statistics& residual, const Anchors& anchors, co
     if (anchor.swapped_with) entry["swapped_with"] = *anchor.swapped_with;
     suspicious.push_back(std::move(entry));
   }
-  const Json json = {
-      {"pairs", residual.count}, {"residual", to_json(residual)}, {"suspicious_anchors", suspicious}};
+  Json contradicting = Json::array();
+  for (const ContradictingAnchors& pair : contradicting_anchors(anchors))
+    contradicting.push_back({{"indices", {pair.first, pair.second}},
+                             {"names", {anchors.pairs[pair.first].name, anchors.pairs[pair.second].name}},
+                             {"apart", pair.apart},
+                             {"asked", pair.asked}});
+  const Json json = {{"pairs", residual.count},
+                     {"residual", to_json(residual)},
+                     {"suspicious_anchors", suspicious},
+                     {"contradicting_anchors", contradicting}};
   return {"coarse", line, json.dump(), watch.seconds()};
 }
 

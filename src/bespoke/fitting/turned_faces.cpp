@@ -90,15 +90,22 @@ std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacen
 
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after) {
   constexpr int most_rings = 8;
+  // Where anchors contradict each other everything turns; mending all of it would undo the fit.
+  constexpr std::size_t most_free_divisor = 20, most_free_at_least = 100;
   const Points before_normals = face_normals(before);
   const VertexAdjacency adjacency = vertex_adjacency(before);
   TriangleMesh mended{after, before.faces};
   std::vector<Eigen::Index> turned = turned_faces(before_normals, mended);
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
+  const auto most_free = std::max<std::size_t>(most_free_at_least, is_free.size() / most_free_divisor);
   for (int rings = 0; rings < most_rings && !turned.empty(); ++rings) {
+    std::vector<int> released;
     for (const int vertex : around(before, adjacency, turned, rings))
-      if (!std::exchange(is_free[vertex], 1)) free.push_back(vertex);
+      if (!is_free[vertex]) released.push_back(vertex);
+    if (free.size() + released.size() > most_free) break;
+    for (const int vertex : released) is_free[vertex] = 1;
+    free.insert(free.end(), released.begin(), released.end());
     mended.vertices =
         before.vertices + spread_harmonically(before.vertices, adjacency, free, after - before.vertices);
     turned = turned_faces(before_normals, mended);

@@ -20,7 +20,8 @@ struct MendedSurface {
 /// `before`: a surface that a smooth deformation has brought here; `after` (3×n, mesh units): where its
 /// vertices were drawn then. Where a face turned by more than `most_degrees_turned`, its vertices give up
 /// their displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings
-/// around the face as it takes, up to eight. Throws SolverError.
+/// around the face as it takes, up to eight, and as long as that is at most 5 % of the vertices (or 100):
+/// where more has turned, mending would undo the fit. Throws SolverError.
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after);
 
 }  // namespace bespoke
