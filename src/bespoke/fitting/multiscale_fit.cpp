@@ -10,6 +10,7 @@
 #include "bespoke/fitting/node_fit.h"
 #include "bespoke/fitting/similarity_fit.h"
 #include "bespoke/fitting/turned_faces.h"
+#include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
 
@@ -52,6 +53,18 @@ std::vector<Eigen::Index> exact_anchors(const Eigen::VectorXd& weights) {
   for (Eigen::Index k = 0; k < weights.size(); ++k)
     if (std::isinf(weights[k])) exact.push_back(k);
   return exact;
+}
+
+/// Moves points (3×k) on or near the surface as the surface moves under them.
+void carry_along(const TriangleMesh& surface, const Points& moved_vertices, Points& points) {
+  const ClosestPointTree tree(surface);
+  for (auto&& point : points.colwise()) {
+    const SurfacePoint foot = *tree.closest(point);
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = surface.faces(k, foot.face);
+      point += foot.barycentric[k] * (moved_vertices.col(vertex) - surface.vertices.col(vertex));
+    }
+  }
 }
 
 double largest_distance(const Points& a, const Points& b) {
@@ -102,9 +115,11 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
     const DetailFit details =
         fit_details({surface, target, exact_sources, exact_targets, scaled_diagonal}, progress);
     const MendedSurface mended = mend_turned_faces({nodes.coarse_vertices, surface.faces}, details.vertices);
+    exact_sources = details.anchor_sources;
+    if (mended.mended_vertices > 0)
+      carry_along({details.vertices, surface.faces}, mended.vertices, exact_sources);
     surface.vertices = mended.vertices;
     fit.summary.mended_vertices = mended.mended_vertices;
-    exact_sources = details.anchor_sources;
     fit.summary.iterations = nodes.iterations + details.layers;
     fit.summary.matched_boundaries = nodes.matched_boundaries;
     fit.summary.stop_reason = details.last_step <= options.epsilon * scaled_diagonal
