@@ -160,6 +160,12 @@ TEST(Bake, RefusesMemoryBeforeTakingItAndSaysWhatFits) {
   EXPECT_THROW(bake(two_bumps(), options), MemoryLimitError);
 }
 
+TEST(Bake, RefusesVoxelsFarTooFineWithoutCountingThem) {
+  for (const double voxel_size : {1e-4, 1e-5, 1e-6})  // up to 10^15 leaves
+    EXPECT_THROW(bake(two_bumps(), uniform(voxel_size)), MemoryLimitError) << voxel_size;
+  EXPECT_THROW(bake(two_bumps(), uniform(1e-12)), InvalidInput);
+}
+
 TEST(Bake, RefusesValuesOutOfRange) {
   BakeOptions options;
   for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {

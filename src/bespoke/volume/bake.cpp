@@ -146,7 +146,7 @@ Bake bake_uniform(const ElasticMap& map, double voxel_size, const BakeOptions& o
 
   Bake result;
   Stopwatch watch;
-  result.summary.peak_bytes = estimate.bytes;
+  result.summary.peak_bytes = static_cast<std::size_t>(estimate.bytes);
   const std::vector<LeafCoordinates> leaves = band_leaves(support, lattice);
   PyramidLevel level = sample_level(map, lattice, leaves, progress);
   round_values(level.values, options.tolerance, options.precision);

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,8 @@ struct Ball {
   double radius;
 };
 
-constexpr int largest_leaf = 1 << 24;
+// As many leaves as this across are finer than a float resolves, and their cubes still fit 64 bits.
+constexpr int largest_leaf = 1 << 20;
 
 Matrix3 inverse_frame(const Support& support) {
   const Matrix3& linear = support.frame.linear;
@@ -51,16 +53,12 @@ class BandSearch {
  public:
   BandSearch(const Support& support, const Lattice& lattice) : frame_(support.frame), lattice_(lattice) {
     const std::vector<Ball> balls = balls_of(support);
-    const Box box = bounding_box(support);
-    if (!(lattice.voxel_size > 0 && std::isfinite(lattice.voxel_size) && lattice.origin.allFinite()))
-      throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is not positive and finite");
+    require_lattice(support, lattice);
     if (balls.empty()) return;
+    const Box box = bounding_box(support);
     const double leaf_size = leaf_edge * lattice.voxel_size;
     const Vector3 low = (box.min() - lattice.origin) / leaf_size;
     const Vector3 high = (box.max() - lattice.origin) / leaf_size;
-    if (!(low.minCoeff() > -largest_leaf && high.maxCoeff() < largest_leaf))
-      throw InvalidInput("voxel size " + std::to_string(lattice.voxel_size) + " is too fine for a band of " +
-                         std::to_string(box.sizes().maxCoeff()) + " mesh units");
     while ((high - low).maxCoeff() > (1 << depth_)) ++depth_;
     // One node of slack: a node of the leaf below may touch the box by rounding.
     const auto root = [&](double leaf) { return static_cast<int>(std::floor(leaf)) >> depth_; };
@@ -141,6 +139,23 @@ class BandSearch {
 };
 
 }  // namespace
+
+void require_lattice(const Support& support, const Lattice& lattice) {
+  char text[120];
+  if (!(lattice.voxel_size > 0 && std::isfinite(lattice.voxel_size) && lattice.origin.allFinite())) {
+    std::snprintf(text, sizeof text, "voxel size %.4g is not positive and finite", lattice.voxel_size);
+    throw InvalidInput(text);
+  }
+  const Box box = bounding_box(support);
+  if (box.isEmpty()) return;
+  const double leaf_size = leaf_edge * lattice.voxel_size;
+  const Vector3 low = (box.min() - lattice.origin) / leaf_size;
+  const Vector3 high = (box.max() - lattice.origin) / leaf_size;
+  if (low.minCoeff() > -largest_leaf && high.maxCoeff() < largest_leaf) return;
+  std::snprintf(text, sizeof text, "voxel size %.4g is too fine for a band of %.4g mesh units",
+                lattice.voxel_size, box.sizes().maxCoeff());
+  throw InvalidInput(text);
+}
 
 std::vector<LeafCoordinates> band_leaves(const Support& support, const Lattice& lattice) {
   const BandSearch search(support, lattice);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 
@@ -26,6 +27,21 @@ double smallest_radius(const Support& support) {
     if (cloud.centers.cols() > 0 && cloud.radius > 0)
       radius = radius > 0 ? std::min(radius, cloud.radius) : cloud.radius;
   return radius;
+}
+
+// Too fine a lattice must be refused before its leaves are counted one by one: once a coarser one with the
+// same origin has this many, the rest of the count is volume, up to the leaves at the rim.
+double bytes_needed(const Support& support, const Lattice& lattice) {
+  constexpr std::size_t enough_leaves = 4'000'000;
+  const double extent = bounding_box(support).sizes().maxCoeff();
+  int halvings = 0;
+  while (std::ldexp(leaf_edge * lattice.voxel_size, halvings) < extent) ++halvings;
+  std::size_t leaves = 0;
+  for (; halvings >= 0; --halvings) {
+    leaves = count_band_leaves(support, {lattice.origin, std::ldexp(lattice.voxel_size, halvings)});
+    if (leaves >= enough_leaves) break;
+  }
+  return fixed_bytes + bytes_per_leaf * std::ldexp(static_cast<double>(leaves), 3 * std::max(halvings, 0));
 }
 
 // Largest |u − trilinear| at the centres of cells of this size around x, where it is largest to leading
@@ -58,8 +74,8 @@ UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) 
   const Support support = map.support();
   UniformEstimate estimate;
   estimate.voxel_size = lattice.voxel_size;
-  estimate.leaves = count_band_leaves(support, lattice);
-  estimate.bytes = fixed_bytes + bytes_per_leaf * estimate.leaves;
+  require_lattice(support, lattice);
+  estimate.bytes = bytes_needed(support, lattice);
   const Lattice coarse{lattice.origin, std::max(lattice.voxel_size, smallest_radius(support) / leaf_edge)};
   const Points x = random_points(coarse, band_leaves(support, coarse), probes, 1);
   estimate.error = probe_margin * probe_error(map, x, lattice.voxel_size);
@@ -67,20 +83,20 @@ UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) 
 }
 
 void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std::size_t max_memory) {
-  if (estimate.bytes <= max_memory) return;
-  const auto megabytes = [](std::size_t bytes) { return std::to_string((bytes >> 20) + 1) + " MB"; };
+  const auto limit = static_cast<double>(max_memory);
+  if (estimate.bytes <= limit) return;
+  const auto megabytes = [](double bytes) {
+    return std::to_string(static_cast<std::uint64_t>(std::ceil(bytes / 0x1p20))) + " MB";
+  };
   std::string message = "voxels of " + short_number(estimate.voxel_size) + " need " +
-                        megabytes(estimate.bytes) + ", the limit is " + megabytes(max_memory);
+                        megabytes(estimate.bytes) + ", the limit is " + megabytes(limit);
   const Support support = map.support();
   const Vector3 origin = bounding_box(support).min();
   double voxel_size = estimate.voxel_size;
-  const auto bytes = [&] {
-    return fixed_bytes + bytes_per_leaf * count_band_leaves(support, {origin, voxel_size});
-  };
-  for (std::size_t needed = estimate.bytes; needed > max_memory; needed = bytes()) {
-    if (max_memory <= fixed_bytes + bytes_per_leaf || voxel_size > smallest_radius(support))
+  for (double needed = estimate.bytes; needed > limit; needed = bytes_needed(support, {origin, voxel_size})) {
+    if (limit <= fixed_bytes + bytes_per_leaf || voxel_size > smallest_radius(support))
       throw MemoryLimitError(message + "; no voxel size fits, allow at least " + megabytes(4 * fixed_bytes));
-    voxel_size *= std::max(1.02, std::cbrt(static_cast<double>(needed) / static_cast<double>(max_memory)));
+    voxel_size *= std::max(1.02, std::cbrt(needed / limit));
   }
   const double growth = voxel_size / estimate.voxel_size;
   throw MemoryLimitError(message + "; voxels of " + short_number(voxel_size) + " or a tolerance of " +

@@ -13,9 +13,8 @@ namespace bespoke {
 /// What one uniform level would cost and miss; known before any of it is taken.
 struct UniformEstimate {
   double voxel_size = 0;  ///< mesh units
-  std::size_t leaves = 0;
-  std::size_t bytes = 0;
-  double error = 0;  ///< expected largest trilinear error, mesh units
+  double bytes = 0;       ///< somewhat too many where there are millions of leaves
+  double error = 0;       ///< expected largest trilinear error, mesh units
 };
 
 /// Probes the trilinear error at a few thousand cells of the band.
