@@ -262,7 +262,7 @@ DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing
 std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places) {
   constexpr double slope_penalty = 1e-3;  // decides slopes across a flat neighbourhood, which no node shows
   std::vector<BendingStencil> stencils(static_cast<std::size_t>(nodes.size()));
-  for (int node = 0; node < nodes.size(); ++node) {
+  const auto fill = [&](int node) {
     BendingStencil& stencil = stencils[node];
     stencil.ids = nodes.neighbours[node];
     stencil.ids.push_back(node);
@@ -281,7 +281,10 @@ std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, cons
     gram.diagonal().tail<3>().array() += slope_penalty;
     stencil.quadratic = -weighted * gram.ldlt().solve(weighted.transpose());
     stencil.quadratic.diagonal() += weight;
-  }
+  };
+  parallel_for(stencils.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) fill(static_cast<int>(node));
+  });
   return stencils;
 }
 

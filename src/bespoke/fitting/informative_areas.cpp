@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include "bespoke/fitting/target_surface.h"
-
 namespace bespoke {
 
-Eigen::VectorXd informative_areas(const TriangleMesh& mesh, double diagonal) {
+Eigen::VectorXd informative_areas(const TargetSurface& surface, double diagonal) {
   constexpr double length = 0.01;    // of the diagonal: bends of this radius count twice
   constexpr double most = 4;         // so that noise cannot rule
   constexpr double shortest = 1e-4;  // of the diagonal: shorter edges tell no curvature
-  const Points normals = vertex_normals(mesh);
+  const TriangleMesh& mesh = surface.mesh();
+  const Points& normals = surface.normals();
   Eigen::VectorXd curvature = Eigen::VectorXd::Zero(mesh.vertices.cols());
   Eigen::VectorXd edges = Eigen::VectorXd::Zero(mesh.vertices.cols());
   for (const auto& face : mesh.faces.colwise())
@@ -23,7 +22,7 @@ Eigen::VectorXd informative_areas(const TriangleMesh& mesh, double diagonal) {
         edges[end] += 1;
       }
     }
-  const Eigen::VectorXd areas = vertex_areas(mesh);
+  const Eigen::VectorXd& areas = surface.areas();
   Eigen::VectorXd informative(areas.size());
   const double unit = length * length * diagonal * diagonal;
   for (Eigen::Index i = 0; i < areas.size(); ++i)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/fitting/target_surface.h"
 
 namespace bespoke {
 
@@ -8,6 +8,6 @@ namespace bespoke {
 /// nothing about places along it, so bent places, which few vertices share, count more: the area around the
 /// vertex times 1 + min(4, (ℓκ)²), with κ the mean over its edges of the turn of the normal a length and ℓ a
 /// hundredth of `diagonal` (> 0, mesh units). Scaled to the sum of the areas.
-Eigen::VectorXd informative_areas(const TriangleMesh& mesh, double diagonal);
+Eigen::VectorXd informative_areas(const TargetSurface& surface, double diagonal);
 
 }  // namespace bespoke

@@ -263,17 +263,17 @@ void keep_found(std::vector<PlaneObservation>& planes) {
   std::erase_if(planes, [](const PlaneObservation& plane) { return !(plane.weight > 0); });
 }
 
-std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const TriangleMesh& moved,
+std::vector<PlaneObservation> source_to_target(const NodeFitInput& input, const TargetSurface& surface,
                                                const Eigen::VectorXd& areas, std::size_t samples) {
-  const std::size_t count = static_cast<std::size_t>(moved.vertices.cols());
+  const Points& points = surface.mesh().vertices;
+  const std::size_t count = static_cast<std::size_t>(points.cols());
   const std::size_t stride = (count + samples - 1) / samples;
-  const Points normals = vertex_normals(moved);
   const MatchLimits limits = match_limits(input.diagonal);
   std::vector<PlaneObservation> planes((count + stride - 1) / stride);
   parallel_for(planes.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
-      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), limits);
+      const auto found = input.target.match(points.col(i), surface.normals().col(i), limits);
       if (!found) continue;
       planes[k] = {static_cast<int>(i), found->point, found->halfway,
                    areas[i] * double(stride) * found->agreement * found->agreement};
@@ -311,9 +311,9 @@ std::vector<PlaneObservation> target_to_source(const NodeFitInput& input, const 
 }  // namespace
 
 NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
-  const Eigen::VectorXd areas = informative_areas(input.rest, input.diagonal);
-  const Eigen::VectorXd target_areas = informative_areas(input.target.mesh(), input.diagonal);
   const TargetSurface rest(input.rest);
+  const Eigen::VectorXd areas = informative_areas(rest, input.diagonal);
+  const Eigen::VectorXd target_areas = informative_areas(input.target, input.diagonal);
   std::vector<SurfacePoint> feet;
   for (const auto& anchor : input.anchor_sources.colwise()) feet.push_back(rest.closest(anchor));
   BoundaryMatcher boundaries(rest, input.anchor_sources, input.target, input.boundaries);
@@ -331,9 +331,9 @@ NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress) {
       std::vector<PlaneObservation> planes;
       // Before the anchors are met, closest points mislead.
       if (result.iterations > 0 || feet.empty()) {
-        planes = source_to_target(input, moved, areas, level.samples);
-        const auto back =
-            target_to_source(input, rest.moved(moved.vertices), target_areas, level.back_samples);
+        const TargetSurface surface = rest.moved(moved.vertices);
+        planes = source_to_target(input, surface, areas, level.samples);
+        const auto back = target_to_source(input, surface, target_areas, level.back_samples);
         planes.insert(planes.end(), back.begin(), back.end());
       }
       if (result.iterations == boundary_start) boundaries.decide(moved.vertices);

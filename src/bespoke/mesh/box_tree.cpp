@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -29,6 +28,17 @@ void set_bounds(Node& node, std::size_t i, const Box& box) {
     node.low[axis][i] = round_down(box.min()(axis));
     node.high[axis][i] = round_up(box.max()(axis));
   }
+}
+
+/// Around all children.
+Box bounds_of(const Node& node) {
+  Box box;
+  for (int i = 0; i < width; ++i) {
+    if (node.count[i] < 0) continue;
+    box.extend(Vector3(node.low[0][i], node.low[1][i], node.low[2][i]));
+    box.extend(Vector3(node.high[0][i], node.high[1][i], node.high[2][i]));
+  }
+  return box;
 }
 
 class Builder {
@@ -161,23 +171,11 @@ void refit(BoxTree& tree, const std::vector<Box>& boxes) {
     Node& node = tree.nodes[n];
     for (std::size_t i = 0; i < width; ++i) {
       const auto first = static_cast<std::size_t>(node.child[i]);
-      if (node.count[i] > 0) {
-        Box box;
-        for (std::size_t k = first; k < first + static_cast<std::size_t>(node.count[i]); ++k)
-          box.extend(boxes[static_cast<std::size_t>(tree.order[k])]);
-        set_bounds(node, i, box);
-      } else if (node.count[i] == 0) {
-        const Node& child = tree.nodes[first];
-        for (int axis = 0; axis < 3; ++axis) {
-          node.low[axis][i] = std::numeric_limits<float>::infinity();
-          node.high[axis][i] = -std::numeric_limits<float>::infinity();
-          for (int k = 0; k < width; ++k) {
-            if (child.count[k] < 0) continue;
-            node.low[axis][i] = std::min(node.low[axis][i], child.low[axis][k]);
-            node.high[axis][i] = std::max(node.high[axis][i], child.high[axis][k]);
-          }
-        }
-      }
+      if (node.count[i] < 0) continue;
+      Box box = node.count[i] == 0 ? bounds_of(tree.nodes[first]) : Box();
+      for (std::size_t k = first; k < first + static_cast<std::size_t>(node.count[i]); ++k)
+        box.extend(boxes[static_cast<std::size_t>(tree.order[k])]);
+      set_bounds(node, i, box);
     }
   }
 }
