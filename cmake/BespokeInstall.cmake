@@ -2,20 +2,9 @@
 include(CMakePackageConfigHelpers)
 set(BESPOKE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bespoke)
 
-foreach(header
-    apply/apply_mapping asset/asset asset/asset_io atomic_file error fitting/anchor_audit
-    fitting/anchor_placement fitting/anchors fitting/exact_map_io fitting/fit_mapping fitting/pffd
-    fitting/surface_fit fitting/unmet_vertices mapping/elastic_map mapping/mapping mesh/closest_point
-    mesh/mesh_io mesh/product_io mesh/triangle_mesh parallel pipeline/derive_map pipeline/make_map
-    pipeline/method_names progress quality/distortion quality/mapping_quality quality/product_quality
-    quality/self_intersection quality/signed_distance quality/surface_distance rbf/csrbf rbf/global_rbf
-    rbf/kernels rbf/multiscale rbf/point_grid report/inspection report/quality_report report/report
-    rigid/rigid_alignment rigid/rigid_transform statistics types volume/bake volume/baked_map
-    volume/certificate volume/inverse volume/pyramid)
-  cmake_path(GET header PARENT_PATH directory)
-  install(FILES ${PROJECT_SOURCE_DIR}/src/bespoke/${header}.h
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bespoke/${directory})
-endforeach()
+# The tree says who may use a header: those under detail/ belong to the rooms they stand in.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/bespoke DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.h" PATTERN "detail" EXCLUDE)
 
 install(TARGETS bespoke EXPORT bespokeTargets)
 install(EXPORT bespokeTargets NAMESPACE bespoke:: DESTINATION ${BESPOKE_PACKAGE_DIR})

@@ -1,7 +1,7 @@
 // Applies a stored map to points, half-way and all the way.
 #include <bespoke/apply/apply_mapping.h>
 #include <bespoke/asset/asset_io.h>
-#include <bespoke/volume/baked_map.h>
+#include <bespoke/lattice/baked_map.h>
 
 #include <cstdio>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/fitting/anchors.h"
+#include "bespoke/anchors/anchors.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {

@@ -8,8 +8,8 @@
 
 #include "asset/small_asset.h"
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/asset/record_json.h"
-#include "bespoke/asset/trailer.h"
+#include "bespoke/asset/detail/record_json.h"
+#include "bespoke/asset/detail/trailer.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 

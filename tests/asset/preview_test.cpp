@@ -1,4 +1,4 @@
-#include "bespoke/asset/preview.h"
+#include "bespoke/asset/detail/preview.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/asset/preview.h"
+#include "bespoke/asset/detail/preview.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 #include "support/shapes.h"

@@ -1,4 +1,4 @@
-#include "bespoke/asset/trailer.h"
+#include "bespoke/asset/detail/trailer.h"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/asset/grid_conversion.h"
-#include "bespoke/asset/record_json.h"
-#include "bespoke/asset/trailer.h"
+#include "bespoke/asset/detail/grid_conversion.h"
+#include "bespoke/asset/detail/record_json.h"
+#include "bespoke/asset/detail/trailer.h"
 #include "command/example_pair.h"
 #include "support/shapes.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bespoke/volume/baked_map.h"
+#include "bespoke/lattice/baked_map.h"
 
 namespace bespoke {
 namespace {

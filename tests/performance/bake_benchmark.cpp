@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bespoke/volume/bake.h"
-#include "bespoke/volume/band.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/bake/band.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {

@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
-#include "bespoke/volume/bake.h"
-#include "bespoke/volume/certificate.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/certificate/certificate.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {

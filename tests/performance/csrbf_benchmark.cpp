@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "bespoke/rbf/csrbf.h"
+#include "bespoke/elastic/csrbf.h"
 #include "support/random_points.h"
 
 namespace bespoke {

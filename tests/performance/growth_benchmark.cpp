@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "bespoke/fitting/fit_mapping.h"
 #include "bespoke/mesh/mesh_io.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"
 #include "samples.h"

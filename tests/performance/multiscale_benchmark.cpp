@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
+#include "bespoke/elastic/multiscale.h"
 #include "bespoke/mesh/mesh_io.h"
-#include "bespoke/rbf/multiscale.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "support/random_points.h"
 #include "support/shapes.h"

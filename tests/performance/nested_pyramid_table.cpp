@@ -9,13 +9,13 @@
 #include <string>
 #include <utility>
 
-#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/bake/band.h"
+#include "bespoke/bake/sampling.h"
+#include "bespoke/certificate/certificate.h"
+#include "bespoke/certificate/inverse.h"
 #include "bespoke/mesh/mesh_io.h"
-#include "bespoke/volume/bake.h"
-#include "bespoke/volume/band.h"
-#include "bespoke/volume/certificate.h"
-#include "bespoke/volume/inverse.h"
-#include "bespoke/volume/sampling.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
 namespace {

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "bespoke/fitting/pffd.h"
+#include "bespoke/elastic/pffd.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "bespoke/fitting/surface_fit.h"
+#include "bespoke/surface_fit/surface_fit.h"
 #include "support/shapes.h"
 
 namespace bespoke {

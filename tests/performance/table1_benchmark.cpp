@@ -7,9 +7,9 @@
 
 #include "bespoke/apply/apply_mapping.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/pipeline/method_names.h"
-#include "bespoke/volume/baked_map.h"
 #include "samples.h"
 
 namespace bespoke {

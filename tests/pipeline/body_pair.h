@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bespoke/fitting/anchors.h"
+#include "bespoke/anchors/anchors.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/rigid_transform.h"

@@ -5,7 +5,7 @@
 #include "asset/small_asset.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
-#include "bespoke/volume/baked_map.h"
+#include "bespoke/lattice/baked_map.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "bespoke/bake/bake.h"
+#include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/error.h"
-#include "bespoke/fitting/exact_map_io.h"
-#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/mapping.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/statistics.h"
-#include "bespoke/volume/bake.h"
-#include "bespoke/volume/baked_map.h"
 #include "pipeline/body_pair.h"
 
 namespace bespoke {

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bespoke/fitting/fit_mapping.h"
+#include "bespoke/elastic/csrbf.h"
 #include "bespoke/mesh/mesh_io.h"
-#include "bespoke/rbf/csrbf.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
 namespace {

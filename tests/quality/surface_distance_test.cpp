@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bespoke/error.h"
-#include "bespoke/quality/surface_samples.h"
+#include "bespoke/quality/detail/surface_samples.h"
 #include "support/shapes.h"
 
 namespace bespoke {

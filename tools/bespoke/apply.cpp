@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/certificate/inverse.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/mesh/product_io.h"
 #include "bespoke/report/report.h"
-#include "bespoke/volume/baked_map.h"
-#include "bespoke/volume/inverse.h"
 #include "commands.h"
 #include "name_option.h"
 #include "output_files.h"

@@ -3,9 +3,9 @@
 #include <memory>
 #include <optional>
 
+#include "bespoke/anchors/anchor_placement.h"
+#include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/fitting/anchor_placement.h"
-#include "bespoke/fitting/contradicting_anchors.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/mesh/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
-#include "bespoke/volume/baked_map.h"
 #include "commands.h"
 #include "run_options.h"
 #include "stored_exact_map.h"

@@ -1,7 +1,7 @@
 #include "stored_exact_map.h"
 
+#include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/error.h"
-#include "bespoke/fitting/exact_map_io.h"
 
 namespace bespoke::command {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "bespoke/asset/preview.h"
+#include "bespoke/asset/detail/preview.h"
 #include "bespoke/error.h"
-#include "bespoke/volume/baked_map.h"
+#include "bespoke/lattice/baked_map.h"
 
 namespace bespoke {
 namespace {

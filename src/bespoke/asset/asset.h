@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/certificate/certificate.h"
+#include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/statistics.h"
-#include "bespoke/volume/certificate.h"
-#include "bespoke/volume/pyramid.h"
 
 namespace bespoke {
 

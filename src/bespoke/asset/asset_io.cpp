@@ -7,11 +7,11 @@
 #include <string>
 #include <utility>
 
-#include "bespoke/asset/grid_conversion.h"
-#include "bespoke/asset/preview.h"
-#include "bespoke/asset/record_json.h"
-#include "bespoke/asset/trailer.h"
-#include "bespoke/asset/untrusted.h"
+#include "bespoke/asset/detail/grid_conversion.h"
+#include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/detail/record_json.h"
+#include "bespoke/asset/detail/trailer.h"
+#include "bespoke/asset/detail/untrusted.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 

@@ -14,7 +14,7 @@
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_file.h"
+#include "bespoke/mesh/detail/mesh_file.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {

@@ -2,10 +2,10 @@
 
 #include <utility>
 
+#include "bespoke/bake/sampling.h"
+#include "bespoke/certificate/inverse.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/summary_json.h"
-#include "bespoke/volume/inverse.h"
-#include "bespoke/volume/sampling.h"
 
 namespace bespoke {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/volume/bake.h"
+#include "bespoke/bake/bake.h"
 
 namespace bespoke {
 

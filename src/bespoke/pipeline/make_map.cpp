@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "bespoke/fitting/exact_map_io.h"
+#include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/pipeline/method_names.h"
 #include "bespoke/pipeline/summary_json.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/fitting/fit_mapping.h"
-#include "bespoke/volume/bake.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string_view>
 
-#include "bespoke/fitting/fit_mapping.h"
 #include "bespoke/mapping/mapping.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
 

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bespoke/bake/bake.h"
+#include "bespoke/certificate/certificate.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/statistics.h"
 #include "bespoke/types.h"
-#include "bespoke/volume/bake.h"
-#include "bespoke/volume/certificate.h"
 
 namespace bespoke {
 

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "bespoke/bake/band.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
-#include "bespoke/volume/band.h"
 
 namespace bespoke {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bespoke/error.h"
+#include "bespoke/quality/detail/surface_samples.h"
 #include "bespoke/quality/self_intersection.h"
-#include "bespoke/quality/surface_samples.h"
 
 namespace bespoke {
 namespace {

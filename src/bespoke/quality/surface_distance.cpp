@@ -6,7 +6,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
-#include "bespoke/quality/surface_samples.h"
+#include "bespoke/quality/detail/surface_samples.h"
 
 namespace bespoke {
 namespace {

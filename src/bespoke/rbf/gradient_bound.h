@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "bespoke/rbf/multiscale.h"
+#include "bespoke/rbf/rbf_layer.h"
 
 namespace bespoke {
 

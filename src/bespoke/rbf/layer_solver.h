@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bespoke/rbf/multiscale.h"
+#include "bespoke/rbf/rbf_layer.h"
 
 namespace bespoke {
 

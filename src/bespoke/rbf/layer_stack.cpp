@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bespoke/parallel.h"
-#include "bespoke/rbf/spatial_order.h"
+#include "bespoke/rbf/detail/spatial_order.h"
 
 namespace bespoke {
 namespace {

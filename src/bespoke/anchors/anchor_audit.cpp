@@ -1,0 +1,129 @@
+#include "bespoke/anchors/anchor_audit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t min_pairs = 8;
+constexpr double typical_factor = 4;
+constexpr double least_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
+
+/// −|x − y| is the biharmonic spline's kernel in space; the affine tail makes the system solvable.
+class Warp {
+ public:
+  Warp(const Points& sources, const Points& targets) : sources_(sources) {
+    const Eigen::Index count = sources.cols();
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count + 4, count + 4);
+    Eigen::MatrixXd right_side = Eigen::MatrixXd::Zero(count + 4, 3);
+    // A little smoothing, relative to the kernel's size, so that near duplicates do not dominate.
+    const double smoothing = 1e-3 * diagonal(sources);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      system.row(i).head(count) = -(sources.colwise() - sources.col(i)).colwise().norm();
+      system(i, i) = smoothing;
+      system(i, count) = system(count, i) = 1;
+      system.row(i).tail<3>() = sources.col(i).transpose();
+      system.col(i).tail<3>() = sources.col(i);
+      right_side.row(i) = targets.col(i).transpose();
+    }
+    // Coplanar sources leave slopes undetermined; the pseudo-inverse takes the least.
+    inverse_ = system.completeOrthogonalDecomposition().pseudoInverse();
+    coefficients_ = inverse_ * right_side;
+  }
+
+  Vector3 operator()(const Vector3& x) const {
+    const Eigen::Index count = sources_.cols();
+    Eigen::RowVectorXd row(count + 4);
+    row.head(count) = -(sources_.colwise() - x).colwise().norm();
+    row[count] = 1;
+    row.tail<3>() = x.transpose();
+    return (row * coefficients_).transpose();
+  }
+
+  /// Distance of pair i from where the others would put it, without solving again.
+  double left_out(Eigen::Index i) const {
+    return coefficients_.row(i).norm() / std::max(std::abs(inverse_(i, i)), 1e-300);
+  }
+
+ private:
+  Points sources_;
+  Eigen::MatrixXd inverse_, coefficients_;
+};
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                   values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+AnchorAudit audit_anchors(const Anchors& anchors) {
+  const Points sources = source_points(anchors), targets = target_points(anchors);
+  if (!(sources.allFinite() && targets.allFinite()))
+    throw InvalidInput("an anchor has a coordinate that is not finite");
+  AnchorAudit audit;
+  std::vector<Eigen::Index> trusted(anchors.pairs.size());
+  std::iota(trusted.begin(), trusted.end(), 0);
+  if (trusted.size() < min_pairs) return audit;
+
+  const double least = least_share * diagonal(targets);
+  const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_pairs - 2);
+  std::vector<Eigen::Index> doubted;
+  for (;;) {
+    const Warp warp(sources(Eigen::all, trusted), targets(Eigen::all, trusted));
+    std::vector<double> distances;
+    for (std::size_t k = 0; k < trusted.size(); ++k)
+      distances.push_back(warp.left_out(static_cast<Eigen::Index>(k)));
+    audit.typical_distance = median(distances);
+    const auto worst = std::max_element(distances.begin(), distances.end());
+    const double limit = std::max(least, typical_factor * audit.typical_distance);
+    if (!(*worst > limit) || trusted.size() <= must_stay) {
+      for (const Eigen::Index i : doubted) {
+        const double distance = (warp(sources.col(i)) - targets.col(i)).norm();
+        // Set aside beside a worse pair that had bent the warp around it.
+        if (!(distance > limit)) continue;
+        SuspiciousAnchor suspicious{static_cast<std::size_t>(i),
+                                    anchors.pairs[static_cast<std::size_t>(i)].name, distance, std::nullopt};
+        double best = 0.5 * distance;
+        for (const Eigen::Index j : doubted) {
+          const double mine = (warp(sources.col(i)) - targets.col(j)).norm();
+          const double other = (warp(sources.col(j)) - targets.col(i)).norm();
+          if (j == i || !(mine < best) || !(other < 0.5 * (warp(sources.col(j)) - targets.col(j)).norm()))
+            continue;
+          best = mine;
+          suspicious.swapped_with = static_cast<std::size_t>(j);
+        }
+        audit.suspicious.push_back(suspicious);
+      }
+      break;
+    }
+    const auto position = trusted.begin() + (worst - distances.begin());
+    doubted.push_back(*position);
+    trusted.erase(position);
+  }
+  std::stable_sort(
+      audit.suspicious.begin(), audit.suspicious.end(),
+      [](const SuspiciousAnchor& a, const SuspiciousAnchor& b) { return a.distance > b.distance; });
+  return audit;
+}
+
+std::string to_string(const AnchorAudit& audit, const Anchors& anchors) {
+  std::string text;
+  for (const SuspiciousAnchor& anchor : audit.suspicious) {
+    char distance[120];
+    std::snprintf(distance, sizeof distance, " lies %.4g from where the others put it (typical: %.4g)",
+                  anchor.distance, audit.typical_distance);
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + distance;
+    if (anchor.swapped_with) text += ", looks swapped with " + label(anchors, *anchor.swapped_with);
+  }
+  return text;
+}
+
+}  // namespace bespoke

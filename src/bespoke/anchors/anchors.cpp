@@ -1,0 +1,254 @@
+#include "bespoke/anchors/anchors.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/rigid/rigid_alignment.h"
+
+namespace bespoke {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string read_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw FileError(path.string() + ": cannot be opened for reading");
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw FileError(path.string() + ": reading failed");
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  return text;
+}
+
+/// Names are printed and compared; a line break or a kilobyte in one would spoil every message and table.
+void require_printable(const std::string& name, const std::string& where) {
+  constexpr std::size_t longest = 200;
+  const bool printable = std::none_of(name.begin(), name.end(),
+                                      [](unsigned char letter) { return letter < 0x20 || letter == 0x7F; });
+  if (!printable) throw FormatError(where + ": the name holds a control character");
+  if (name.size() > longest)
+    throw FormatError(where + ": the name has " + std::to_string(name.size()) + " bytes, at most " +
+                      std::to_string(longest) + " are allowed");
+}
+
+void require_distinct_names(const Anchors& anchors, const std::string& file) {
+  std::set<std::string> seen;
+  for (const AnchorPair& pair : anchors.pairs)
+    if (!pair.name.empty() && !seen.insert(pair.name).second)
+      throw FormatError(file + ": two pairs are named \"" + pair.name + "\"; names must differ or be empty");
+}
+
+// ---- JSON
+
+double json_number(const Json& value, const std::string& where) {
+  if (!value.is_number()) throw FormatError(where + " is " + value.type_name() + ", not a number");
+  const double number = value.get<double>();
+  if (!std::isfinite(number)) throw FormatError(where + " is not finite");
+  return number;
+}
+
+Vector3 json_point(const Json& pair, const char* key, const std::string& where) {
+  const auto found = pair.find(key);
+  if (found == pair.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
+  if (!found->is_array() || found->size() != 3)
+    throw FormatError(where + ": \"" + key + "\" must be an array of three numbers");
+  Vector3 point;
+  for (int axis = 0; axis < 3; ++axis)
+    point[axis] = json_number((*found)[static_cast<std::size_t>(axis)],
+                              where + ": \"" + key + "\"[" + std::to_string(axis) + "]");
+  return point;
+}
+
+AnchorPair json_pair(const Json& value, const std::string& position) {
+  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
+  AnchorPair pair;
+  if (const auto name = value.find("name"); name != value.end()) {
+    if (!name->is_string())
+      throw FormatError(position + ": \"name\" is " + name->type_name() + ", not a string");
+    pair.name = name->get<std::string>();
+    require_printable(pair.name, position);
+  }
+  const std::string where = pair.name.empty() ? position : position + " (\"" + pair.name + "\")";
+  pair.a = json_point(value, "a", where);
+  pair.b = json_point(value, "b", where);
+  if (const auto weight = value.find("weight"); weight != value.end()) {
+    pair.weight = json_number(*weight, where + ": \"weight\"");
+    if (!(pair.weight > 0))
+      throw FormatError(where + ": \"weight\" is " + weight->dump() + ", but must be > 0");
+  }
+  return pair;
+}
+
+Anchors parse_json(const std::string& text, const std::string& file) {
+  Json document;
+  try {
+    document = Json::parse(text);
+  } catch (const Json::exception& error) {
+    throw FormatError(file + ": not valid JSON: " + error.what());
+  }
+  if (!document.is_object()) throw FormatError(file + ": must be an object with a key \"pairs\"");
+  Anchors anchors;
+  if (const auto units = document.find("units"); units != document.end()) {
+    if (!units->is_string())
+      throw FormatError(file + ": \"units\" is " + units->type_name() + ", not a string");
+    anchors.unit = units->get<std::string>();
+    require_printable(anchors.unit, file + ": \"units\"");
+  }
+  const auto pairs = document.find("pairs");
+  if (pairs == document.end()) throw FormatError(file + ": key \"pairs\" is missing");
+  if (!pairs->is_array()) throw FormatError(file + ": \"pairs\" is " + pairs->type_name() + ", not an array");
+  for (std::size_t index = 0; index < pairs->size(); ++index)
+    anchors.pairs.push_back(json_pair((*pairs)[index], file + ": pair " + std::to_string(index)));
+  return anchors;
+}
+
+// ---- CSV
+
+/// Fields between commas, without surrounding blanks; a field in double quotes may hold commas and "" for ".
+std::vector<std::string> csv_fields(std::string_view row) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (row[i] == '"' && quoted && i + 1 < row.size() && row[i + 1] == '"')
+      fields.back() += row[i++];
+    else if (row[i] == '"')
+      quoted = !quoted;
+    else if (row[i] == ',' && !quoted)
+      fields.emplace_back();
+    else
+      fields.back() += row[i];
+  }
+  for (std::string& field : fields) {
+    constexpr const char* blanks = " \t\r";
+    field.erase(0, std::min(field.find_first_not_of(blanks), field.size()));
+    field.erase(field.find_last_not_of(blanks) + 1);
+  }
+  return fields;
+}
+
+constexpr std::array<const char*, 8> csv_columns = {"name", "ax", "ay", "az", "bx", "by", "bz", "weight"};
+
+bool is_csv_header(const std::vector<std::string>& fields) {
+  return fields.size() >= 7 && fields.size() <= csv_columns.size() &&
+         std::equal(fields.begin(), fields.end(), csv_columns.begin());
+}
+
+double csv_number(const std::string& field, const char* column, const std::string& where) {
+  double number = 0;
+  const char* end = field.data() + field.size();
+  const auto [stop, error] = std::from_chars(field.data(), end, number);
+  if (error != std::errc{} || stop != end || !std::isfinite(number))
+    throw FormatError(where + ": " + column + " is \"" + field.substr(0, 40) + "\", not a finite number");
+  return number;
+}
+
+AnchorPair csv_pair(const std::vector<std::string>& fields, const std::string& where) {
+  if (fields.size() != 7 && fields.size() != 8)
+    throw FormatError(where + ": " + std::to_string(fields.size()) +
+                      " columns, but a row is name,ax,ay,az,bx,by,bz[,weight]");
+  AnchorPair pair;
+  pair.name = fields[0];
+  require_printable(pair.name, where);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto column = static_cast<std::size_t>(axis);
+    pair.a[axis] = csv_number(fields[1 + column], csv_columns[1 + column], where);
+    pair.b[axis] = csv_number(fields[4 + column], csv_columns[4 + column], where);
+  }
+  if (fields.size() == 8 && !fields[7].empty()) {
+    pair.weight = csv_number(fields[7], csv_columns[7], where);
+    if (!(pair.weight > 0)) throw FormatError(where + ": weight is " + fields[7] + ", but must be > 0");
+  }
+  return pair;
+}
+
+Anchors parse_csv(const std::string& text, const std::string& file) {
+  Anchors anchors;
+  std::istringstream rows(text);
+  std::string row;
+  bool first = true;
+  for (int line = 1; std::getline(rows, row); ++line) {
+    const std::vector<std::string> fields = csv_fields(row);
+    if (fields.size() == 1 && fields[0].empty()) continue;
+    if (!std::exchange(first, false) || !is_csv_header(fields))
+      anchors.pairs.push_back(csv_pair(fields, file + ": line " + std::to_string(line)));
+  }
+  if (first) throw FormatError(file + ": no rows");
+  return anchors;
+}
+
+Points points(const Anchors& anchors, Vector3 AnchorPair::*end) {
+  Points result(3, static_cast<Eigen::Index>(anchors.pairs.size()));
+  for (Eigen::Index i = 0; i < result.cols(); ++i)
+    result.col(i) = anchors.pairs[static_cast<std::size_t>(i)].*end;
+  return result;
+}
+
+}  // namespace
+
+Anchors read_anchors(const std::filesystem::path& path) {
+  const std::string text = read_text(path);
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  Anchors anchors = ending == ".csv" ? parse_csv(text, path.string()) : parse_json(text, path.string());
+  require_distinct_names(anchors, path.string());
+  return anchors;
+}
+
+void add_box_corners(Anchors& anchors, const Points& source_vertices, const Points& target_vertices) {
+  if (source_vertices.cols() == 0 || target_vertices.cols() == 0)
+    throw InvalidInput("corners of an empty bounding box cannot serve as anchors");
+  constexpr std::size_t pairs_that_fix_a_turn = 3;
+  RigidTransform target_from_source;
+  if (anchors.pairs.size() >= pairs_that_fix_a_turn)
+    target_from_source = align_rigidly(source_points(anchors), target_points(anchors), weights(anchors));
+  const Box source_box = bounding_box(source_vertices);
+  const Box target_box = bounding_box(inverse(target_from_source) * target_vertices);
+  for (int corner = 0; corner < 8; ++corner) {
+    const int bits[3] = {corner >> 2 & 1, corner >> 1 & 1, corner & 1};
+    AnchorPair pair;
+    pair.name = "corner_";
+    for (int axis = 0; axis < 3; ++axis) {
+      pair.name += static_cast<char>('0' + bits[axis]);
+      pair.a[axis] = bits[axis] ? source_box.max()[axis] : source_box.min()[axis];
+      pair.b[axis] = bits[axis] ? target_box.max()[axis] : target_box.min()[axis];
+    }
+    pair.b = target_from_source * pair.b;
+    for (const AnchorPair& present : anchors.pairs)
+      if (present.name == pair.name)
+        throw InvalidInput("an anchor is already named \"" + pair.name +
+                           "\"; rename it, or add no box corners");
+    anchors.pairs.push_back(pair);
+  }
+}
+
+Points source_points(const Anchors& anchors) { return points(anchors, &AnchorPair::a); }
+
+Points target_points(const Anchors& anchors) { return points(anchors, &AnchorPair::b); }
+
+Eigen::VectorXd weights(const Anchors& anchors) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(anchors.pairs.size()));
+  for (Eigen::Index i = 0; i < result.size(); ++i)
+    result[i] = anchors.pairs[static_cast<std::size_t>(i)].weight;
+  return result;
+}
+
+std::string label(const Anchors& anchors, std::size_t index) {
+  const std::string& name = anchors.pairs[index].name;
+  return name.empty() ? "pair " + std::to_string(index + 1) : "\"" + name + "\"";
+}
+
+}  // namespace bespoke

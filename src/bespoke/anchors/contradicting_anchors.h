@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bespoke/anchors/anchors.h"
+
+namespace bespoke {
+
+/// Two exact pairs so close that no smooth map meets both.
+struct ContradictingAnchors {
+  std::size_t first = 0, second = 0;  ///< indices of the pairs
+  double apart = 0;                   ///< the two sources, as large as the target is, mesh units
+  double asked = 0;  ///< how much more or less their targets are apart, as vectors, mesh units
+};
+
+/// Pairs of exact anchors within 5 % of the targets' diagonal whose targets differ from what the one
+/// similarity of all pairs makes of their sources by more than their distance. Between anchors farther apart
+/// a joint may bend; between these the map would have to stretch space twofold or fold it. By decreasing
+/// ratio. None among fewer than 4 pairs.
+std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors);
+
+/// One line, empty without any: the names, the distances and what to do.
+std::string to_string(const std::vector<ContradictingAnchors>& contradicting, const Anchors& anchors);
+
+}  // namespace bespoke

@@ -1,0 +1,135 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "bespoke/asset/detail/preview.h"
+#include "bespoke/certificate/jacobian_bound.h"
+#include "bespoke/lattice/finest_cells.h"
+#include "bespoke/lattice/leaf_table.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+// Roots whose bounds are held in memory at a time.
+constexpr std::size_t roots_per_batch = 1024;
+
+// Some ninety roundings of a double: more than summing and interpolating twenty levels takes.
+constexpr double rounding = 1e-14;
+
+/// Per cell of level 0, in the order of CellMask: least bound of the finest cells in it, infinite for none.
+using RootBounds = std::array<double, leaf_nodes>;
+
+class RootBounder {
+ public:
+  RootBounder(const Pyramid& pyramid, const Matrix3& linear)
+      : pyramid_(pyramid), index_(pyramid), linear_(linear), sum_error_(rounding * largest_sum(pyramid)) {}
+
+  std::size_t roots() const { return index_.levels.empty() ? 0 : index_.levels.front().size(); }
+  const LeafCoordinates& leaf(std::size_t root) const { return index_.levels.front()[root].leaf; }
+
+  RootBounds bounds(std::size_t root) const {
+    RootBounds least;
+    least.fill(std::numeric_limits<double>::infinity());
+    visit_finest_cells(index_, root, [&](const EntryCells& cells) {
+      const double scale = 1 / pyramid_.levels[static_cast<std::size_t>(cells.level)].voxel_size;
+      JacobianBlock block;
+      bound_block(*cells.sum, linear_, scale, rounding * linear_.cwiseAbs().maxCoeff() + scale * sum_error_,
+                  block);
+      for (int cell = 0; cell < leaf_nodes; ++cell) {
+        if (!cells.finest[static_cast<std::size_t>(cell)]) continue;
+        const std::array<int, 3> at = {cell / 64, cell / 8 % 8, cell % 8};
+        std::size_t coarse = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+          const int fine_cell = leaf_edge * cells.leaf[axis] + at[axis];
+          coarse = coarse * leaf_edge +
+                   static_cast<std::size_t>((fine_cell >> cells.level) - leaf_edge * leaf(root)[axis]);
+        }
+        least[coarse] = std::min(least[coarse], block.lower_bound[static_cast<std::size_t>(cell)]);
+      }
+    });
+    return least;
+  }
+
+ private:
+  const Pyramid& pyramid_;
+  PyramidIndex index_;
+  Matrix3 linear_;
+  double sum_error_;
+};
+
+/// Lower bounds per node of the preview's lattice.
+class NodeBounds {
+ public:
+  NodeBounds(const StoredGrid& lattice, double outside)
+      : leaves_(lattice.leaves), bounds_(lattice.leaves.size() * leaf_nodes, outside) {}
+
+  /// `cell` in cells of the preview.
+  void lower(const std::array<int, 3>& cell, double bound) {
+    for (int c = 0; c < 8; ++c) {
+      const std::array<int, 3> node = {cell[0] + (c >> 2), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)};
+      const int leaf = leaves_.find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
+      if (leaf == no_leaf) continue;
+      const int within = ((node[0] & 7) * leaf_edge + (node[1] & 7)) * leaf_edge + (node[2] & 7);
+      double& old = bounds_[static_cast<std::size_t>(leaf) * leaf_nodes + static_cast<std::size_t>(within)];
+      old = std::min(old, bound);
+    }
+  }
+
+  const std::vector<double>& bounds() const { return bounds_; }
+
+ private:
+  LeafTable leaves_;
+  std::vector<double> bounds_;
+};
+
+/// `halvings`: how often a cell of the preview is halved to give one of level 0.
+void lower_by_pyramid(const RootBounder& bounder, int halvings, NodeBounds& nodes) {
+  std::vector<RootBounds> batch(std::min(roots_per_batch, bounder.roots()));
+  for (std::size_t first = 0; first < bounder.roots(); first += roots_per_batch) {
+    const std::size_t count = std::min(roots_per_batch, bounder.roots() - first);
+    parallel_for(count, 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) batch[i] = bounder.bounds(first + i);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      const LeafCoordinates& leaf = bounder.leaf(first + i);
+      for (int cell = 0; cell < leaf_nodes; ++cell) {
+        const double bound = batch[i][static_cast<std::size_t>(cell)];
+        if (std::isinf(bound)) continue;
+        nodes.lower(
+            {(leaf_edge * leaf[0] + cell / 64) >> halvings, (leaf_edge * leaf[1] + cell / 8 % 8) >> halvings,
+             (leaf_edge * leaf[2] + cell % 8) >> halvings},
+            bound);
+      }
+    }
+  }
+}
+
+float rounded_down(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded <= value ? rounded : std::nextafter(rounded, -std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+StoredGrid jacobian_preview(const BakedMap& baked, const StoredGrid& displacement) {
+  const Pyramid& pyramid = baked.pyramid();
+  NodeBounds nodes(displacement, baked.affine().linear.determinant());
+  if (!pyramid.levels.empty())
+    lower_by_pyramid(RootBounder(pyramid, baked.affine().linear),
+                     std::ilogb(displacement.voxel_size / pyramid.levels.front().voxel_size), nodes);
+  StoredGrid grid;
+  grid.name = jacobian_name;
+  grid.components = 1;
+  grid.voxel_size = displacement.voxel_size;
+  grid.origin = displacement.origin;
+  grid.leaves = displacement.leaves;
+  for (const double bound : nodes.bounds()) grid.values.push_back(rounded_down(bound - 1));
+  grid.metadata["bespoke:meaning"] =
+      std::string("lower bound of det grad E over the cells that touch the node, minus 1");
+  return grid;
+}
+
+}  // namespace bespoke

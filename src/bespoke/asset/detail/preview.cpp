@@ -1,0 +1,148 @@
+#include "bespoke/asset/detail/preview.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double nodes_along_longest_side = 64;
+
+// Keeps node coordinates far inside an int.
+constexpr double largest_leaf_coordinate = 1 << 26;
+
+/// Whole leaves that cover a box.
+struct LeafBox {
+  LeafCoordinates low;
+  LeafCoordinates count;
+
+  int nodes(int axis) const { return count[axis] * leaf_edge; }
+  Eigen::Index node_count() const { return Eigen::Index{1} * nodes(0) * nodes(1) * nodes(2); }
+  Eigen::Index node(int i, int j, int k) const { return (Eigen::Index{i} * nodes(1) + j) * nodes(2) + k; }
+};
+
+Box domain(const Asset& asset, Box box) {
+  box.min().array() -= asset.record.lambda;
+  box.max().array() += asset.record.lambda;
+  for (const PyramidLevel& level : asset.pyramid.levels) {
+    for (const LeafCoordinates& leaf : level.leaves) {
+      const Vector3 corner = Vector3(leaf[0], leaf[1], leaf[2]) * leaf_edge;
+      box.extend(asset.pyramid.origin + level.voxel_size * corner);
+      box.extend(asset.pyramid.origin + level.voxel_size * (corner + Vector3::Constant(leaf_edge - 1)));
+    }
+  }
+  return box;
+}
+
+/// A power of two times the pyramid's coarsest, so that every cell of the pyramid lies in one cell of the
+/// preview.
+double preview_voxel_size(const Pyramid& pyramid, double longest_side) {
+  const double wanted = longest_side / nodes_along_longest_side;
+  if (pyramid.levels.empty()) return wanted;
+  const double coarsest = pyramid.levels.front().voxel_size;
+  return std::ldexp(coarsest, std::max(0, static_cast<int>(std::ceil(std::log2(wanted / coarsest)))));
+}
+
+LeafBox leaf_box(const Box& box, const Vector3& origin, double voxel_size) {
+  LeafBox leaves;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double leaf = voxel_size * leaf_edge;
+    const double low = std::floor((box.min()[axis] - origin[axis]) / leaf);
+    // One node of the next leaf closes the last cell.
+    const double high = std::floor(std::ceil((box.max()[axis] - origin[axis]) / voxel_size) / leaf_edge);
+    if (!(low > -largest_leaf_coordinate && high < largest_leaf_coordinate))
+      throw InvalidInput("the map lies too far from its lattice's origin for voxels of " +
+                         std::to_string(voxel_size));
+    leaves.low[axis] = static_cast<int>(low);
+    leaves.count[axis] = static_cast<int>(high - low) + 1;
+  }
+  return leaves;
+}
+
+template <class Body>
+void for_each_node(const std::array<int, 3>& count, const Body& body) {
+  for (int i = 0; i < count[0]; ++i)
+    for (int j = 0; j < count[1]; ++j)
+      for (int k = 0; k < count[2]; ++k) body(i, j, k);
+}
+
+/// Nodes of the box, moved by `shift` voxels along each axis.
+Points lattice_points(const LeafBox& leaves, const Vector3& origin, double voxel_size, double shift) {
+  Points points(3, leaves.node_count());
+  for_each_node({leaves.nodes(0), leaves.nodes(1), leaves.nodes(2)}, [&](int i, int j, int k) {
+    const Vector3 node(leaves.low[0] * leaf_edge + i, leaves.low[1] * leaf_edge + j,
+                       leaves.low[2] * leaf_edge + k);
+    points.col(leaves.node(i, j, k)) = origin + voxel_size * (node + Vector3::Constant(shift));
+  });
+  return points;
+}
+
+Points displacement_at(const Asset& asset, const BakedMap& baked, const Points& x) {
+  return asset.target_from_source * baked(x) - x;
+}
+
+Statistics preview_error(const LeafBox& leaves, const Points& nodes, const Points& centers) {
+  std::vector<double> errors;
+  errors.reserve(static_cast<std::size_t>(leaves.node_count()));
+  for_each_node({leaves.nodes(0) - 1, leaves.nodes(1) - 1, leaves.nodes(2) - 1}, [&](int i, int j, int k) {
+    Vector3 mean = Vector3::Zero();
+    for (int corner = 0; corner < 8; ++corner)
+      mean += nodes.col(leaves.node(i + (corner >> 2), j + (corner >> 1 & 1), k + (corner & 1))) / 8;
+    errors.push_back((mean - centers.col(leaves.node(i, j, k))).norm());
+  });
+  return summarize(std::move(errors));
+}
+
+void pack(const LeafBox& leaves, const Points& values, StoredGrid& grid) {
+  for_each_node(leaves.count, [&](int a, int b, int c) {
+    grid.leaves.push_back({leaves.low[0] + a, leaves.low[1] + b, leaves.low[2] + c});
+    for_each_node({leaf_edge, leaf_edge, leaf_edge}, [&](int i, int j, int k) {
+      const Eigen::Index node = leaves.node(a * leaf_edge + i, b * leaf_edge + j, c * leaf_edge + k);
+      for (int axis = 0; axis < 3; ++axis) grid.values.push_back(static_cast<float>(values(axis, node)));
+    });
+  });
+}
+
+}  // namespace
+
+PreviewGrids::PreviewGrids(std::vector<StoredGrid> grids) : grids_(std::move(grids)) {
+  constexpr std::array<std::pair<const char*, int>, 3> expected = {
+      {{displacement_name, 3}, {source_distance_name, 1}, {jacobian_name, 1}}};
+  if (grids_.size() != expected.size()) throw InvalidInput("there are not three preview grids");
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    require_valid(grids_[i]);
+    if (grids_[i].half) throw InvalidInput("grid " + grids_[i].name + " is of half precision");
+    if (grids_[i].name != expected[i].first || grids_[i].components != expected[i].second)
+      throw InvalidInput("grid " + grids_[i].name + " stands in the place of " + expected[i].first);
+    if ((grids_[i].grid_class == GridClass::level_set) != (grids_[i].name == source_distance_name))
+      throw InvalidInput("grid " + grids_[i].name + " has the wrong class");
+  }
+}
+
+StoredGrid displacement_preview(const Asset& asset, const BakedMap& baked, const Box& source_box) {
+  const Box box = domain(asset, source_box);
+  StoredGrid grid;
+  grid.name = displacement_name;
+  grid.voxel_size = preview_voxel_size(asset.pyramid, box.sizes().maxCoeff());
+  grid.origin = asset.pyramid.levels.empty() ? box.min() : asset.pyramid.origin;
+  const LeafBox leaves = leaf_box(box, grid.origin, grid.voxel_size);
+  const Points nodes = displacement_at(asset, baked, lattice_points(leaves, grid.origin, grid.voxel_size, 0))
+                           .cast<float>()
+                           .cast<double>();
+  const Points centers =
+      displacement_at(asset, baked, lattice_points(leaves, grid.origin, grid.voxel_size, 0.5));
+  pack(leaves, nodes, grid);
+  const Statistics error = preview_error(leaves, nodes, centers);
+  grid.metadata["bespoke:meaning"] = std::string(
+      "Psi(1)(x) - x at x in the source frame: a coarse preview of the exact map in u_0, u_1, ...");
+  grid.metadata["bespoke:unit"] = asset.record.unit;
+  grid.metadata["bespoke:error_max"] = error.max;
+  grid.metadata["bespoke:error_p99"] = error.p99;
+  return grid;
+}
+
+}  // namespace bespoke

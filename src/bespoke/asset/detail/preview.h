@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "bespoke/asset/asset.h"
+#include "bespoke/asset/detail/stored_grid.h"
+#include "bespoke/lattice/baked_map.h"
+
+namespace bespoke {
+
+inline constexpr const char* displacement_name = "displacement";
+inline constexpr const char* source_distance_name = "source_distance";
+inline constexpr const char* jacobian_name = "jacobian";
+
+/// The grids of an asset that no reader of bespoke needs: displacement, source_distance, jacobian.
+class PreviewGrids {
+ public:
+  /// Throws InvalidInput unless these are the three, in this order, of their types.
+  explicit PreviewGrids(std::vector<StoredGrid> grids);
+
+  const std::vector<StoredGrid>& grids() const { return grids_; }
+
+ private:
+  std::vector<StoredGrid> grids_;
+};
+
+/// Ψ(1)(x) − x on one lattice over the source's box, grown by λ, and over all leaves of the pyramid; about 64
+/// nodes along its longest side. Its error, measured at the centres of its cells, is in its metadata. `baked`
+/// is the asset's E.
+StoredGrid displacement_preview(const Asset& asset, const BakedMap& baked, const Box& source_box);
+
+/// Lower bound, minus 1, of det ∇E over the cells that touch each node of the displacement preview's lattice.
+StoredGrid jacobian_preview(const BakedMap& baked, const StoredGrid& displacement);
+
+/// The source as a level set about 128 voxels long: of the signed distance where the mesh has no boundary;
+/// otherwise of a shell, the unsigned distance minus one voxel. Its metadata says which.
+StoredGrid source_distance_preview(const TriangleMesh& source);
+
+/// The surface of `distance` carried by a map whose way back is `map_back`, about 128 voxels along the
+/// diagonal of `box` (which holds its image): a shell as of an open mesh, of the distance before the map.
+StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
+                            const std::function<Points(const Points&)>& map_back);
+
+}  // namespace bespoke

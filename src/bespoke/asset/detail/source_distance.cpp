@@ -1,0 +1,88 @@
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/MeshToVolume.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "bespoke/asset/detail/grid_conversion.h"
+#include "bespoke/asset/detail/preview.h"
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double voxels_along_diagonal = 128;
+
+// Half the width of a narrow band, as level-set tools expect it.
+constexpr float band_voxels = 3;
+
+/// The mesh in index space, as OpenVDB's converter asks for it.
+struct IndexSpaceMesh {
+  const TriangleMesh& mesh;
+  Vector3 origin;
+  double voxel_size;
+
+  std::size_t polygonCount() const { return static_cast<std::size_t>(mesh.faces.cols()); }
+  std::size_t pointCount() const { return static_cast<std::size_t>(mesh.vertices.cols()); }
+  std::size_t vertexCount(std::size_t) const { return 3; }
+  void getIndexSpacePoint(std::size_t face, std::size_t corner, openvdb::Vec3d& point) const {
+    const int vertex = mesh.faces(static_cast<Eigen::Index>(corner), static_cast<Eigen::Index>(face));
+    const Vector3 x = (mesh.vertices.col(vertex) - origin) / voxel_size;
+    point = openvdb::Vec3d(x.x(), x.y(), x.z());
+  }
+};
+
+void copy_leaves(const openvdb::FloatTree& tree, StoredGrid& grid) {
+  std::vector<std::pair<LeafCoordinates, const openvdb::FloatTree::LeafNodeType*>> leaves;
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    const openvdb::Coord origin = leaf->origin();
+    leaves.push_back({{origin.x() >> 3, origin.y() >> 3, origin.z() >> 3}, leaf.getLeaf()});
+  }
+  std::sort(leaves.begin(), leaves.end());
+  for (const auto& [coordinates, leaf] : leaves) {
+    grid.leaves.push_back(coordinates);
+    LeafMask& mask = grid.active.emplace_back();
+    for (std::size_t word = 0; word < mask.size(); ++word)
+      mask[word] = leaf->getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(word));
+    grid.values.insert(grid.values.end(), leaf->buffer().data(), leaf->buffer().data() + leaf_nodes);
+  }
+}
+
+}  // namespace
+
+StoredGrid source_distance_preview(const TriangleMesh& source) {
+  initialize_vdb();
+  StoredGrid grid;
+  grid.name = source_distance_name;
+  grid.components = 1;
+  grid.grid_class = GridClass::level_set;
+  grid.voxel_size = diagonal(source.vertices) / voxels_along_diagonal;
+  grid.origin = bounding_box(source.vertices).min();
+
+  const IndexSpaceMesh mesh{source, grid.origin, grid.voxel_size};
+  // Distances in voxels: OpenVDB refuses transforms of small voxel sizes.
+  const auto transform = openvdb::math::Transform::createLinearTransform(1);
+  const bool closed = inspect_mesh(source).boundary_edges == 0;
+  const auto voxel = static_cast<float>(grid.voxel_size);
+  grid.background = band_voxels * voxel;
+  if (closed) {
+    copy_leaves(
+        openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *transform, band_voxels, band_voxels)->tree(),
+        grid);
+  } else {
+    // The sign of an open mesh is a guess: the shell around it is not.
+    copy_leaves(
+        openvdb::tools::meshToVolume<openvdb::FloatGrid>(mesh, *transform, band_voxels + 1, band_voxels + 1,
+                                                         openvdb::tools::UNSIGNED_DISTANCE_FIELD)
+            ->tree(),
+        grid);
+    for (float& value : grid.values) value = std::min(value - 1, band_voxels);
+  }
+  for (float& value : grid.values) value *= voxel;
+  grid.metadata["bespoke:meaning"] =
+      std::string(closed ? "signed distance to the source model"
+                         : "unsigned distance to the source model, which is open, minus one voxel: a shell");
+  return grid;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/lattice/pyramid.h"
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/progress.h"
+#include "bespoke/statistics.h"
+
+namespace bespoke {
+
+struct BakeOptions {
+  double tolerance = 0;              ///< wanted largest |baked − exact|, > 0, mesh units
+  std::optional<double> voxel_size;  ///< one uniform level of this size (mesh units) instead of the
+                                     ///< adaptive pyramid
+  std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
+  std::size_t error_points = 1'000'000;  ///< random points of the band at which the error is measured
+  /// The source, in its frame: the error is measured at 27 points of every finest cell that it passes through
+  /// (of every so many, beyond 8·error_points points). Without it, of some cells of every leaf. Must outlive
+  /// the call.
+  const TriangleMesh* surface = nullptr;
+  /// Half precision stores 16 bits a number. Error, certificate and all decisions are about the rounded
+  /// values.
+  ValuePrecision precision = ValuePrecision::single;
+};
+
+struct BakeLevelSummary {
+  double voxel_size = 0;  ///< mesh units
+  std::size_t leaves = 0;
+  std::size_t voxels = 0;
+};
+
+struct BakeSummary {
+  std::vector<BakeLevelSummary> levels;
+  /// |baked − exact|, mesh units, over a random sample: no decision of the bake used its points.
+  Statistics error;
+  std::size_t error_random_points = 0;   ///< of the sample, anywhere in the band
+  std::size_t error_surface_points = 0;  ///< of the sample, in finest cells on the surface
+  std::size_t surface_cells = 0;         ///< finest cells on the surface
+  bool tolerance_met = false;            ///< error.max ≤ tolerance
+  std::size_t refined_folds = 0;   ///< cells that folded though the map does not, mended by finer leaves
+  std::size_t repaired_cells = 0;  ///< cells that folded as the map does, mended by moving nodes
+  double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
+  std::size_t folded_cells = 0;    ///< cells that still fold or are undecided
+  std::size_t evaluated_points = 0;
+  std::size_t peak_bytes = 0;  ///< estimate that was held against max_memory
+  double refine_seconds = 0;   ///< evaluating the map and growing the pyramid
+  double measure_seconds = 0;  ///< evaluating the map at other points
+  double mend_seconds = 0;     ///< certifying, refining and repairing folds
+  double seconds = 0;
+};
+
+/// One line.
+std::string to_string(const BakeSummary& summary);
+
+struct Bake {
+  Pyramid pyramid;
+  BakeSummary summary;
+};
+
+/// Samples u of the map over its support as a nested pyramid that is fine only where the map needs it, or on
+/// one lattice (DESIGN, step 5). Cells of the pyramid that fold are refined, then repaired; where not all
+/// can be, none is, and their number is in the summary. Reproduces affine maps exactly (no leaf at all).
+/// Values are rounded to a 128th of the tolerance or less, so that files compress.
+///
+/// A bake ends. Where u jumps or is steeper than ‖∇u‖ = 2 or so, the tolerance may be missed: voxels stop at
+/// half of it (PyramidBuilder), and the summary says so. Where the whole would take more than max_memory it
+/// throws MemoryLimitError early, from a sample of the map, naming a tolerance or voxel size that would fit.
+/// Throws InvalidInput for values out of range, and for a map that is not finite or exceeds what half
+/// precision holds.
+Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,155 @@
+#include "bespoke/bake/detail/repair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "bespoke/lattice/leaf_table.h"
+#include "bespoke/lattice/pyramid_lookup.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int sweeps_per_round = 2;
+// Of the way to the neighbours' mean: the whole way would keep a checkerboard alive.
+constexpr double step_fraction = 0.7;
+// Moves of one level's nodes before those of the next coarser one take over, finer values riding on them: a
+// fold that is wider than its cells learns too slowly from its surroundings. Coarse moves cost accuracy far
+// around, so they come last and for what is left only.
+constexpr int rounds_per_level = 10;
+constexpr int levels_upwards = 3;
+// A level is given up when so many rounds leave more than this share of its folds.
+constexpr std::size_t patience = 4;
+constexpr double least_left = 0.9;
+
+using Node = std::array<int, 3>;
+
+// Nodes of one level that may move, by their place in the level's values.
+using MovableNodes = std::map<std::pair<int, Node>, std::size_t>;
+
+class Repair {
+ public:
+  explicit Repair(Pyramid& pyramid) : pyramid_(pyramid), index_(pyramid) {
+    for (const PyramidLevel& level : pyramid.levels) tables_.emplace_back(level.leaves);
+  }
+
+  void forget_nodes() { nodes_.clear(); }
+
+  // Of the cell that holds the folded one, `coarser` levels up.
+  void add_corners(const FoldedCell& cell, int coarser) {
+    const int level = std::max(0, cell.level - coarser);
+    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(level)].voxel_size;
+    const Vector3 lattice = (cell.center - pyramid_.origin) / voxel_size;
+    for (int corner = 0; corner < 8; ++corner)
+      add_node(level, {static_cast<int>(std::floor(lattice.x())) + (corner >> 2 & 1),
+                       static_cast<int>(std::floor(lattice.y())) + (corner >> 1 & 1),
+                       static_cast<int>(std::floor(lattice.z())) + (corner & 1)});
+  }
+
+  void grow() {
+    const MovableNodes inner = nodes_;
+    for (const auto& [place, offset] : inner)
+      for (int side = 0; side < 27; ++side)
+        add_node(place.first, {place.second[0] + side / 9 - 1, place.second[1] + side / 3 % 3 - 1,
+                               place.second[2] + side % 3 - 1});
+  }
+
+  // Every movable node goes towards the mean of its six neighbours; one level after the other, because nodes
+  // of several levels may lie at one place and would move it several times.
+  void sweep() {
+    for (int level = 0; level < static_cast<int>(pyramid_.levels.size()); ++level) sweep_level(level);
+  }
+
+  // By level.
+  std::vector<std::vector<Node>> movable() const {
+    std::vector<std::vector<Node>> nodes(pyramid_.levels.size());
+    for (const auto& [place, offset] : nodes_)
+      nodes[static_cast<std::size_t>(place.first)].push_back(place.second);
+    return nodes;
+  }
+
+  double largest_change() const {
+    double largest = 0;
+    for (const auto& [place, change] : moved_) largest = std::max(largest, change.norm());
+    return largest;
+  }
+
+ private:
+  void sweep_level(int level) {
+    constexpr int lowest = std::numeric_limits<int>::min();
+    const auto begin = nodes_.lower_bound({level, {lowest, lowest, lowest}});
+    const auto end = nodes_.lower_bound({level + 1, {lowest, lowest, lowest}});
+    if (begin == end) return;
+    PyramidLevel& stored = pyramid_.levels[static_cast<std::size_t>(level)];
+    Points x(3, 7 * std::distance(begin, end));
+    Eigen::Index column = 0;
+    for (auto at = begin; at != end; ++at) {
+      const Node& place = at->first.second;
+      const Vector3 node(place[0], place[1], place[2]);
+      x.col(column++) = pyramid_.origin + stored.voxel_size * node;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double step : {-1.0, 1.0})
+          x.col(column++) = pyramid_.origin + stored.voxel_size * (node + step * Vector3::Unit(axis));
+    }
+    const Points u = look_up(pyramid_, index_, x);
+    column = 0;
+    for (auto at = begin; at != end; ++at, column += 7) {
+      const Vector3 change = step_fraction * (u.middleCols(column + 1, 6).rowwise().mean() - u.col(column));
+      float* value = &stored.values[at->second];
+      for (int c = 0; c < 3; ++c) {
+        value[c] += static_cast<float>(change[c]);
+        if (pyramid_.precision == ValuePrecision::half) value[c] = rounded_to_half(value[c]);
+      }
+      moved_.try_emplace(at->first, Vector3::Zero()).first->second += change;
+    }
+  }
+
+  void add_node(int level, const Node& node) {
+    const int leaf =
+        tables_[static_cast<std::size_t>(level)].find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
+    if (leaf == no_leaf) return;
+    nodes_[{level, node}] = std::size_t{3} * leaf_nodes * static_cast<std::size_t>(leaf) +
+                            static_cast<std::size_t>(node_offset(node[0] & 7, node[1] & 7, node[2] & 7));
+  }
+
+  Pyramid& pyramid_;
+  PyramidIndex index_;  // leaves stay where they are, so it sees every change of their values
+  std::vector<LeafTable> tables_;
+  MovableNodes nodes_;
+  std::map<std::pair<int, Node>, Vector3> moved_;
+};
+
+}  // namespace
+
+RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const std::vector<FoldedCell>& folds,
+                           const Progress& progress) {
+  RepairSummary summary;
+  summary.cells = summary.folded = folds.size();
+  if (summary.cells == 0 || !(affine.linear.determinant() > 0)) return summary;
+  Repair repair(pyramid);
+  FoldList list(pyramid, affine, folds);
+  for (int coarser = 0; coarser < levels_upwards && summary.folded > 0; ++coarser) {
+    std::vector<std::size_t> left = {summary.folded};
+    for (int round = 0; round < rounds_per_level && summary.folded > 0; ++round) {
+      progress.check();
+      repair.forget_nodes();
+      for (const FoldedCell& cell : list.places()) repair.add_corners(cell, coarser);
+      if (round > rounds_per_level / 2) repair.grow();
+      for (int sweep = 0; sweep < sweeps_per_round; ++sweep) repair.sweep();
+      list.update(repair.movable());
+      summary.folded = list.places().size();
+      left.push_back(summary.folded);
+      if (left.size() > patience && static_cast<double>(summary.folded) >
+                                        least_left * static_cast<double>(left[left.size() - 1 - patience]))
+        break;
+    }
+  }
+  summary.largest_change = repair.largest_change();
+  return summary;
+}
+
+}  // namespace bespoke

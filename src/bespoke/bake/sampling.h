@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bespoke/bake/band.h"
+#include "bespoke/lattice/pyramid.h"
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// u at all nodes of the leaves as PyramidLevel::values has them. Throws InvalidInput when the map answers
+/// with a value that is not finite.
+std::vector<float> sample_leaves(const ElasticMap& map, const Lattice& lattice,
+                                 const std::vector<LeafCoordinates>& leaves, const Progress& progress);
+
+/// A level of the leaves that are not zero everywhere, holding u. Throws as sample_leaves does.
+PyramidLevel sample_level(const ElasticMap& map, const Lattice& lattice,
+                          const std::vector<LeafCoordinates>& leaves, const Progress& progress);
+
+/// Drops the leaves for which `keep(leaf, all values are zero)` is false.
+void keep_leaves(PyramidLevel& level,
+                 const std::function<bool(const LeafCoordinates& leaf, bool zero)>& keep);
+
+/// `count` points of the leaves' cells, as many in one leaf as in another, in the leaves' order; the same for
+/// the same seed. 3×count, mesh units.
+Points random_points(const Lattice& lattice, const std::vector<LeafCoordinates>& leaves, std::size_t count,
+                     std::uint64_t seed);
+
+/// A finest cell: the lower node of the finest level that has a leaf there.
+struct FinestCell {
+  int level = 0;
+  std::array<int, 3> node{};
+
+  auto operator<=>(const FinestCell&) const = default;
+};
+
+/// The finest cells that hold a column of `at` (3×n, mesh units), each once, in lattice order; a column
+/// outside all leaves gives its cell of level 0.
+std::vector<FinestCell> finest_cells_at(const Pyramid& pyramid, const Points& at);
+
+/// The finest cells that the surface passes through, each once, in lattice order: up to some that it only
+/// grazes. `surface` in the source frame, mesh units.
+std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMesh& surface);
+
+/// 27 points in each cell, one in each of its 3³ parts; from every so many cells only, so that there are at
+/// most `count` points. The same for the same seed. Mesh units.
+Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& cells, std::size_t count,
+                       std::uint64_t seed);
+
+/// |u of `baked` − u of `exact`| at each column of x, mesh units.
+std::vector<double> displacement_errors(const ElasticMap& baked, const ElasticMap& exact, const Points& x,
+                                        const Progress& progress);
+
+}  // namespace bespoke

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <memory>
+
+#include "bespoke/lattice/baked_map.h"
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/rigid/rigid_transform.h"
+
+namespace bespoke {
+
+/// E⁻¹ of a baked map, point by point: damped Newton steps through the trilinear cells, and where these stall
+/// a search of all cells whose image may hold the point, which cannot miss it when the map is a bijection
+/// (Certificate::is_bijection). Thread-safe.
+class PointwiseInverse {
+ public:
+  /// `map` must outlive the inverse. Throws InvalidInput when the affine part is singular.
+  explicit PointwiseInverse(const BakedMap& map);
+  ~PointwiseInverse();
+
+  /// x with E(x) = y for the columns of y (3×n, source frame, mesh units), to 1e-6 of the finest voxel.
+  /// Throws SolverError, naming the first point and its residual, when a point has no preimage to be found;
+  /// InvalidInput for points that are not finite.
+  Points operator()(const Points& y) const;
+
+ private:
+  struct Cells;
+  const BakedMap& map_;
+  Matrix3 inverse_linear_;
+  double tolerance_;  // of |E(x) − y|, mesh units
+  std::unique_ptr<const Cells> cells_;
+};
+
+/// The way back of Ψ = Γ∘E as an elastic map of its own, to be baked: Γ∘E⁻¹∘Γ⁻¹ in the target frame, so that
+/// Ψ⁻¹ = Γ⁻¹∘(Γ∘E⁻¹∘Γ⁻¹). Exactly affine outside the image of E's support.
+class InverseMap : public ElasticMap {
+ public:
+  /// `map` must outlive the inverse.
+  InverseMap(const BakedMap& map, const RigidTransform& target_from_source);
+
+  AffineMap affine() const override;
+  Points displacement(const Points& x) const override;
+  Points displacement_gradient(const Points& x) const override;
+  Support support() const override;
+
+ private:
+  const BakedMap& map_;
+  PointwiseInverse inverse_;
+  RigidTransform target_from_source_;
+};
+
+/// a→c as b→c after a→b, as an elastic map of its own, to be baked: Γ_ab⁻¹∘E_bc∘Γ_ab∘E_ab in the frame of a,
+/// so that Ψ_ac = (Γ_bc Γ_ab)∘(this). Exactly affine outside both supports.
+class ComposedMap : public ElasticMap {
+ public:
+  /// Both maps must outlive the composition.
+  ComposedMap(const ElasticMap& b_from_a, const RigidTransform& rigid_b_from_a, const ElasticMap& c_from_b);
+
+  AffineMap affine() const override;
+  Points displacement(const Points& x) const override;
+  Points displacement_gradient(const Points& x) const override;
+  Support support() const override;
+
+ private:
+  const ElasticMap& b_from_a_;
+  RigidTransform rigid_b_from_a_;
+  const ElasticMap& c_from_b_;
+};
+
+/// x ↦ outer(inner(x)).
+AffineMap compose(const AffineMap& outer, const AffineMap& inner);
+
+/// Throws InvalidInput for a singular map.
+AffineMap inverse(const AffineMap& map);
+
+AffineMap as_affine(const RigidTransform& transform);
+
+}  // namespace bespoke

@@ -1,0 +1,75 @@
+#include "bespoke/elastic/multiscale.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "bespoke/rbf/layer_stack.h"
+
+namespace bespoke {
+
+struct MultiscaleMap::Evaluators {
+  LayerStack stack;
+};
+
+namespace {
+
+LayerStack stack_of(const std::vector<RbfLayer>& layers, bool composed) {
+  std::vector<LayerEvaluator> evaluators;
+  evaluators.reserve(layers.size());
+  for (const RbfLayer& layer : layers)
+    evaluators.emplace_back(layer.centers, layer.coefficients, layer.lambda, Wendland::c2);
+  return {std::move(evaluators), composed ? Stacking::composed : Stacking::summed};
+}
+
+}  // namespace
+
+MultiscaleMap::MultiscaleMap(AffineMap affine, std::vector<RbfLayer> layers, bool composed)
+    : affine_(std::move(affine)),
+      layers_(std::move(layers)),
+      composed_(composed),
+      evaluators_(new Evaluators{stack_of(layers_, composed)}) {}
+
+MultiscaleMap::~MultiscaleMap() = default;
+
+Points MultiscaleMap::displacement(const Points& x) const {
+  return evaluators_->stack.displacement(composed_ ? affine_ * x : x);
+}
+
+Points MultiscaleMap::displacement_gradient(const Points& x) const {
+  Points gradient = evaluators_->stack.gradient(composed_ ? affine_ * x : x);
+  if (composed_)
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      gradient.middleCols<3>(3 * i) = (gradient.middleCols<3>(3 * i) * affine_.linear).eval();
+  return gradient;
+}
+
+Support MultiscaleMap::support() const {
+  // The first layer that moves a point finds it where the affine part left it, so the balls need no margin
+  // for the motion by earlier layers.
+  Support support;
+  if (composed_) support.frame = affine_;
+  for (const RbfLayer& layer : layers_) support.clouds.push_back({layer.centers, layer.lambda});
+  return support;
+}
+
+std::string to_string(const MultiscaleSummary& summary) {
+  std::size_t centers = 0;
+  for (const std::size_t count : summary.centers) centers += count;
+  double steepest = 0;
+  for (const double bound : summary.gradient_bounds) steepest = std::max(steepest, bound);
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%zu layers, %zu centres, %zu of %zu vertices within tolerance, residual %s",
+                summary.lambdas.size(), centers, summary.within_tolerance, summary.residuals.count,
+                to_string(summary.residuals).c_str());
+  std::string line = text;
+  if (!summary.gradient_bounds.empty()) {
+    std::snprintf(text, sizeof text, ", every layer's gradient below %.3f", steepest);
+    line += text;
+  }
+  std::snprintf(text, sizeof text, ", %.2f s", summary.seconds);
+  return line + text;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+#include "bespoke/rbf/rbf_layer.h"
+#include "bespoke/statistics.h"
+
+namespace bespoke {
+
+struct MultiscaleOptions {
+  double lambda = 0;     ///< coarsest support radius: the effective distance, > 0, mesh units
+  double tolerance = 0;  ///< refine where |E(vᵢ) − v'ᵢ| exceeds it, > 0, mesh units
+  bool composed = true;  ///< diffeomorphic: layers are composed and each is bounded by ‖∇u_k‖ < 1 everywhere;
+                         ///< otherwise summed
+  int max_levels = 12;
+};
+
+struct MultiscaleSummary {
+  std::vector<double> lambdas;          ///< mesh units, one per layer
+  std::vector<std::size_t> centers;     ///< one per layer
+  std::vector<double> gradient_bounds;  ///< proved bound of ‖∇u_k‖, one per layer (composed only)
+  Statistics residuals;                 ///< |E(vᵢ) − v'ᵢ|, mesh units
+  std::size_t within_tolerance = 0;     ///< vertices
+  double seconds = 0;
+};
+
+/// One line.
+std::string to_string(const MultiscaleSummary& summary);
+
+/// Residual correction over halved scales (Floater–Iske, Wendland), summed: E(x) = affine(x) + Σ u_k(x), or
+/// composed: E = (id + u_n)∘…∘(id + u_1)∘affine, which cannot fold. Layers use Wendland's C2 function.
+class MultiscaleMap : public ElasticMap {
+ public:
+  MultiscaleMap(AffineMap affine, std::vector<RbfLayer> layers, bool composed);
+  ~MultiscaleMap() override;
+
+  AffineMap affine() const override { return affine_; }
+  Points displacement(const Points& x) const override;
+  Points displacement_gradient(const Points& x) const override;
+  Support support() const override;
+
+  const std::vector<RbfLayer>& layers() const { return layers_; }
+  bool composed() const { return composed_; }
+
+ private:
+  struct Evaluators;
+  AffineMap affine_;
+  std::vector<RbfLayer> layers_;
+  bool composed_;
+  std::unique_ptr<const Evaluators> evaluators_;
+};
+
+struct MultiscaleFit {
+  std::shared_ptr<const MultiscaleMap> map;
+  MultiscaleSummary summary;
+};
+
+/// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map of the pairs,
+/// the identity along directions in which the sources have no extent. Centres of a layer are thinned to
+/// λ_k/4; λ_k is halved while a residual exceeds the tolerance. A composed scale takes several layers where
+/// residuals are clipped to 0.3 λ_k or a layer is damped to keep ‖∇u_k‖ ≤ 0.9. What cannot be met (the data
+/// folds there) stays in the residuals. Throws InvalidInput (sizes, non-finite values, affine part with det ≤
+/// 0, values out of range), SolverError.
+MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
+                             const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,219 @@
+#include <Eigen/SVD>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "bespoke/elastic/multiscale.h"
+#include "bespoke/error.h"
+#include "bespoke/rbf/gradient_bound.h"
+#include "bespoke/rbf/layer_solver.h"
+#include "bespoke/rbf/layer_stack.h"
+#include "bespoke/rbf/point_grid.h"
+
+namespace bespoke {
+namespace {
+
+// Of a composed layer: residuals are clipped to this fraction of λ_k, …
+constexpr double largest_step = 0.3;
+// … its gradient is held below this bound, …
+constexpr double largest_gradient = 0.9;
+// … and a scale takes so many layers at most while clipping or damping keeps one from finishing.
+constexpr int most_layers_per_scale = 6;
+// λ_k in tolerances below which a layer could repair next to nothing.
+constexpr double least_radius = 4;
+
+void require_usable(const Points& sources, const Points& targets, const MultiscaleOptions& options) {
+  if (sources.cols() != targets.cols())
+    throw InvalidInput("multiscale: " + std::to_string(sources.cols()) + " sources and " +
+                       std::to_string(targets.cols()) + " targets; the numbers must be equal");
+  if (sources.cols() == 0) throw InvalidInput("multiscale: there are no sources");
+  if (!sources.allFinite() || !targets.allFinite())
+    throw InvalidInput("multiscale: a source or target has a coordinate that is not finite");
+  if (!(options.lambda > 0) || !std::isfinite(options.lambda))
+    throw InvalidInput("multiscale: effective distance " + std::to_string(options.lambda) +
+                       " must be positive and finite");
+  if (!(options.tolerance > 0))
+    throw InvalidInput("multiscale: tolerance " + std::to_string(options.tolerance) + " must be positive");
+  if (!(options.max_levels > 0))
+    throw InvalidInput("multiscale: " + std::to_string(options.max_levels) +
+                       " levels; there must be one at least");
+}
+
+/// The least-squares affine map of the pairs; the identity along directions in which the sources have no
+/// extent.
+AffineMap least_squares_affine(const Points& sources, const Points& targets) {
+  const Vector3 source_centre = sources.rowwise().mean();
+  const Vector3 target_centre = targets.rowwise().mean();
+  const Points centred = sources.colwise() - source_centre;
+  const Points change = (targets.colwise() - target_centre) - centred;
+  // Squared widths: relative to the largest, what lies below is made of rounding errors.
+  constexpr double smallest_ratio = 1e-12;
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(centred * centred.transpose()),
+                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(smallest_ratio);
+  AffineMap map;
+  map.linear = Matrix3::Identity();
+  if (svd.singularValues()[0] > 0) {
+    const Eigen::MatrixXd right_side = centred * change.transpose();
+    map.linear += Matrix3(svd.solve(right_side)).transpose();
+  }
+  map.offset = target_centre - map.linear * source_centre;
+  if (!(map.linear.determinant() > 0))
+    throw InvalidInput("multiscale: the affine part of the correspondences has determinant " +
+                       std::to_string(map.linear.determinant()) +
+                       ", so one model is a mirror image of the other or is flattened; mirror it back first");
+  return map;
+}
+
+/// Damps the layer's coefficients around places where its gradient may exceed the bound, then scales what is
+/// left. Answers the bound that holds now, and whether the layer met it untouched.
+struct LimitedLayer {
+  double bound = 0;
+  bool untouched = true;
+};
+
+LimitedLayer limit_gradient(RbfLayer& layer) {
+  constexpr int dampings = 4;
+  // Damping varies from place to place, which adds to the gradient.
+  constexpr double aim = 0.85;
+  const PointGrid grid(layer.centers, 2 * layer.lambda);
+  GradientBound bound;
+  std::vector<char> changed;
+  for (int pass = 0; pass < dampings; ++pass) {
+    bound.update(layer, largest_gradient, GradientBound::Closeness::rough, changed);
+    if (bound.largest() <= largest_gradient) return {bound.largest(), pass == 0};
+    Eigen::RowVectorXd factors = Eigen::RowVectorXd::Ones(layer.centers.cols());
+    for (const auto& [center, radius, estimate] : bound.steep_places()) {
+      const double factor = aim * largest_gradient / std::max(estimate, largest_gradient);
+      const double reach = layer.lambda + radius;
+      grid.for_each_within(center, reach + layer.lambda, [&](int j, double squared) {
+        const double ramp = std::clamp((std::sqrt(squared) - reach) / layer.lambda, 0.0, 1.0);
+        factors[j] = std::min(factors[j], factor + (1 - factor) * ramp);
+      });
+    }
+    layer.coefficients.array().rowwise() *= factors.array();
+    changed.resize(std::size_t(factors.size()));
+    for (std::size_t j = 0; j < changed.size(); ++j) changed[j] = factors[Eigen::Index(j)] < 1;
+  }
+  bound.update(layer, largest_gradient, GradientBound::Closeness::tight, changed);
+  if (bound.largest() <= largest_gradient) return {bound.largest(), false};
+  layer.coefficients *= largest_gradient / bound.largest();
+  return {largest_gradient, false};
+}
+
+class Fitter {
+ public:
+  Fitter(const Points& sources, const Points& targets, const MultiscaleOptions& options,
+         const Progress& progress)
+      : sources_(sources),
+        targets_(targets),
+        options_(options),
+        progress_(progress),
+        affine_(least_squares_affine(sources, targets)),
+        images_(affine_ * sources) {}
+
+  MultiscaleFit run() {
+    double lambda = options_.lambda;
+    for (int level = 0; level < options_.max_levels && worst() > options_.tolerance &&
+                        lambda > least_radius * options_.tolerance;
+         ++level, lambda /= 2) {
+      progress_.step("elastic", std::size_t(level), std::size_t(options_.max_levels));
+      if (options_.composed)
+        compose_scale(lambda);
+      else
+        add(solve_layer(centers_at(lambda), residuals_at_centers_, lambda, options_.tolerance / 10));
+    }
+    finish();
+    return {std::make_shared<MultiscaleMap>(affine_, std::move(layers_), options_.composed),
+            std::move(summary_)};
+  }
+
+ private:
+  double worst() const { return (targets_ - images_).colwise().norm().maxCoeff(); }
+
+  void compose_scale(double lambda) {
+    for (int count = 0; count < most_layers_per_scale; ++count) {
+      progress_.check();
+      const double before = (targets_ - images_).squaredNorm();
+      const Points centers = centers_at(lambda);
+      bool finished = true;
+      for (auto value : residuals_at_centers_.colwise()) {
+        const double length = value.norm();
+        if (length <= largest_step * lambda) continue;
+        value *= largest_step * lambda / length;
+        finished = false;
+      }
+      RbfLayer layer = solve_layer(centers, residuals_at_centers_, lambda, options_.tolerance / 10);
+      const LimitedLayer limited = limit_gradient(layer);
+      if (!limited.untouched) finished = false;
+      summary_.gradient_bounds.push_back(limited.bound);
+      add(std::move(layer));
+      constexpr double least_progress = 0.9;
+      if (finished || worst() <= options_.tolerance) return;
+      if ((targets_ - images_).squaredNorm() > least_progress * before) return;
+    }
+  }
+
+  /// Thinned places where a residual exceeds the tolerance, with those around them, which must not be dragged
+  /// along; fills residuals_at_centers_.
+  Points centers_at(double lambda) {
+    const Points& places = options_.composed ? images_ : sources_;
+    const double spacing = lambda / 4;
+    const Points residuals = targets_ - images_;
+    std::vector<int> beyond;
+    for (int i = 0; i < residuals.cols(); ++i)
+      if (residuals.col(i).norm() > options_.tolerance) beyond.push_back(i);
+    const Points wanted = places(Eigen::all, beyond);
+    const Points wanted_thinned = wanted(Eigen::all, thin_points(wanted, spacing));
+    const PointGrid wanted_grid(wanted_thinned, lambda);
+
+    std::vector<int> kept;
+    for (const int i : thin_points(places, spacing)) {
+      bool near = false;
+      wanted_grid.for_each_within(places.col(i), lambda, [&](int, double) { near = true; });
+      if (near) kept.push_back(i);
+    }
+    residuals_at_centers_ = residuals(Eigen::all, kept);
+    return places(Eigen::all, kept);
+  }
+
+  void add(RbfLayer layer) {
+    const LayerStack stack({LayerEvaluator(layer.centers, layer.coefficients, layer.lambda, Wendland::c2)},
+                           Stacking::summed);
+    images_ += stack.displacement(options_.composed ? images_ : sources_);
+    summary_.lambdas.push_back(layer.lambda);
+    summary_.centers.push_back(std::size_t(layer.centers.cols()));
+    layers_.push_back(std::move(layer));
+  }
+
+  void finish() {
+    const Eigen::RowVectorXd residuals = (targets_ - images_).colwise().norm();
+    summary_.residuals = summarize({residuals.begin(), residuals.end()});
+    summary_.within_tolerance = std::size_t((residuals.array() <= options_.tolerance).count());
+  }
+
+  const Points& sources_;
+  const Points& targets_;
+  const MultiscaleOptions& options_;
+  const Progress& progress_;
+  AffineMap affine_;
+  Points images_;  // E(sources) so far
+  Points residuals_at_centers_;
+  std::vector<RbfLayer> layers_;
+  MultiscaleSummary summary_;
+};
+
+}  // namespace
+
+MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
+                             const Progress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  require_usable(sources, targets, options);
+  MultiscaleFit fit = Fitter(sources, targets, options, progress).run();
+  fit.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return fit;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,47 @@
+#include "bespoke/lattice/baked_map.h"
+
+#include <cmath>
+#include <utility>
+
+#include "bespoke/lattice/pyramid_lookup.h"
+
+namespace bespoke {
+
+struct BakedMap::Index {
+  explicit Index(const Pyramid& pyramid) : tree(pyramid) {}
+  PyramidIndex tree;
+};
+
+BakedMap::BakedMap(AffineMap affine, Pyramid pyramid)
+    : affine_(std::move(affine)), pyramid_(std::move(pyramid)) {
+  require_valid(pyramid_);
+  index_ = std::make_unique<const Index>(pyramid_);
+}
+
+BakedMap::~BakedMap() = default;
+
+Points BakedMap::displacement(const Points& x) const { return look_up(pyramid_, index_->tree, x); }
+
+Points BakedMap::displacement_gradient(const Points& x) const {
+  return look_up_gradient(pyramid_, index_->tree, x);
+}
+
+Support BakedMap::support() const {
+  Support support;
+  // Deeper leaves, with the cell around them, lie inside those of level 0 with theirs; they say where detail
+  // is.
+  for (const PyramidLevel& level : pyramid_.levels) {
+    BallCloud cloud;
+    cloud.centers.resize(3, static_cast<Eigen::Index>(level.leaves.size()));
+    for (std::size_t i = 0; i < level.leaves.size(); ++i) {
+      const Vector3 leaf(level.leaves[i][0], level.leaves[i][1], level.leaves[i][2]);
+      cloud.centers.col(static_cast<Eigen::Index>(i)) =
+          pyramid_.origin + level.voxel_size * (leaf_edge * leaf + Vector3::Constant((leaf_edge - 1) / 2.0));
+    }
+    cloud.radius = std::sqrt(3.0) * (leaf_edge + 1) / 2.0 * level.voxel_size;
+    support.clouds.push_back(std::move(cloud));
+  }
+  return support;
+}
+
+}  // namespace bespoke

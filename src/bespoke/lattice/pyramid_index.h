@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bespoke/lattice/leaf_table.h"
+#include "bespoke/lattice/pyramid.h"
+
+namespace bespoke {
+
+/// The 8³ cells whose lower nodes are the nodes of one leaf position; the leaf itself may be absent when a
+/// neighbour on its upper side exists, because cells that straddle the two are not zero.
+struct PyramidEntry {
+  LeafCoordinates leaf{};
+  /// Values of the leaves at `leaf` + (o >> 2 & 1, o >> 1 & 1, o & 1), o = 0 … 7; zeros where there is none.
+  std::array<const float*, 8> blocks{};
+  /// Entries of the next level that cover the octants, or no_leaf.
+  std::array<std::int32_t, 8> children{};
+};
+
+/// The values that stand for a leaf that is not there: zeros.
+const float* absent_leaf();
+
+/// Neighbours and children of the leaves of a pyramid, found once. Refers to the pyramid's values: the
+/// pyramid must live longer and stay as it is. Every entry but those of level 0 is the child of one entry.
+struct PyramidIndex {
+  explicit PyramidIndex(const Pyramid& pyramid);
+
+  std::vector<std::vector<PyramidEntry>> levels;  ///< entries in lexicographic order
+  LeafTable roots;                                ///< finds the entries of level 0
+};
+
+/// Offset of node (i, j, k) of a leaf within its values.
+inline constexpr int node_offset(int i, int j, int k) { return 3 * ((i * leaf_edge + j) * leaf_edge + k); }
+
+}  // namespace bespoke

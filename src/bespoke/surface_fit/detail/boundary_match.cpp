@@ -1,0 +1,109 @@
+#include "bespoke/surface_fit/detail/boundary_match.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double max_stretch = 0.5;
+constexpr double must_agree = 0.9;  // of a boundary's vertices
+constexpr std::size_t grain = 32;
+
+}  // namespace
+
+BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors,
+                                 const TargetSurface& target, BoundaryRule rule)
+    : target_(target), rule_(rule) {
+  if (target.boundary_edges().cols() == 0 || rule == BoundaryRule::free) return;
+  if (anchors.cols() == 0 && rule == BoundaryRule::automatic) return;
+  const Eigen::Matrix2Xi& edges = source_rest.boundary_edges();
+  const Points& rest = source_rest.mesh().vertices;
+  std::map<int, double> length;
+  std::map<int, int> parent;
+  const auto root = [&](int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const auto& edge : edges.colwise())
+    for (int k = 0; k < 2; ++k) parent.try_emplace(edge[k], edge[k]);
+  for (const auto& edge : edges.colwise()) {
+    const double half = (rest.col(edge[0]) - rest.col(edge[1])).norm() / 2;
+    for (int k = 0; k < 2; ++k) length[edge[k]] += half;
+    const int a = root(edge[0]), b = root(edge[1]);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::map<int, int> number_of_root;
+  for (const auto& [vertex, own_length] : length) {
+    const auto numbered = number_of_root.try_emplace(root(vertex), static_cast<int>(number_of_root.size()));
+    vertices_.push_back(vertex);
+    boundary_.push_back(numbered.first->second);
+    length_.push_back(own_length);
+    if (rule == BoundaryRule::automatic)
+      anchor_distance_.push_back(
+          std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
+  }
+  boundaries_ = static_cast<int>(number_of_root.size());
+  accepted_.assign(static_cast<std::size_t>(boundaries_), 0);
+}
+
+BoundaryMatch BoundaryMatcher::closest(int vertex, const Points& vertices) const {
+  const Points& corners = target_.mesh().vertices;
+  const Vector3 x = vertices.col(vertex);
+  BoundaryMatch best;
+  best.vertex = vertex;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& edge : target_.boundary_edges().colwise()) {
+    const Vector3 start = corners.col(edge[0]), along = corners.col(edge[1]) - start;
+    const double squared_length = along.squaredNorm();
+    if (!(squared_length > 0)) continue;
+    const Vector3 point = start + std::clamp((x - start).dot(along) / squared_length, 0.0, 1.0) * along;
+    const double squared = (point - x).squaredNorm();
+    if (!(squared < least)) continue;
+    least = squared;
+    best.point = point;
+    best.tangent = along / std::sqrt(squared_length);
+  }
+  return best;
+}
+
+void BoundaryMatcher::decide(const Points& vertices) {
+  if (rule_ == BoundaryRule::matched) {
+    accepted_.assign(accepted_.size(), 1);
+    matched_boundaries_ = boundaries_;
+    return;
+  }
+  std::vector<int> agree(accepted_.size(), 0), total(accepted_.size(), 0);
+  for (std::size_t k = 0; k < vertices_.size(); ++k) {
+    const BoundaryMatch found = closest(vertices_[k], vertices);
+    const double offset = (found.point - vertices.col(vertices_[k])).norm();
+    ++total[boundary_[k]];
+    if (offset <= max_stretch * anchor_distance_[k]) ++agree[boundary_[k]];
+  }
+  matched_boundaries_ = 0;
+  for (std::size_t b = 0; b < accepted_.size(); ++b) {
+    accepted_[b] = agree[b] >= must_agree * total[b] ? 1 : 0;
+    matched_boundaries_ += accepted_[b];
+  }
+}
+
+std::vector<BoundaryMatch> BoundaryMatcher::match(const Points& vertices) const {
+  std::vector<std::size_t> active;
+  for (std::size_t k = 0; k < vertices_.size(); ++k)
+    if (accepted_[boundary_[k]]) active.push_back(k);
+  std::vector<BoundaryMatch> matches(active.size());
+  parallel_for(active.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      matches[i] = closest(vertices_[active[i]], vertices);
+      matches[i].length = length_[active[i]];
+    }
+  });
+  return matches;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,291 @@
+#include "bespoke/surface_fit/detail/deformation_nodes.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <queue>
+#include <utility>
+
+#include "bespoke/parallel.h"
+#include "bespoke/rbf/point_grid.h"
+#include "bespoke/surface_fit/detail/target_surface.h"
+
+namespace bespoke {
+namespace {
+
+using Near = std::pair<double, int>;  // distance, node: sorts by distance, then by index
+
+constexpr double follow_reach = 2.6;     // spacings: a vertex follows nodes up to there
+constexpr double neighbour_reach = 2.3;  // spacings
+constexpr int min_neighbours = 8;        // fewer do not determine an affine map robustly
+constexpr std::size_t grain = 512;
+
+/// Shortest ways along the edges, from one vertex up to a limit; the arrays are reused.
+class EdgeDistances {
+ public:
+  explicit EdgeDistances(const TriangleMesh& mesh)
+      : mesh_(mesh),
+        adjacency_(vertex_adjacency(mesh)),
+        distance_(static_cast<std::size_t>(mesh.vertices.cols()), infinity) {}
+
+  template <class Visit>
+  void visit_within(int start, double limit, const Visit& visit) {
+    for (const int vertex : touched_) distance_[vertex] = infinity;
+    touched_.assign(1, start);
+    distance_[start] = 0;
+    queue_.emplace(0.0, start);
+    while (!queue_.empty()) {
+      const auto [distance, vertex] = queue_.top();
+      queue_.pop();
+      if (distance > distance_[vertex]) continue;
+      visit(vertex, distance);
+      for (int k = adjacency_.start[vertex]; k < adjacency_.start[vertex + 1]; ++k) {
+        const int next = adjacency_.neighbours[k];
+        const double way = distance + (mesh_.vertices.col(vertex) - mesh_.vertices.col(next)).norm();
+        if (!(way < limit && way < distance_[next])) continue;
+        if (distance_[next] == infinity) touched_.push_back(next);
+        distance_[next] = way;
+        queue_.emplace(way, next);
+      }
+    }
+  }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  const TriangleMesh& mesh_;
+  VertexAdjacency adjacency_;
+  std::vector<double> distance_;
+  std::vector<int> touched_;
+  std::priority_queue<Near, std::vector<Near>, std::greater<>> queue_;
+};
+
+int root_of(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/// 1 for the vertices of components large enough to carry nodes of their own.
+std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing) {
+  std::vector<int> parent(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const auto& face : mesh.faces.colwise())
+    for (int k = 0; k < 2; ++k) {
+      const int a = root_of(parent, face[k]), b = root_of(parent, face[k + 1]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  const Eigen::VectorXd areas = vertex_areas(mesh);
+  std::vector<double> component_area(parent.size(), 0);
+  for (std::size_t i = 0; i < parent.size(); ++i)
+    component_area[root_of(parent, static_cast<int>(i))] += areas[static_cast<Eigen::Index>(i)];
+  std::vector<char> carries(parent.size());
+  double carried = 0;
+  for (std::size_t i = 0; i < parent.size(); ++i) {
+    carries[i] = component_area[root_of(parent, static_cast<int>(i))] >= spacing * spacing ? 1 : 0;
+    if (carries[i]) carried += areas[static_cast<Eigen::Index>(i)];
+  }
+  if (carried < 0.5 * areas.sum()) carries.assign(carries.size(), 0);
+  return carries;
+}
+
+/// A fixed pseudo-random order, so that the thinning does not follow the rows of a regular mesh.
+std::vector<int> scattered_order(std::size_t count) {
+  std::vector<std::pair<std::uint64_t, int>> keyed(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t x = (i + 1) * 0x9E3779B97F4A7C15u;
+    x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9u;
+    x = (x ^ x >> 27) * 0x94D049BB133111EBu;
+    keyed[i] = {x ^ x >> 31, static_cast<int>(i)};
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<int> order;
+  for (const auto& entry : keyed) order.push_back(entry.second);
+  return order;
+}
+
+struct Sampling {
+  std::vector<int> node_vertices;
+  std::vector<std::vector<Near>> near;  // per vertex, sorted
+};
+
+/// Vertices without a node near them follow the nearest ones in space.
+void follow_in_space(const Points& vertices, double spacing, Sampling& sampling) {
+  Points nodes(3, static_cast<Eigen::Index>(sampling.node_vertices.size()));
+  for (Eigen::Index k = 0; k < nodes.cols(); ++k) nodes.col(k) = vertices.col(sampling.node_vertices[k]);
+  const PointGrid grid(nodes, follow_reach * spacing);
+  parallel_for(sampling.near.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::vector<Near>& near = sampling.near[i];
+      const Vector3 x = vertices.col(static_cast<Eigen::Index>(i));
+      for (double reach = follow_reach * spacing; near.empty(); reach *= 2) {
+        grid.for_each_within(x, reach,
+                             [&](int node, double squared) { near.emplace_back(std::sqrt(squared), node); });
+        std::sort(near.begin(), near.end());
+      }
+    }
+  });
+}
+
+Sampling sample(const TriangleMesh& mesh, double spacing) {
+  Sampling sampling;
+  const std::size_t count = static_cast<std::size_t>(mesh.vertices.cols());
+  sampling.near.resize(count);
+  const std::vector<char> carries = carries_nodes(mesh, spacing);
+  if (std::find(carries.begin(), carries.end(), 1) == carries.end()) {
+    sampling.node_vertices = thin_points(mesh.vertices, spacing);
+  } else {
+    EdgeDistances distances(mesh);
+    std::vector<char> covered(count, 0);
+    for (const int start : scattered_order(count)) {
+      if (!carries[start] || covered[start]) continue;
+      const int node = static_cast<int>(sampling.node_vertices.size());
+      sampling.node_vertices.push_back(start);
+      distances.visit_within(start, follow_reach * spacing, [&](int vertex, double distance) {
+        if (distance < spacing) covered[vertex] = 1;
+        sampling.near[vertex].emplace_back(distance, node);
+      });
+    }
+    for (auto& near : sampling.near) std::sort(near.begin(), near.end());
+  }
+  follow_in_space(mesh.vertices, spacing, sampling);
+  return sampling;
+}
+
+void link(std::vector<std::vector<int>>& neighbours, int a, int b) {
+  if (std::find(neighbours[a].begin(), neighbours[a].end(), b) != neighbours[a].end()) return;
+  neighbours[a].push_back(b);
+  neighbours[b].push_back(a);
+}
+
+/// The nearest nodes in space, `wanted` of those that `accepts`.
+template <class Accepts>
+void link_nearest(DeformationNodes& nodes, int node, int wanted, const Accepts& accepts) {
+  std::vector<Near> others;
+  for (int other = 0; other < nodes.size(); ++other)
+    if (other != node && accepts(other))
+      others.emplace_back((nodes.rest.col(other) - nodes.rest.col(node)).squaredNorm(), other);
+  std::sort(others.begin(), others.end());
+  for (int k = 0; k < std::min<int>(wanted, static_cast<int>(others.size())); ++k)
+    link(nodes.neighbours, node, others[k].second);
+}
+
+/// Nodes with too few neighbours, and components that nothing ties to the rest.
+void complete_links(DeformationNodes& nodes) {
+  for (int node = 0; node < nodes.size(); ++node)
+    if (static_cast<int>(nodes.neighbours[node].size()) < min_neighbours)
+      link_nearest(nodes, node, min_neighbours, [](int) { return true; });
+  std::vector<int> parent(static_cast<std::size_t>(nodes.size()));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto join = [&](int a, int b) {
+    const int ra = root_of(parent, a), rb = root_of(parent, b);
+    parent[std::max(ra, rb)] = std::min(ra, rb);
+  };
+  for (int node = 0; node < nodes.size(); ++node)
+    for (const int other : nodes.neighbours[node]) join(node, other);
+  for (int node = 1; node < nodes.size(); ++node) {
+    if (root_of(parent, node) != node) continue;  // the first node of a component
+    link_nearest(nodes, node, min_neighbours / 2, [&](int other) { return root_of(parent, other) != node; });
+    join(node, nodes.neighbours[node].back());
+  }
+  for (auto& list : nodes.neighbours) std::sort(list.begin(), list.end());
+}
+
+/// Shepard weights, corrected so that linear functions along the surface are reproduced.
+void weigh(const Vector3& x, const std::vector<Near>& near, int used, DeformationNodes& nodes,
+           Eigen::Index vertex) {
+  constexpr double flatness = 0.02;  // of the spread: across the surface the nodes say nothing about slopes
+  // Nodes fade out before they are dropped: the farthest of the full number, else those at the reach.
+  const double farthest = 1.05 * near[used - 1].first;
+  const double reach =
+      used < DeformationNodes::per_vertex ? std::max(farthest, follow_reach * nodes.spacing) : farthest;
+  Eigen::VectorXd share(used);
+  Vector3 mean = Vector3::Zero();
+  for (int k = 0; k < used; ++k) {
+    const double t = std::max(0.0, 1 - near[k].first / reach);
+    share[k] = t * t * t + 1e-9;
+  }
+  share /= share.sum();
+  for (int k = 0; k < used; ++k) mean += share[k] * nodes.rest.col(near[k].second);
+  Matrix3 spread = Matrix3::Zero();
+  for (int k = 0; k < used; ++k) {
+    const Vector3 arm = nodes.rest.col(near[k].second) - mean;
+    spread += share[k] * arm * arm.transpose();
+  }
+  spread.diagonal().array() += flatness * spread.trace() + 1e-3 * nodes.spacing * nodes.spacing;
+  const Vector3 slope = spread.ldlt().solve(x - mean);
+  for (int k = 0; k < used; ++k) {
+    nodes.vertex_nodes(k, vertex) = near[k].second;
+    nodes.vertex_weights(k, vertex) = share[k] * (1 + slope.dot(nodes.rest.col(near[k].second) - mean));
+  }
+}
+
+}  // namespace
+
+Vector3 DeformationNodes::displacement(const Points& node_displacements, Eigen::Index vertex) const {
+  Vector3 sum = Vector3::Zero();
+  for (int k = 0; k < per_vertex; ++k)
+    sum += vertex_weights(k, vertex) * node_displacements.col(vertex_nodes(k, vertex));
+  return sum;
+}
+
+DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing) {
+  const Sampling sampling = sample(mesh, spacing);
+  DeformationNodes nodes;
+  nodes.spacing = spacing;
+  const auto count = static_cast<Eigen::Index>(sampling.node_vertices.size());
+  nodes.rest.resize(3, count);
+  nodes.neighbours.resize(static_cast<std::size_t>(count));
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const int vertex = sampling.node_vertices[static_cast<std::size_t>(k)];
+    nodes.rest.col(k) = mesh.vertices.col(vertex);
+    for (const auto& [distance, other] : sampling.near[static_cast<std::size_t>(vertex)])
+      if (other != k && distance < neighbour_reach * spacing)
+        link(nodes.neighbours, static_cast<int>(k), other);
+  }
+  complete_links(nodes);
+
+  const Eigen::VectorXd areas = vertex_areas(mesh);
+  nodes.areas = Eigen::VectorXd::Zero(count);
+  nodes.vertex_nodes = Eigen::MatrixXi::Zero(DeformationNodes::per_vertex, mesh.vertices.cols());
+  nodes.vertex_weights = Eigen::MatrixXd::Zero(DeformationNodes::per_vertex, mesh.vertices.cols());
+  for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
+    const std::vector<Near>& near = sampling.near[static_cast<std::size_t>(i)];
+    nodes.areas[near.front().second] += areas[i];
+    weigh(mesh.vertices.col(i), near,
+          std::min<int>(DeformationNodes::per_vertex, static_cast<int>(near.size())), nodes, i);
+  }
+  nodes.areas /= nodes.areas.sum();
+  return nodes;
+}
+
+std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places) {
+  constexpr double slope_penalty = 1e-3;  // decides slopes across a flat neighbourhood, which no node shows
+  std::vector<BendingStencil> stencils(static_cast<std::size_t>(nodes.size()));
+  const auto fill = [&](int node) {
+    BendingStencil& stencil = stencils[node];
+    stencil.ids = nodes.neighbours[node];
+    stencil.ids.push_back(node);
+    const auto count = static_cast<Eigen::Index>(stencil.ids.size());
+    Eigen::MatrixXd basis(count, 4);
+    Eigen::VectorXd weight(count);
+    for (Eigen::Index a = 0; a < count; ++a) {
+      const Vector3 arm = (places.col(stencil.ids[a]) - places.col(node)) / nodes.spacing;
+      basis.row(a) << 1, arm.transpose();
+      // The floor keeps distant components tied.
+      weight[a] = std::max(std::exp(-arm.squaredNorm() / 3), 1e-2);
+    }
+    weight /= weight.sum();
+    const Eigen::MatrixXd weighted = weight.asDiagonal() * basis;
+    Eigen::Matrix4d gram = basis.transpose() * weighted;
+    gram.diagonal().tail<3>().array() += slope_penalty;
+    stencil.quadratic = -weighted * gram.ldlt().solve(weighted.transpose());
+    stencil.quadratic.diagonal() += weight;
+  };
+  parallel_for(stencils.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) fill(static_cast<int>(node));
+  });
+  return stencils;
+}
+
+}  // namespace bespoke

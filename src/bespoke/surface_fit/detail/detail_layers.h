@@ -1,0 +1,33 @@
+#pragma once
+
+#include "bespoke/progress.h"
+#include "bespoke/surface_fit/detail/target_surface.h"
+
+namespace bespoke {
+
+/// What the layers move. Lengths in mesh units.
+struct DetailInput {
+  const TriangleMesh& surface;  ///< the source as fitted so far
+  const TargetSurface& target;
+  const Points& anchor_sources;  ///< 3×k: exact anchors, where they are now
+  const Points& anchor_targets;  ///< 3×k
+  double diagonal = 0;           ///< of the aligned source
+};
+
+struct DetailFit {
+  Points vertices;        ///< 3×n
+  Points anchor_sources;  ///< 3×k
+  int layers = 0;
+  double last_step = 0;  ///< root mean square of the last layer's displacements, mesh units
+};
+
+/// Small deformations of space, coarse to fine, from 6 % of the diagonal down to the spacing of the vertices:
+/// the residuals to the closest compatible points (point to plane mostly) are averaged around thinned centres
+/// λ/3 apart, interpolated by Wendland's C4 function of radius λ, scaled so that ‖∇u‖ stays below one half at
+/// the vertices, and move all vertices. Exact anchors are centres of every layer.
+DetailFit fit_details(const DetailInput& input, const Progress& progress);
+
+/// One layer that carries the exact anchors onto their targets and vanishes 3 % of the diagonal away.
+DetailFit meet_anchors(const DetailInput& input);
+
+}  // namespace bespoke

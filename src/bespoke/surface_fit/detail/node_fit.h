@@ -1,0 +1,38 @@
+#pragma once
+
+#include "bespoke/progress.h"
+#include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/target_surface.h"
+
+namespace bespoke {
+
+/// What the deformation of a surface by nodes works on. Lengths in mesh units.
+struct NodeFitInput {
+  const TriangleMesh& rest;  ///< the source, aligned with the target
+  const TargetSurface& target;
+  const Points& anchor_sources;  ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_targets;  ///< 3×k
+  /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
+  const Eigen::VectorXd& anchor_weights;
+  double diagonal = 0;  ///< of the aligned source
+  BoundaryRule boundaries = BoundaryRule::automatic;
+};
+
+struct NodeFit {
+  Points vertices;         ///< 3×n, of the deformed `rest`
+  Points coarse_vertices;  ///< 3×n, as the few nodes of the first level left them
+  Points anchor_sources;   ///< 3×k, carried along
+  int iterations = 0;
+  int matched_boundaries = 0;
+};
+
+/// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
+/// that (compatible points both ways, nearest in place and normal, symmetric point to plane, weighted by
+/// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
+/// (deviation from local similarities) is least, with a smoothing length ℓ that falls from half to a
+/// hundredth of the diagonal. Second differences are taken along the surface as it lies now, so that it is
+/// the way back from the target that bends least. Where the target has nothing to offer, the last two
+/// extrapolate. Throws SolverError.
+NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress);
+
+}  // namespace bespoke

@@ -1,0 +1,103 @@
+#include "bespoke/surface_fit/detail/similarity_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bespoke/error.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int max_iterations = 12;
+constexpr int trial_iterations = 3;    // after them a hopeless fit is given up
+constexpr double hopeless = 8;         // tolerances
+constexpr double max_distance = 0.05;  // of the diagonal: farther points are no counterparts
+constexpr double min_cosine = 0.5;
+constexpr std::size_t max_samples = 16000;
+constexpr std::size_t grain = 256;
+
+struct PlaneResidual {
+  Vector3 point, normal;
+  double distance = 0, weight = 0;  // weight 0: no counterpart
+};
+
+std::vector<PlaneResidual> plane_residuals(const Points& vertices, const Points& normals,
+                                           const Eigen::VectorXd& areas, const TargetSurface& target,
+                                           double within) {
+  const std::size_t count = static_cast<std::size_t>(vertices.cols());
+  const std::size_t stride = (count + max_samples - 1) / max_samples;
+  std::vector<PlaneResidual> residuals((count + stride - 1) / stride);
+  parallel_for(residuals.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Eigen::Index>(k * stride);
+      const auto found = target.match(vertices.col(i), normals.col(i), {min_cosine, within});
+      if (!found) continue;
+      residuals[k] = {vertices.col(i), found->normal, found->normal.dot(found->point - vertices.col(i)),
+                      areas[i]};
+    }
+  });
+  std::erase_if(residuals, [](const PlaneResidual& r) { return !(r.weight > 0); });
+  return residuals;
+}
+
+double percentile(const std::vector<PlaneResidual>& residuals, double fraction) {
+  std::vector<double> distances;
+  for (const PlaneResidual& r : residuals) distances.push_back(std::abs(r.distance));
+  const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(fraction * double(distances.size() - 1));
+  std::nth_element(distances.begin(), nth, distances.end());
+  return *nth;
+}
+
+/// One Gauss-Newton step on rotation, translation and scale about the centroid.
+Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale) {
+  Vector3 center = Vector3::Zero();
+  for (const PlaneResidual& r : residuals) center += r.point / double(residuals.size());
+  Eigen::Matrix<double, 7, 7> normal_matrix = Eigen::Matrix<double, 7, 7>::Zero();
+  Eigen::Matrix<double, 7, 1> right_side = Eigen::Matrix<double, 7, 1>::Zero();
+  for (const PlaneResidual& r : residuals) {
+    const Vector3 arm = r.point - center;
+    const double outlier = r.distance / robust_scale;
+    const double weight = r.weight / (1 + outlier * outlier);
+    Eigen::Matrix<double, 7, 1> row;
+    row << arm.cross(r.normal), r.normal, arm.dot(r.normal);
+    normal_matrix += weight * row * row.transpose();
+    right_side += weight * r.distance * row;
+  }
+  // A sphere or a plane leaves rotations or shifts undetermined: they stay as they are.
+  const Eigen::Matrix<double, 7, 1> change =
+      normal_matrix.completeOrthogonalDecomposition().solve(right_side);
+  Similarity result;
+  result.scale = std::exp(change[6]);
+  const double angle = change.head<3>().norm();
+  if (angle > 0) result.rotation = Eigen::AngleAxisd(angle, change.head<3>() / angle).toRotationMatrix();
+  result.translation = center + change.segment<3>(3) - result.scale * (result.rotation * center);
+  return result;
+}
+
+}  // namespace
+
+SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& target, const Similarity& start,
+                             double tolerance) {
+  const Eigen::VectorXd areas = vertex_areas(source);
+  const double within = max_distance * start.scale * diagonal(source.vertices);
+  SimilarityFit fit;
+  fit.target_from_source = start;
+  TriangleMesh moved = source;
+  for (int iteration = 0;; ++iteration) {
+    moved.vertices = fit.target_from_source * source.vertices;
+    const auto residuals = plane_residuals(moved.vertices, vertex_normals(moved), areas, target, within);
+    if (residuals.empty()) return {start, within, false};
+    fit.residual = percentile(residuals, 0.9);
+    const bool give_up = iteration >= trial_iterations && !(fit.residual <= hopeless * tolerance);
+    if (iteration == max_iterations || give_up) break;
+    const double robust_scale = 2 * percentile(residuals, 0.5) + 1e-12 * within;
+    fit.target_from_source = step(residuals, robust_scale) * fit.target_from_source;
+  }
+  fit.suffices = fit.residual <= tolerance;
+  return fit;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,77 @@
+#include "bespoke/surface_fit/surface_fit.h"
+
+#include <cstdio>
+
+#include "bespoke/error.h"
+#include "bespoke/surface_fit/detail/laplacian_fit.h"
+#include "bespoke/surface_fit/detail/multiscale_fit.h"
+
+namespace bespoke {
+namespace {
+
+void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& options) {
+  require_valid(input.source, "source of the surface fitting");
+  require_valid(input.target, "target of the surface fitting");
+  if (input.warped_vertices.cols() != input.source.vertices.cols())
+    throw InvalidInput("surface fitting: " + std::to_string(input.source.vertices.cols()) +
+                       " source vertices, but " + std::to_string(input.warped_vertices.cols()) +
+                       " warped ones");
+  if (!input.warped_vertices.allFinite())
+    throw InvalidInput("surface fitting: a warped vertex is not finite; check the anchors");
+  if (input.anchor_sources.cols() != input.anchor_targets.cols() ||
+      input.anchor_sources.cols() != input.anchor_weights.size())
+    throw InvalidInput("surface fitting: " + std::to_string(input.anchor_sources.cols()) +
+                       " anchor sources, " + std::to_string(input.anchor_targets.cols()) +
+                       " anchor targets and " + std::to_string(input.anchor_weights.size()) + " weights");
+  if (!(options.max_iterations >= 1))
+    throw InvalidInput("surface fitting: max_iterations is " + std::to_string(options.max_iterations) +
+                       ", but must be at least 1");
+  if (!(options.epsilon >= 0))
+    throw InvalidInput("surface fitting: epsilon is " + std::to_string(options.epsilon) +
+                       ", but must be at least 0");
+}
+
+}  // namespace
+
+const char* to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::converged:
+      return "converged";
+    case StopReason::stagnated:
+      return "stagnated";
+    case StopReason::iteration_cap:
+      return "stopped at the iteration cap";
+  }
+  return "";
+}
+
+std::string to_string(const SurfaceFitSummary& summary) {
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "distance to target p95 %.4g max %.4g (before: p95 %.4g max %.4g), %d iterations, %s, "
+                "%zu unmatched vertices, %.2f s",
+                summary.after.p95, summary.after.max, summary.before.p95, summary.before.max,
+                summary.iterations, to_string(summary.stop_reason), summary.unmatched_vertices,
+                summary.seconds);
+  std::string line = text;
+  if (summary.similarity_suffices) line += ", one similarity explains the target";
+  if (summary.matched_boundaries > 0)
+    line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
+  if (summary.mended_vertices > 0)
+    line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn over a fold taken back";
+  return line;
+}
+
+SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
+                       const Progress& progress) {
+  require_consistent(input, options);
+  switch (options.method) {
+    case SurfaceFitMethod::laplacian:
+      return fit_surface_laplacian(input, options, progress);
+    case SurfaceFitMethod::multiscale:
+      return fit_surface_multiscale(input, options, progress);
+  }
+  throw InvalidInput("unknown surface fitting method");
+}
+
+}  // namespace bespoke

@@ -1,0 +1,175 @@
+#include "bespoke/anchors/anchors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "bespoke/error.h"
+#include "bespoke/rigid/rigid_transform.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class ReadAnchors : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    test::write_text(directory_ / name, text);
+    return directory_ / name;
+  }
+
+  std::string message_for(const std::string& name, const std::string& text) {
+    try {
+      read_anchors(write(name, text));
+    } catch (const FormatError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  /// A file of one good and one given pair.
+  std::string message_for_pair(const std::string& pair) {
+    return message_for("anchors.json",
+                       R"({"pairs": [{"name": "good", "a": [0,0,0], "b": [1,2,3]}, )" + pair + "]}");
+  }
+
+  test::ScratchDirectory directory_;
+};
+
+TEST_F(ReadAnchors, ReadsJson) {
+  const Anchors anchors = read_anchors(write("anchors.json", R"({
+    "units": "cm", "comment": "extra keys are no concern of the reader",
+    "pairs": [{"name": "chin", "a": [1, 2.5, -3e-1], "b": [4, 5, 6], "a_vertex": 17},
+              {"a": [7, 8, 9], "b": [10, 11, 12], "weight": 0.5}]})"));
+  EXPECT_EQ(anchors.unit, "cm");
+  ASSERT_EQ(anchors.pairs.size(), 2u);
+  EXPECT_EQ(anchors.pairs[0].name, "chin");
+  EXPECT_EQ(anchors.pairs[0].a, Vector3(1, 2.5, -0.3));
+  EXPECT_TRUE(std::isinf(anchors.pairs[0].weight));
+  EXPECT_EQ(anchors.pairs[1].name, "");
+  EXPECT_EQ(anchors.pairs[1].b, Vector3(10, 11, 12));
+  EXPECT_EQ(anchors.pairs[1].weight, 0.5);
+  EXPECT_EQ(source_points(anchors).col(1), Vector3(7, 8, 9));
+  EXPECT_EQ(target_points(anchors).col(0), Vector3(4, 5, 6));
+  EXPECT_EQ(weights(anchors)[1], 0.5);
+}
+
+TEST_F(ReadAnchors, CsvSaysTheSameAsJson) {
+  const std::string rows =
+      "chin,1,2.5,-3e-1,4,5,6\r\n\r\n\"left, ear\", 7, 8 ,9,10,11,12,0.5\n,1,1,1,2,2,2,\n";
+  const std::string header = "\xEF\xBB\xBFname,ax,ay,az,bx,by,bz,weight\r\n";
+  for (const std::string& text : {rows, header + rows}) {
+    const Anchors anchors = read_anchors(write("anchors.CSV", text));
+    ASSERT_EQ(anchors.pairs.size(), 3u);
+    EXPECT_EQ(anchors.pairs[0].name, "chin");
+    EXPECT_EQ(anchors.pairs[0].a, Vector3(1, 2.5, -0.3));
+    EXPECT_TRUE(std::isinf(anchors.pairs[0].weight));
+    EXPECT_EQ(anchors.pairs[1].name, "left, ear");
+    EXPECT_EQ(anchors.pairs[1].b, Vector3(10, 11, 12));
+    EXPECT_EQ(anchors.pairs[1].weight, 0.5);
+    EXPECT_TRUE(std::isinf(anchors.pairs[2].weight));
+  }
+}
+
+TEST_F(ReadAnchors, NamesThePairAndTheKeyAtFault) {
+  EXPECT_THAT(
+      message_for_pair(R"({"name": "chin", "a": [0,0,0]})"),
+      AllOf(HasSubstr("anchors.json"), HasSubstr("pair 1 (\"chin\")"), HasSubstr("\"b\" is missing")));
+  EXPECT_THAT(message_for_pair(R"({"name": "chin", "a": [0,0], "b": [0,0,0]})"),
+              AllOf(HasSubstr("\"a\""), HasSubstr("three numbers")));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,"1",0], "b": [0,0,0]})"),
+              AllOf(HasSubstr("pair 1"), HasSubstr("\"a\"[1] is string")));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,null,0], "b": [0,0,0]})"), HasSubstr("\"a\"[1] is null"));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,0,0], "b": [0,0,0], "weight": 0})"),
+              AllOf(HasSubstr("\"weight\" is 0"), HasSubstr("> 0")));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,0,0], "b": [0,0,0], "weight": "heavy"})"),
+              HasSubstr("\"weight\" is string"));
+  EXPECT_THAT(message_for_pair(R"({"name": 7, "a": [0,0,0], "b": [0,0,0]})"),
+              HasSubstr("\"name\" is number"));
+  EXPECT_THAT(message_for_pair(R"({"name": "two\nlines", "a": [0,0,0], "b": [0,0,0]})"),
+              HasSubstr("control character"));
+  EXPECT_THAT(message_for_pair(R"({"name": "good", "a": [0,0,0], "b": [0,0,0]})"),
+              HasSubstr("two pairs are named \"good\""));
+  EXPECT_THAT(message_for_pair("[1, 2, 3]"), HasSubstr("pair 1 is array, not an object"));
+}
+
+TEST_F(ReadAnchors, RejectsWhatIsNotAListOfPairs) {
+  EXPECT_THAT(message_for("a.json", ""), HasSubstr("not valid JSON"));
+  EXPECT_THAT(message_for("a.json", R"({"pairs": [{"a": [NaN, 0, 0], "b": [0,0,0]}]})"),
+              HasSubstr("not valid JSON"));
+  EXPECT_THAT(message_for("a.json", R"({"pairs": [{"a": [1e999, 0, 0], "b": [0,0,0]}]})"),
+              HasSubstr("not valid JSON"));
+  EXPECT_THAT(message_for("a.json", "[]"), HasSubstr("\"pairs\""));
+  EXPECT_THAT(message_for("a.json", "{}"), HasSubstr("\"pairs\" is missing"));
+  EXPECT_THAT(message_for("a.json", R"({"pairs": 3})"), HasSubstr("not an array"));
+  EXPECT_THAT(message_for("a.json", R"({"units": 1, "pairs": []})"), HasSubstr("\"units\""));
+}
+
+TEST_F(ReadAnchors, NamesTheCsvLineAtFault) {
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6\nm,1,2,3,4,5,x\n"),
+              AllOf(HasSubstr("a.csv: line 2"), HasSubstr("bz is \"x\"")));
+  EXPECT_THAT(message_for("a.csv", "n,nan,2,3,4,5,6\n"), AllOf(HasSubstr("line 1"), HasSubstr("ax")));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,inf\n"), HasSubstr("not a finite number"));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6,-1\n"), HasSubstr("weight is -1"));
+  EXPECT_THAT(message_for("a.csv", "\n\nn,1,2,3,4,5\n"), AllOf(HasSubstr("line 3"), HasSubstr("6 columns")));
+  EXPECT_THAT(message_for("a.csv", "name,x,y,z,bx,by,bz\n"), HasSubstr("line 1: ax is \"x\""));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6\nn,1,2,3,4,5,6\n"), HasSubstr("two pairs are named \"n\""));
+  EXPECT_THAT(message_for("a.csv", ""), HasSubstr("no rows"));
+}
+
+TEST_F(ReadAnchors, ReportsAFileThatCannotBeOpened) {
+  EXPECT_THROW(read_anchors("/nonexistent/anchors.json"), FileError);
+  EXPECT_THROW(read_anchors(directory_.path()), FileError);
+}
+
+// The corners of a box, and a point inside that must not matter.
+Points box_points(const Vector3& low, const Vector3& high) {
+  Points points(3, 3);
+  points << low, high, 0.5 * (low + high);
+  return points;
+}
+
+TEST(AddBoxCorners, PairsTheCornersByTheirSides) {
+  Anchors anchors;
+  const Points source = box_points(Vector3(0, 0, 0), Vector3(1, 2, 3));
+  const Points target = box_points(Vector3(4, 4, 4), Vector3(5, 6, 7));
+  add_box_corners(anchors, source, target);
+  ASSERT_EQ(anchors.pairs.size(), 8u);
+  EXPECT_EQ(anchors.pairs[0].name, "corner_000");
+  EXPECT_EQ(anchors.pairs[4].name, "corner_100");
+  EXPECT_EQ(anchors.pairs[4].a, Vector3(1, 0, 0));
+  EXPECT_EQ(anchors.pairs[4].b, Vector3(5, 4, 4));
+  EXPECT_EQ(anchors.pairs[7].a, Vector3(1, 2, 3));
+  EXPECT_EQ(anchors.pairs[7].b, Vector3(5, 6, 7));
+  EXPECT_THROW(add_box_corners(anchors, source, target), InvalidInput);
+  Anchors none;
+  EXPECT_THROW(add_box_corners(none, Points(3, 0), Points(3, 0)), InvalidInput);
+}
+
+// The box of a turned model has other corners than the turned box.
+TEST(AddBoxCorners, TurnWithTheTarget) {
+  const Matrix3 rotation = Eigen::AngleAxisd(0.7, Vector3(1, 2, -1).normalized()).toRotationMatrix();
+  const RigidTransform turn{rotation, Vector3(3, -1, 2)};
+  const Points source = Points::Random(3, 50);
+  Anchors anchors;
+  for (int i = 0; i < 4; ++i) {
+    AnchorPair pair;
+    pair.name = std::string(1, static_cast<char>('p' + i));
+    pair.a = source.col(i);
+    pair.b = turn * Points(pair.a);
+    anchors.pairs.push_back(pair);
+  }
+  add_box_corners(anchors, source, turn * source);
+  ASSERT_EQ(anchors.pairs.size(), 12u);
+  for (const AnchorPair& pair : anchors.pairs)
+    EXPECT_LT((turn * Points(pair.a) - Points(pair.b)).norm(), 1e-12) << pair.name;
+}
+
+}  // namespace
+}  // namespace bespoke

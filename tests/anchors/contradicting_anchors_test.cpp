@@ -1,0 +1,76 @@
+#include "bespoke/anchors/contradicting_anchors.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "support/random_points.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double near = 0.01;
+
+/// Spread pairs under one similarity, and two more so close together that they lie `near` apart.
+Anchors similar_with_twins() {
+  Anchors anchors;
+  const Points x = test::random_points(20, 5);
+  const Matrix3 turn = 1.7 * Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const auto& a : x.colwise()) anchors.pairs.push_back({"", a, turn * a + Vector3(3, 0, 1)});
+  AnchorPair twin = anchors.pairs.front();
+  anchors.pairs.front().name = "left";
+  twin.name = "right";
+  twin.a += Vector3(near, 0, 0);
+  twin.b += turn * Vector3(near, 0, 0);
+  anchors.pairs.push_back(twin);
+  return anchors;
+}
+
+TEST(ContradictingAnchors, AreNoneUnderASimilarity) {
+  EXPECT_TRUE(contradicting_anchors(similar_with_twins()).empty());
+  EXPECT_EQ(to_string({}, similar_with_twins()), "");
+}
+
+TEST(ContradictingAnchors, AreThoseMovedFartherThanTheyAreApart) {
+  for (const double share : {0.5, 0.9, 1.1, 4.0}) {
+    Anchors anchors = similar_with_twins();
+    anchors.pairs.back().b += share * 1.7 * near * Vector3(0, 1, 0);
+    const auto found = contradicting_anchors(anchors);
+    ASSERT_EQ(found.size(), share > 1 ? 1u : 0u) << share;
+    if (found.empty()) continue;
+    EXPECT_EQ(found[0].first, 0u);
+    EXPECT_EQ(found[0].second, 20u);
+    EXPECT_NEAR(found[0].apart, 1.7 * near,
+                0.05 * near);  // one moved pair of 21 moves the similarity a little
+    EXPECT_NEAR(found[0].asked, share * 1.7 * near, 0.05 * near);
+    EXPECT_NE(to_string(found, anchors).find("\"left\" and \"right\""), std::string::npos);
+  }
+}
+
+TEST(ContradictingAnchors, MayBeFarApartOrSoft) {
+  Anchors anchors = similar_with_twins();
+  anchors.pairs[3].b += Vector3(2, 0, 0);
+  EXPECT_TRUE(contradicting_anchors(anchors).empty());
+  anchors = similar_with_twins();
+  anchors.pairs.back().b += Vector3(0, 4 * near, 0);
+  anchors.pairs.back().weight = 10;
+  EXPECT_TRUE(contradicting_anchors(anchors).empty());
+}
+
+TEST(ContradictingAnchors, AtOnePlaceMustGoToOne) {
+  Anchors anchors = similar_with_twins();
+  anchors.pairs.back().a = anchors.pairs.front().a;
+  EXPECT_EQ(contradicting_anchors(anchors).size(), 1u);
+  anchors.pairs.back().b = anchors.pairs.front().b;
+  EXPECT_TRUE(contradicting_anchors(anchors).empty());
+}
+
+TEST(ContradictingAnchors, BearsFewPairsAndPairsAtOnePlace) {
+  EXPECT_TRUE(contradicting_anchors({}).empty());
+  Anchors anchors;
+  anchors.pairs.assign(6, {"", Vector3(1, 2, 3), Vector3(4, 5, 6)});
+  EXPECT_TRUE(contradicting_anchors(anchors).empty());
+}
+
+}  // namespace
+}  // namespace bespoke

@@ -1,0 +1,222 @@
+#include "bespoke/pipeline/fit_mapping.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "support/random_points.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A smooth change of shape of what lies near the unit ball.
+Points bent(const Points& x) {
+  Points result = x;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    result(0, i) *= 1 + 0.15 * x(2, i);
+    result(1, i) += 0.1 * x(0, i) * x(0, i);
+    result(2, i) *= 1.2;
+  }
+  return result;
+}
+
+const RigidTransform moved_away{test::random_rotation(3), Vector3(5, -2, 1)};
+
+/// A sphere and a bent one of other connectivity, at another place.
+struct Pair {
+  TriangleMesh source = shapes::icosphere(3);
+  TriangleMesh target = shapes::icosphere(4);
+  Anchors anchors;
+  FitOptions options;
+
+  Pair() {
+    const Points sphere = test::random_rotation(9) * target.vertices;
+    target.vertices = moved_away * bent(sphere);
+    const Points q = shapes::icosphere(0).vertices;
+    const Points image = moved_away * bent(q);
+    const ClosestPointTree on_target(target);
+    for (Eigen::Index i = 0; i < q.cols(); ++i)
+      anchors.pairs.push_back(
+          {"anchor " + std::to_string(i), q.col(i), on_target.closest(image.col(i))->point});
+    options.lambda = 0.4;
+    options.elastic = ElasticMethod::csrbf;
+  }
+
+  FittedMapping fit() const { return fit_mapping(source, target, anchors, options); }
+
+  std::string message() const {
+    try {
+      fit();
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+};
+
+double distance_from(const TriangleMesh& mesh, const Points& x) {
+  const ClosestPointTree tree(mesh);
+  double largest = 0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    largest = std::max(largest, std::sqrt(tree.closest(x.col(i))->squared_distance));
+  return largest;
+}
+
+TEST(FitMapping, CarriesTheSourceOntoTheTarget) {
+  for (const ElasticMethod method : {ElasticMethod::csrbf, ElasticMethod::pffd}) {
+    Pair pair;
+    pair.options.elastic = method;
+    const FittedMapping fit = pair.fit();
+    const Points image = fit.target_from_source * (*fit.elastic)(pair.source.vertices);
+    EXPECT_LT(distance_from(pair.target, image), 1e-7);
+    EXPECT_LT(fit.vertex_residuals.max, 1e-7);
+    EXPECT_EQ(fit.anchor_residual.size(), pair.anchors.pairs.size());
+    EXPECT_LT(fit.anchor_residuals.max, 1e-7);
+    EXPECT_LT((fit.target_from_source * fit.fitted_vertices - image).cwiseAbs().maxCoeff(), 1e-7);
+  }
+}
+
+TEST(FitMapping, MeetsTheFitToleranceByTheMultiscaleMaps) {
+  for (const ElasticMethod method : {ElasticMethod::multiscale, ElasticMethod::diffeomorphic}) {
+    Pair pair;
+    pair.options.elastic = method;
+    pair.options.fit_tolerance = 1e-3;
+    const FittedMapping fit = pair.fit();
+    EXPECT_LT(fit.vertex_residuals.p95, 1e-3);
+    const auto json = nlohmann::json::parse(fit.stages[3].json);
+    EXPECT_EQ(json["method"], method == ElasticMethod::multiscale ? "multiscale" : "diffeomorphic");
+    EXPECT_GE(json["within_tolerance"], 0.95 * 642);
+  }
+}
+
+TEST(FitMapping, RecoversARigidMotionExactly) {
+  Pair pair;
+  pair.target = pair.source;
+  pair.target.vertices = moved_away * pair.source.vertices;
+  for (AnchorPair& anchor : pair.anchors.pairs) anchor.b = moved_away * anchor.a;
+  const FittedMapping fit = pair.fit();
+  EXPECT_LT((fit.target_from_source.rotation - moved_away.rotation).norm(), 1e-12);
+  const Points x = 3 * test::random_points(100, 1);
+  EXPECT_LT(((*fit.elastic)(x)-x).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+TEST(FitMapping, ReportsEveryStageWithoutTimes) {
+  const FittedMapping fit = Pair().fit();
+  ASSERT_EQ(fit.stages.size(), 4u);
+  const std::vector<std::string> names = {"rigid", "coarse", "surface-fit", "elastic"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    EXPECT_EQ(fit.stages[i].name, names[i]);
+    EXPECT_FALSE(fit.stages[i].line.empty());
+    EXPECT_EQ(fit.stages[i].line.find('\n'), std::string::npos);
+    const auto json = nlohmann::json::parse(fit.stages[i].json);
+    EXPECT_TRUE(json.is_object());
+    EXPECT_FALSE(json.contains("seconds"));
+  }
+  const auto surface = nlohmann::json::parse(fit.stages[2].json);
+  EXPECT_EQ(surface["method"], "multiscale");
+  EXPECT_GT(surface["iterations"], 0);
+  EXPECT_EQ(surface["after"]["count"], 642);
+  EXPECT_EQ(nlohmann::json::parse(fit.stages[3].json)["method"], "csrbf");
+}
+
+TEST(FitMapping, LeavesOutLooseAndMergesDuplicateVertices) {
+  Pair pair;
+  const Eigen::Index count = pair.source.vertices.cols();
+  // The first face gets three vertices of its own, where the shared ones lie; one vertex belongs to nothing.
+  pair.source.vertices.conservativeResize(3, count + 4);
+  for (int corner = 0; corner < 3; ++corner) {
+    pair.source.vertices.col(count + corner) = pair.source.vertices.col(pair.source.faces(corner, 0));
+    pair.source.faces(corner, 0) = static_cast<int>(count) + corner;
+  }
+  pair.source.vertices.rightCols(1) = Vector3(0.1, 0.2, 0.3);
+  const FittedMapping fit = pair.fit();
+  EXPECT_THAT(fit.stages[3].line, HasSubstr("1 unreferenced"));
+  EXPECT_THAT(fit.stages[3].line, HasSubstr("3 duplicate"));
+  EXPECT_EQ(nlohmann::json::parse(fit.stages[3].json)["duplicate_vertices"], 3);
+  EXPECT_TRUE((*fit.elastic)(pair.source.vertices).allFinite());
+}
+
+TEST(FitMapping, NamesWhatTheAnchorsLack) {
+  Pair pair;
+  const std::vector<AnchorPair> all = pair.anchors.pairs;
+  pair.anchors.pairs = {};
+  EXPECT_THAT(pair.message(), HasSubstr("3"));
+  pair.anchors.pairs = {all[0], all[1]};
+  EXPECT_THAT(pair.message(), HasSubstr("3"));
+  pair.anchors.pairs = {all[0], all[1], all[2]};
+  EXPECT_THAT(pair.message(), HasSubstr("4"));
+  pair.anchors.pairs = {all[0], all[1], all[2]};
+  pair.anchors.pairs.push_back({"in their plane", (all[0].a + all[1].a) / 2, (all[0].b + all[1].b) / 2});
+  EXPECT_THAT(pair.message(), HasSubstr("plan"));
+}
+
+TEST(FitMapping, MeetsExactAnchorsWhereTurnedFacesWereMendedToo) {
+  const std::filesystem::path pair = std::filesystem::path(BESPOKE_SHARED_DIR) / "cases" / "d04_hand_glove";
+  if (!std::filesystem::is_directory(pair)) GTEST_SKIP() << "no shared cases here";
+  const TriangleMesh source = read_triangle_mesh(pair / "reference_a.obj");
+  FitOptions options;
+  options.lambda = 0.1 * diagonal(source.vertices);
+  options.fit_tolerance = 1e-4 * diagonal(source.vertices);
+  const FittedMapping fit = fit_mapping(source, read_triangle_mesh(pair / "reference_b.obj"),
+                                        read_anchors(pair / "anchors.json"), options);
+  const auto surface_fit = nlohmann::json::parse(fit.stages.at(2).json);
+  ASSERT_EQ(fit.stages[2].name, "surface-fit");
+  ASSERT_GT(surface_fit["mended_vertices"], 0);
+  EXPECT_LE(fit.anchor_residuals.max, options.fit_tolerance);
+}
+
+TEST(FitMapping, RejectsOptionsAndAnchorsOutOfRange) {
+  Pair pair;
+  for (const double lambda : {0.0, -1.0, std::nan("")}) {
+    pair.options.lambda = lambda;
+    EXPECT_THAT(pair.message(), HasSubstr("lambda"));
+  }
+  pair.options.lambda = 0.4;
+  pair.anchors.pairs[2].a.x() = std::nan("");
+  EXPECT_THAT(pair.message(), HasSubstr("anchor 2"));
+  pair.anchors.pairs[2].a.x() = 0;
+  pair.source.faces.resize(3, 0);
+  EXPECT_THAT(pair.message(), HasSubstr("source"));
+}
+
+TEST(FitMapping, StopsWhenAsked) {
+  const Pair pair;
+  Progress progress;
+  int calls = 0;
+  progress.cancelled = [&] { return ++calls > 4; };
+  EXPECT_THROW(fit_mapping(pair.source, pair.target, pair.anchors, pair.options, progress), Interrupted);
+}
+
+TEST(FitMappingToFitted, TakesTheFittedMeshAsItIs) {
+  Pair pair;
+  TriangleMesh fitted = pair.source;
+  fitted.vertices = moved_away * bent(pair.source.vertices);
+  for (const bool with_anchors : {true, false}) {
+    const FittedMapping fit =
+        fit_mapping_to_fitted(pair.source, fitted, with_anchors ? pair.anchors : Anchors{}, pair.options);
+    const Points image = fit.target_from_source * (*fit.elastic)(pair.source.vertices);
+    EXPECT_LT((image - fitted.vertices).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_EQ(fit.anchor_residual.size(), with_anchors ? pair.anchors.pairs.size() : 0);
+    EXPECT_THAT(fit.stages[1].line, HasSubstr("given"));
+  }
+}
+
+TEST(FitMappingToFitted, RejectsOtherConnectivity) {
+  Pair pair;
+  EXPECT_THROW(fit_mapping_to_fitted(pair.source, pair.target, pair.anchors, pair.options), InvalidInput);
+  TriangleMesh fitted = pair.source;
+  fitted.faces.col(5).reverseInPlace();
+  EXPECT_THROW(fit_mapping_to_fitted(pair.source, fitted, pair.anchors, pair.options), InvalidInput);
+}
+
+}  // namespace
+}  // namespace bespoke

@@ -1,0 +1,112 @@
+#include "bespoke/pipeline/unmet_vertices.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bespoke/pipeline/fit_mapping.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double tolerance = 1e-3;
+
+FittedMapping carried_to(const TriangleMesh& source, const Points& fitted, ElasticMethod method) {
+  FitOptions options;
+  options.elastic = method;
+  options.lambda = 0.4;
+  options.fit_tolerance = tolerance;
+  return fit_mapping_to_fitted(source, {fitted, source.faces}, {}, options);
+}
+
+/// Every vertex beyond the tolerance is listed with its residual, and no other.
+void expect_complete(const FittedMapping& fit, const TriangleMesh& source) {
+  const Points offset = (*fit.elastic)(source.vertices) - fit.fitted_vertices;
+  std::size_t listed = 0;
+  for (Eigen::Index i = 0; i < offset.cols(); ++i) {
+    if (!(offset.col(i).norm() > tolerance)) continue;
+    ASSERT_LT(listed, fit.unmet.size());
+    EXPECT_EQ(fit.unmet[listed].vertex, i);
+    EXPECT_NEAR(fit.unmet[listed].residual, offset.col(i).norm(), 1e-12);
+    ++listed;
+  }
+  EXPECT_EQ(listed, fit.unmet.size());
+}
+
+TEST(UnmetVertices, AreNoneWhereTheMapMeetsTheFit) {
+  const TriangleMesh source = shapes::icosphere(3);
+  Points fitted = source.vertices;
+  fitted.row(0) += (0.1 * (3 * fitted.row(1).array()).sin()).matrix();
+  const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
+  EXPECT_THAT(fit.unmet, IsEmpty());
+  EXPECT_EQ(to_string(fit.unmet), "");
+  expect_complete(fit, source);
+}
+
+TEST(UnmetVertices, AreFoldedWhereTheFittedFacesAre) {
+  // A disc of the sheet is mirrored within its plane, which turns its faces over.
+  constexpr double radius = 0.25;
+  const TriangleMesh source = shapes::square_grid(32);
+  Points fitted = source.vertices;
+  const auto distance = [&](int i) { return (source.vertices.col(i) - Vector3(0.5, 0.5, 0)).norm(); };
+  for (int i = 0; i < fitted.cols(); ++i)
+    if (distance(i) < radius) fitted(0, i) = 1 - fitted(0, i);
+  const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
+  expect_complete(fit, source);
+  int folded = 0;
+  for (const UnmetVertex& unmet : fit.unmet) {
+    if (distance(unmet.vertex) > radius + 0.1) {
+      EXPECT_NE(unmet.reason, UnmetReason::folded);
+    }
+    if (unmet.reason == UnmetReason::folded) ++folded;
+  }
+  EXPECT_GT(folded, 20);
+  EXPECT_THAT(fit.stages.back().line, HasSubstr("fitted faces folded"));
+}
+
+TEST(UnmetVertices, ShareAPlaceThatIsTornApart) {
+  const TriangleMesh once = shapes::square_grid(4);
+  const TriangleMesh source = shapes::joined(once, once);
+  Points fitted = source.vertices;
+  fitted.rightCols(once.vertices.cols()).row(2).array() += 0.1;
+  const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
+  expect_complete(fit, source);
+  EXPECT_EQ(fit.unmet.size(), std::size_t(source.vertices.cols()));
+  for (const UnmetVertex& unmet : fit.unmet) {
+    EXPECT_EQ(unmet.reason, UnmetReason::shared_place);
+    EXPECT_NEAR(unmet.residual, 0.05, 1e-9);
+  }
+}
+
+TEST(UnmetVertices, AreSteepWhereSheetsPartThatAlmostTouch) {
+  const TriangleMesh once = shapes::square_grid(8);
+  const TriangleMesh other = shapes::moved(once, {Matrix3::Identity(), Vector3(0, 0, 1e-7)});
+  const TriangleMesh source = shapes::joined(once, other);
+  Points fitted = source.vertices;
+  fitted.rightCols(once.vertices.cols()).row(2).array() += 0.1;
+  const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
+  expect_complete(fit, source);
+  EXPECT_FALSE(fit.unmet.empty());
+  for (const UnmetVertex& unmet : fit.unmet) EXPECT_EQ(unmet.reason, UnmetReason::steep);
+}
+
+TEST(UnmetVertices, LeaveOutVerticesOfNoFace) {
+  TriangleMesh source = shapes::triangle();
+  source.vertices.conservativeResize(3, 4);
+  source.vertices.col(3) = Vector3(1, 1, 1);
+  Points away = source.vertices;
+  away.col(3) += Vector3(1, 0, 0);
+  EXPECT_THAT(unmet_vertices(source, source.vertices, away, tolerance), IsEmpty());
+}
+
+TEST(UnmetVertices, PrintOneLine) {
+  const std::vector<UnmetVertex> unmet = {
+      {3, 0.1, UnmetReason::folded}, {5, 0.2, UnmetReason::steep}, {8, 0.1, UnmetReason::folded}};
+  EXPECT_EQ(to_string(unmet), "3 vertices unmet: 2 fitted faces folded, 1 layer gradient limit");
+}
+
+}  // namespace
+}  // namespace bespoke

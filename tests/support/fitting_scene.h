@@ -1,0 +1,21 @@
+#pragma once
+
+#include "bespoke/surface_fit/surface_fit.h"
+
+namespace bespoke::test {
+
+/// What surface fitting takes; the source lies where it is and has no anchors unless told otherwise.
+struct FittingScene {
+  TriangleMesh source;
+  TriangleMesh target;
+  Points warped = source.vertices;
+  Points anchor_sources = Points(3, 0);
+  Points anchor_targets = Points(3, 0);
+  Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
+
+  SurfaceFit fit(const SurfaceFitOptions& options = {}) const {
+    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
+  }
+};
+
+}  // namespace bespoke::test

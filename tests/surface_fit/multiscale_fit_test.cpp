@@ -1,0 +1,201 @@
+#include "bespoke/surface_fit/detail/multiscale_fit.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <limits>
+
+#include "bespoke/error.h"
+#include "support/fitting_scene.h"
+#include "support/random_points.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+using Scene = test::FittingScene;
+
+TriangleMesh potato(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  for (auto&& x : mesh.vertices.colwise())
+    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
+  return mesh;
+}
+
+Vector3 bend(const Vector3& x) {
+  return {x[0] + 0.15 * x[1] * x[1], 1.1 * x[1] + 0.1 * x[0] * x[2], 0.95 * x[2]};
+}
+
+/// A vertex that lands farther off than this has passed a neighbour's place.
+double mean_edge_length(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& face : mesh.faces.colwise())
+    for (int k = 0; k < 3; ++k)
+      sum += (mesh.vertices.col(face((k + 1) % 3)) - mesh.vertices.col(face(k))).norm();
+  return sum / static_cast<double>(mesh.faces.size());
+}
+
+/// A featured closed surface and its smooth image with finer connectivity, twelve exact anchors.
+Scene bent_scene() {
+  Scene scene{potato(4), potato(5)};
+  for (auto&& x : scene.target.vertices.colwise()) x = bend(x);
+  scene.anchor_sources = scene.source.vertices.leftCols(12);
+  scene.anchor_targets.resize(3, 12);
+  for (int k = 0; k < 12; ++k) scene.anchor_targets.col(k) = bend(scene.anchor_sources.col(k));
+  scene.anchor_weights = Eigen::VectorXd::Constant(12, infinity);
+  return scene;
+}
+
+TEST(FitSurfaceMultiscale, IsTheDefault) {
+  EXPECT_EQ(SurfaceFitOptions{}.method, SurfaceFitMethod::multiscale);
+}
+
+TEST(FitSurfaceMultiscale, RecoversASimilarity) {
+  const AffineMap truth{1.1 * Eigen::AngleAxisd(0.06, Vector3(1, 2, 2) / 3).toRotationMatrix(),
+                        Vector3(0.02, 0.01, -0.03)};
+  // The finer copy's own vertices lie on the potato, not on the coarser facets: compare the same surface.
+  Scene scene{potato(4), shapes::moved(potato(4), truth)};
+  const SurfaceFit fit = scene.fit();
+  EXPECT_TRUE(fit.summary.similarity_suffices);
+  EXPECT_LT((fit.vertices - truth * scene.source.vertices).colwise().norm().maxCoeff(),
+            1e-9 * diagonal(scene.source.vertices));
+}
+
+TEST(FitSurfaceMultiscale, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
+  const Scene scene = bent_scene();
+  const SurfaceFit fit = scene.fit();
+  EXPECT_FALSE(fit.summary.similarity_suffices);
+  Points truth = scene.source.vertices;
+  for (auto&& x : truth.colwise()) x = bend(x);
+  const double edge = mean_edge_length(scene.source);
+  EXPECT_LT((fit.vertices - truth).colwise().norm().mean(), edge / 2);
+  EXPECT_LT((fit.vertices - truth).colwise().norm().maxCoeff(), edge);
+  const Points found = face_normals({fit.vertices, scene.source.faces});
+  const Points expected = face_normals({truth, scene.source.faces});
+  EXPECT_GT(found.cwiseProduct(expected).colwise().sum().minCoeff(), 0);
+  EXPECT_LT((fit.vertices.leftCols(12) - scene.anchor_targets).colwise().norm().maxCoeff(),
+            1e-9 * diagonal(scene.source.vertices));
+  EXPECT_LE(fit.summary.after.p95, 0.0002 * diagonal(scene.source.vertices));
+  EXPECT_EQ(fit.summary.unmatched_vertices, 0u);
+  for (const double confidence : fit.confidence) EXPECT_GT(confidence, 0.5);
+}
+
+/// What of the mesh lies above the height, with all its vertices.
+TriangleMesh cut_at(TriangleMesh mesh, double height) {
+  std::vector<int> kept;
+  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f)
+    if (mesh.vertices(2, mesh.faces.col(f)).minCoeff() > height) kept.push_back(static_cast<int>(f));
+  return {mesh.vertices, mesh.faces(Eigen::all, kept)};
+}
+
+TEST(FitSurfaceMultiscale, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo) {
+  // The source goes on below the height at which the target ends.
+  constexpr double source_end = -0.5, target_end = -0.35;
+  Scene scene{cut_at(potato(4), source_end), cut_at(potato(5), target_end)};
+  for (auto&& x : scene.target.vertices.colwise()) x = bend(x);
+  std::vector<int> upper;
+  for (int i = 0; i < 42; ++i)
+    if (scene.source.vertices(2, i) > 0.1) upper.push_back(i);
+  scene.anchor_sources = scene.source.vertices(Eigen::all, upper);
+  scene.anchor_targets = scene.anchor_sources;
+  for (auto&& x : scene.anchor_targets.colwise()) x = bend(x);
+  scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
+
+  const auto lowest = [&](BoundaryRule rule) {
+    SurfaceFitOptions options;
+    options.boundaries = rule;
+    const SurfaceFit fit = scene.fit(options);
+    EXPECT_EQ(fit.summary.matched_boundaries, rule == BoundaryRule::free ? 0 : 1);
+    return fit.vertices(2, scene.source.faces.reshaped()).minCoeff();
+  };
+  // bend() scales heights. Nearer to the one cut than to the other:
+  const double source_rim = 0.95 * source_end, target_rim = 0.95 * target_end;
+  const double near = std::abs(source_rim - target_rim) / 2;
+  EXPECT_NEAR(lowest(BoundaryRule::free), source_rim, near);
+  EXPECT_NEAR(lowest(BoundaryRule::matched), target_rim, near);
+  // Cuts this near each other are taken for the same.
+  EXPECT_NEAR(lowest(BoundaryRule::automatic), target_rim, near);
+}
+
+TEST(FitSurfaceMultiscale, TheEndOfTheTargetDoesNotAttract) {
+  // Half of the potato has no counterpart; it follows the other half instead of crowding at the cut.
+  constexpr double cut = 0.4;
+  Scene scene = bent_scene();
+  std::vector<int> kept;
+  for (Eigen::Index f = 0; f < scene.target.faces.cols(); ++f)
+    if (scene.target.vertices(0, scene.target.faces(0, f)) < cut) kept.push_back(static_cast<int>(f));
+  const Faces faces = scene.target.faces(Eigen::all, kept);
+  scene.target.faces = faces;
+  const SurfaceFit fit = scene.fit();
+  EXPECT_EQ(fit.summary.matched_boundaries, 0);
+  double true_reach = 0, beyond = 0, covered = 0;
+  for (Eigen::Index i = 0; i < scene.source.vertices.cols(); ++i) {
+    const Vector3 truth = bend(scene.source.vertices.col(i));
+    const double error = (fit.vertices.col(i) - truth).norm();
+    true_reach = std::max(true_reach, truth[0]);
+    if (truth[0] > 0.5) beyond = std::max(beyond, error);
+    if (truth[0] < 0.3) covered = std::max(covered, error);
+    if (truth[0] > 0.6) {
+      EXPECT_EQ(fit.confidence[static_cast<std::size_t>(i)], 0);
+    }
+  }
+  EXPECT_LT(covered, mean_edge_length(scene.source));
+  // The farthest vertex lies nearer to where it belongs than to the cut.
+  EXPECT_LT(beyond, (true_reach - cut) / 2);
+}
+
+TEST(FitSurfaceMultiscale, GivesTheSameBytesAtAnyThreadCount) {
+  const Scene scene = bent_scene();
+  Points first;
+  for (const std::size_t threads : {1, 2, 8}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const SurfaceFit fit = scene.fit();
+    if (first.cols() == 0) first = fit.vertices;
+    EXPECT_EQ(fit.vertices, first);
+  }
+}
+
+TEST(FitSurfaceMultiscale, WorksOnPiecesSingleTrianglesAndLooseVertices) {
+  TriangleMesh pieces = shapes::joined(
+      potato(3), shapes::moved(shapes::icosphere(1), {0.1 * Matrix3::Identity(), Vector3(2, 0, 0)}));
+  pieces.vertices.conservativeResize(3, pieces.vertices.cols() + 1);
+  pieces.vertices.rightCols(1) = Vector3(1, 1, 1);
+  TriangleMesh target = pieces;
+  for (auto&& x : target.vertices.colwise()) x = bend(x);
+  const SurfaceFit fit = Scene{pieces, target}.fit();
+  EXPECT_TRUE(fit.vertices.allFinite());
+  EXPECT_LT((fit.vertices - target.vertices).colwise().norm().maxCoeff(), mean_edge_length(pieces));
+
+  const SurfaceFit single = Scene{shapes::triangle(), shapes::triangle()}.fit();
+  EXPECT_TRUE(single.vertices.isApprox(shapes::triangle().vertices, 1e-6));
+}
+
+TEST(FitSurfaceMultiscale, RejectsWhatItCannotFit) {
+  Scene scene = bent_scene();
+  scene.warped(0, 0) = std::nan("");
+  EXPECT_THROW(scene.fit(), InvalidInput);
+  scene = bent_scene();
+  scene.target.faces.resize(3, 0);
+  EXPECT_THROW(scene.fit(), InvalidInput);
+  TriangleMesh flat = shapes::triangle();
+  flat.vertices.col(2) = 2 * flat.vertices.col(1);
+  EXPECT_THROW((Scene{flat, shapes::triangle()}.fit()), InvalidInput);
+  scene = bent_scene();
+  scene.warped.setZero();
+  EXPECT_THROW(scene.fit(), InvalidInput);
+}
+
+TEST(FitSurfaceMultiscale, StopsWhenAsked) {
+  const Scene scene = bent_scene();
+  Progress progress;
+  progress.cancelled = [] { return true; };
+  EXPECT_THROW(fit_surface({scene.source, scene.warped, scene.target, scene.anchor_sources,
+                            scene.anchor_targets, scene.anchor_weights},
+                           {}, progress),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace bespoke

@@ -1,0 +1,41 @@
+#include "bespoke/surface_fit/detail/similarity_fit.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_points.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+/// A sphere with bumps that no rotation maps onto itself.
+TriangleMesh potato(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  for (auto&& x : mesh.vertices.colwise())
+    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
+  return mesh;
+}
+
+TEST(FitSimilarity, FindsTheSimilarityOfACopyWithOtherConnectivity) {
+  const Similarity truth{1.2, test::random_rotation(3), Vector3(1, 2, 3)};
+  TriangleMesh copy = potato(5);
+  copy.vertices = truth * copy.vertices;
+  Similarity start = truth;
+  start.scale *= 1.03;
+  start.rotation = Eigen::AngleAxisd(0.05, Vector3::UnitY()) * start.rotation;
+  const SimilarityFit fit = fit_similarity(potato(3), TargetSurface(copy), start, 5e-3);
+  EXPECT_TRUE(fit.suffices);
+  EXPECT_NEAR(fit.target_from_source.scale, truth.scale, 3e-3);
+  EXPECT_LT((fit.target_from_source.rotation - truth.rotation).norm(), 5e-3);
+}
+
+TEST(FitSimilarity, KnowsWhenNoneSuffices) {
+  TriangleMesh stretched = potato(4);
+  stretched.vertices.row(2) *= 1.3;
+  EXPECT_FALSE(fit_similarity(potato(3), TargetSurface(stretched), Similarity{}, 1e-3).suffices);
+  const TriangleMesh far = shapes::moved(potato(3), {Matrix3::Identity(), Vector3(50, 0, 0)});
+  EXPECT_FALSE(fit_similarity(potato(3), TargetSurface(far), Similarity{}, 1e-3).suffices);
+}
+
+}  // namespace
+}  // namespace bespoke

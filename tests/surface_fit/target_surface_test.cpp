@@ -1,0 +1,54 @@
+#include "bespoke/surface_fit/detail/target_surface.h"
+
+#include <gtest/gtest.h>
+
+#include "bespoke/error.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+TEST(TargetSurface, FindsThePointBelowWithItsNormal) {
+  const TargetSurface surface(shapes::square_grid(4));
+  const auto found = surface.match(Vector3(0.3, 0.6, 0.2), Vector3(0, 0.6, 0.8), {0.5, 1});
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->point - Vector3(0.3, 0.6, 0)).norm(), 1e-12);
+  EXPECT_LT((found->normal - Vector3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((found->halfway - Vector3(0, 0.6, 1.8).normalized()).norm(), 1e-12);
+  EXPECT_NEAR(found->agreement, 0.8, 1e-12);
+  EXPECT_NEAR(surface.closest(Vector3(0.3, 0.6, -0.2)).squared_distance, 0.04, 1e-12);
+}
+
+TEST(TargetSurface, GivesNoPointOnItsBoundary) {
+  const TargetSurface surface(shapes::square_grid(4));
+  const Vector3 up(0, 0, 1);
+  EXPECT_FALSE(surface.match(Vector3(-0.1, 0.5, 0), up, {0, 1}));   // beside an edge
+  EXPECT_FALSE(surface.match(Vector3(1.1, 1.2, 0.1), up, {0, 1}));  // beyond a corner
+  EXPECT_TRUE(surface.match(Vector3(0.01, 0.5, 0), up, {0, 1}));
+}
+
+TEST(TargetSurface, GivesNoPointThatIsFarOrFacesAway) {
+  const TargetSurface surface(shapes::square_grid(4));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, 1), {0, 0.1}));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, -1), {0, 1}));
+  EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3::Zero(), {0, 1}));
+}
+
+TEST(TargetSurface, MovesWithItsBoundary) {
+  const TriangleMesh square = shapes::square_grid(4);
+  const TargetSurface lifted = TargetSurface(square).moved(square.vertices.colwise() + Vector3(0, 0, 2));
+  EXPECT_NEAR(lifted.closest(Vector3(0.5, 0.5, 0)).squared_distance, 4, 1e-12);
+  EXPECT_FALSE(lifted.match(Vector3(-0.1, 0.5, 2), Vector3(0, 0, 1), {0, 1}));
+}
+
+TEST(TargetSurface, KnowsAreasAndBoundary) {
+  const TargetSurface square(shapes::square_grid(3));
+  EXPECT_NEAR(square.areas().sum(), 1, 1e-12);
+  EXPECT_EQ(square.boundary_edges().cols(), 12);
+  EXPECT_EQ(TargetSurface(shapes::cube()).boundary_edges().cols(), 0);
+  TriangleMesh empty;
+  EXPECT_THROW(TargetSurface{empty}, InvalidInput);
+}
+
+}  // namespace
+}  // namespace bespoke

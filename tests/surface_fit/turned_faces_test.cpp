@@ -1,0 +1,141 @@
+#include "bespoke/surface_fit/detail/turned_faces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int side = 12;  // squares
+constexpr double square = 1.0 / side;
+
+/// The vertex of the grid nearest to (x, y, 0).
+int vertex_at(const TriangleMesh& grid, double x, double y) {
+  Eigen::Index vertex = 0;
+  (grid.vertices.colwise() - Vector3(x, y, 0)).colwise().squaredNorm().minCoeff(&vertex);
+  return static_cast<int>(vertex);
+}
+
+double least_cosine(const TriangleMesh& before, const Points& after) {
+  return face_normals(before).cwiseProduct(face_normals({after, before.faces})).colwise().sum().minCoeff();
+}
+
+TEST(MendTurnedFaces, LeavesASurfaceWithoutTurnedFacesAsItIs) {
+  const TriangleMesh grid = shapes::square_grid(side);
+  Points after = grid.vertices;
+  for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], 0.2 * std::sin(5 * x[0]));
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.vertices, after);
+  EXPECT_EQ(mended.mended_vertices, 0u);
+  EXPECT_EQ(mended.turned_faces, 0u);
+}
+
+TEST(MendTurnedFaces, TakesBackAVertexDrawnAcrossItsNeighbours) {
+  const TriangleMesh grid = shapes::square_grid(side);
+  const Vector3 shift(0.2, -0.1, 0.4);
+  Points after = grid.vertices.colwise() + shift;
+  const int drawn = vertex_at(grid, 0.5, 0.5);
+  after.col(drawn) += Vector3(3 * square, 0, 0);
+  ASSERT_LT(least_cosine(grid, after), 0);
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.turned_faces, 0u);
+  EXPECT_GT(least_cosine(grid, mended.vertices), 0);
+  // The neighbours all moved by the shift, so their harmonic mean is the shift.
+  EXPECT_TRUE(mended.vertices.isApprox(Points(grid.vertices.colwise() + shift), 1e-6));
+  EXPECT_GT(mended.mended_vertices, 0u);
+  EXPECT_LT(mended.mended_vertices, 60u);
+}
+
+TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-1, 1);
+  const TriangleMesh grid = shapes::square_grid(4 * side);
+  for (int trial = 0; trial < 20; ++trial) {
+    Points after = grid.vertices;
+    for (auto&& x : after.colwise())
+      if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.75 * square)
+        x += square * Vector3(shift(random), shift(random), 2 * shift(random));
+    ASSERT_LT(least_cosine(grid, after), 0);
+    const MendedSurface mended = mend_turned_faces(grid, after);
+    EXPECT_EQ(mended.turned_faces, 0u);
+    EXPECT_GT(least_cosine(grid, mended.vertices), 0);
+  }
+}
+
+TEST(MendTurnedFaces, LeavesTheFitWhereMostOfItTurned) {
+  const TriangleMesh grid = shapes::square_grid(4 * side);
+  Points after = grid.vertices;
+  after.topRows(1) = 1 - after.topRows(1).array();  // a mirror image: every face has turned
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.vertices, after);
+  EXPECT_EQ(mended.mended_vertices, 0u);
+  EXPECT_EQ(mended.turned_faces, static_cast<std::size_t>(grid.faces.cols()));
+}
+
+TEST(MendTurnedFaces, TakesBackWhatTurnedFartherThanItsLimitOnly) {
+  const TriangleMesh two = shapes::joined(shapes::square_grid(2), shapes::square_grid(2));
+  for (const double beyond : {-1.0, 1.0}) {
+    const double angle = (most_degrees_turned + beyond) * std::numbers::pi / 180;
+    Points after = two.vertices;
+    const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
+    after.leftCols(9) = turn * two.vertices.leftCols(9);
+    EXPECT_EQ(mend_turned_faces(two, after).mended_vertices, beyond > 0 ? 9u : 0u);
+  }
+}
+
+TEST(MendTurnedFaces, LeavesNoFaceTurnedWhereShortEdgesMeetLongOnes) {
+  TriangleMesh grid = shapes::square_grid(2 * side);
+  for (auto&& x : grid.vertices.colwise()) x.head<2>() = x.head<2>().array().cube();
+  Points after = grid.vertices;
+  for (auto&& x : after.colwise()) x += Vector3(0.4 * x[0], -0.3 * x[1], 0.2 * x[0] * x[0]);
+  const int drawn = vertex_at(grid, 0.125, 0.125);
+  after.col(drawn) += Vector3(0.1, 0.1, 0);
+  ASSERT_LT(least_cosine(grid, after), 0);
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  EXPECT_EQ(mended.turned_faces, 0u);
+  EXPECT_GT(least_cosine(grid, mended.vertices), 0);
+}
+
+TEST(MendTurnedFaces, MovesNothingFarFromTheTurnedFaces) {
+  const TriangleMesh grid = shapes::square_grid(side);
+  Points after = grid.vertices;
+  for (auto&& x : after.colwise()) x += Vector3(0, 0, 0.3 * x[0] * x[1]);
+  const int drawn = vertex_at(grid, 0.25, 0.25);
+  after.col(drawn) += Vector3(2 * square, 2 * square, 0);
+  const MendedSurface mended = mend_turned_faces(grid, after);
+  ASSERT_GT(mended.mended_vertices, 0u);
+  for (Eigen::Index i = 0; i < after.cols(); ++i)
+    if ((grid.vertices.col(i) - grid.vertices.col(drawn)).norm() > 10 * square) {
+      EXPECT_EQ(mended.vertices.col(i), after.col(i));
+    }
+}
+
+TEST(MendTurnedFaces, ReportsWhatNoNeighboursCanTakeBack) {
+  // All of it was turned, so that nobody remains to follow.
+  const TriangleMesh single = shapes::triangle();
+  Points after = single.vertices;
+  after.col(0).swap(after.col(1));
+  const MendedSurface mended = mend_turned_faces(single, after);
+  EXPECT_TRUE(mended.vertices.allFinite());
+  EXPECT_EQ(mended.mended_vertices, 3u);
+  EXPECT_EQ(mended.turned_faces, least_cosine(single, mended.vertices) < 0 ? 1u : 0u);
+}
+
+TEST(MendTurnedFaces, TakesFacesWithoutAreaAndLooseVertices) {
+  TriangleMesh mesh = shapes::square_grid(side);
+  mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 1);
+  mesh.vertices.rightCols(1) = Vector3(5, 5, 5);
+  mesh.faces.conservativeResize(3, mesh.faces.cols() + 1);
+  mesh.faces.rightCols(1) << 0, 0, 1;
+  const MendedSurface mended = mend_turned_faces(mesh, mesh.vertices);
+  EXPECT_EQ(mended.vertices, mesh.vertices);
+  EXPECT_EQ(mended.mended_vertices, 0u);
+}
+
+}  // namespace
+}  // namespace bespoke
