@@ -17,7 +17,7 @@ using Faces = Eigen::Matrix3Xi;
 /// Axis-aligned box, mesh units.
 using Box = Eigen::AlignedBox3d;
 
-/// x ↦ offset + linear · x; the part a₀ + A x of the elastic map (DESIGN, "The mapping").
+/// x ↦ offset + linear · x; the part a₀ + A x of the elastic map (src/bespoke/README.md, "The mapping").
 struct AffineMap {
   Matrix3 linear = Matrix3::Identity();
   Vector3 offset = Vector3::Zero();  ///< mesh units

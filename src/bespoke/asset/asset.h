@@ -46,7 +46,7 @@ struct AssetRecord {
 /// make_asset, kept as they are from reading to writing.
 class PreviewGrids;
 
-/// A map as a file holds it, version 1 (DESIGN, "Asset").
+/// A map as a file holds it, version 1 (src/bespoke/README.md, "The file").
 struct Asset {
   RigidTransform target_from_source;  ///< Γ
   RotationPath path = RotationPath::geodesic;

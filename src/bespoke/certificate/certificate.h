@@ -29,7 +29,8 @@ struct Certificate {
   double seconds = 0;
 
   /// All cells certified and det A > 0: then the map is a homeomorphism of all of space, because it is
-  /// continuous, piecewise trilinear with det ≥ ε and affine outside a bounded set (DESIGN, step 6).
+  /// continuous, piecewise trilinear with det ≥ ε and affine outside a bounded set (src/bespoke/README.md,
+  /// "Certificate").
   bool is_bijection() const { return undecided == 0 && folded == 0 && affine_determinant > 0; }
 };
 

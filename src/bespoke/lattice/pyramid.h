@@ -39,10 +39,10 @@ struct PyramidLevel {
   std::vector<float> values;
 };
 
-/// u as a sum of nested, node-aligned lattices (DESIGN, step 5): node i of a level is node 2 i of the next;
-/// each level is trilinear between its nodes and zero outside its leaves (and the one cell around them); a
-/// leaf below level 0 lies inside a leaf of the level above. The sum is continuous and trilinear in every
-/// finest cell.
+/// u as a sum of nested, node-aligned lattices (src/bespoke/README.md, "Bake"): node i of a level is node 2 i
+/// of the next; each level is trilinear between its nodes and zero outside its leaves (and the one cell
+/// around them); a leaf below level 0 lies inside a leaf of the level above. The sum is continuous and
+/// trilinear in every finest cell.
 struct Pyramid {
   Vector3 origin = Vector3::Zero();  ///< mesh units; node (0, 0, 0) of every level
   std::vector<PyramidLevel> levels;  ///< coarse to fine, voxel_size halved from one to the next

@@ -19,9 +19,9 @@ struct Support {
 };
 
 /// E(x) = a₀ + A x + u(x): the source's space, in the source frame, onto the target's space in the source
-/// frame (DESIGN, "The mapping"). u is continuous and exactly zero outside the support. Everything downstream
-/// knows a map only through this interface; exact maps and baked ones both implement it. All members are
-/// thread-safe, run in parallel inside, and return the same bits at any thread count.
+/// frame (src/bespoke/README.md, "The mapping"). u is continuous and exactly zero outside the support.
+/// Everything downstream knows a map only through this interface; exact maps and baked ones both implement
+/// it. All members are thread-safe, run in parallel inside, and return the same bits at any thread count.
 class ElasticMap {
  public:
   virtual ~ElasticMap() = default;

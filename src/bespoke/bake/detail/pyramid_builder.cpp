@@ -14,7 +14,7 @@
 namespace bespoke {
 namespace {
 
-// η of DESIGN: a rim may add this much to the gradient.
+// η of src/bespoke/README.md, "Bake": a rim may add this much to the gradient.
 constexpr double rim_gradient = 0.3;
 // Voxels of the coarsest level in the radius of the largest ball.
 constexpr double coarsest_voxels_per_radius = 4;

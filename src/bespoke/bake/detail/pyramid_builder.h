@@ -20,10 +20,10 @@ struct RefinementOptions {
   ValuePrecision precision = ValuePrecision::single;
 };
 
-/// Grows the nested pyramid of a map (DESIGN, step 5). An octant of a leaf gets a leaf of the next level
-/// where the sum so far misses u by more than the tolerance. Where a level ends, the residual of its
-/// outermost nodes drops to zero within one cell, which adds a gradient of about |r| / h: so neighbours are
-/// added until |r| ≤ min(tolerance, 0.3 h) at every rim.
+/// Grows the nested pyramid of a map (src/bespoke/README.md, "Bake"). An octant of a leaf gets a leaf of the
+/// next level where the sum so far misses u by more than the tolerance. Where a level ends, the residual of
+/// its outermost nodes drops to zero within one cell, which adds a gradient of about |r| / h: so neighbours
+/// are added until |r| ≤ min(tolerance, 0.3 h) at every rim.
 ///
 /// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.

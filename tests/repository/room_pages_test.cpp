@@ -1,0 +1,112 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/file_text.h"
+
+namespace bespoke {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsSubsetOf;
+
+const fs::path library = fs::path(BESPOKE_SOURCE_DIR) / "src" / "bespoke";
+
+constexpr long most_lines = 40;
+
+/// First group of every match.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), expression), end; match != end; ++match)
+    found.push_back(match->str(1));
+  return found;
+}
+
+std::set<std::string> directories() {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(library))
+    if (entry.is_directory()) names.insert(entry.path().filename());
+  return names;
+}
+
+/// The rooms that the files of a room include, other than itself.
+std::set<std::string> included_rooms(const std::string& room) {
+  std::set<std::string> rooms;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library / room)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    for (const std::string& name : matches(test::read_text(entry.path()), "#include \"bespoke/([a-z0-9_]+)/"))
+      rooms.insert(name);
+  }
+  rooms.erase(room);
+  return rooms;
+}
+
+/// What the page says after "Includes:", up to the end of the sentence.
+std::set<std::string> rooms_on_page(const std::string& page) {
+  const std::vector<std::string> sentences = matches(page, "\n- Includes:([^.]*)\\.");
+  if (sentences.size() != 1) return {"no sentence that begins with \"- Includes:\""};
+  const std::vector<std::string> names = matches(sentences.front(), "`([a-z0-9_]+)`");
+  return {names.begin(), names.end()};
+}
+
+/// The rooms in the order of the table on the library's page.
+std::vector<std::string> rooms_in_order() {
+  return matches(test::read_text(library / "README.md"),
+                 "\n\\| \\[`([a-z0-9_]+)`\\]\\(\\1/README\\.md\\) \\|");
+}
+
+TEST(RoomPages, TableListsEveryRoom) {
+  const std::vector<std::string> rooms = rooms_in_order();
+  EXPECT_EQ(std::set<std::string>(rooms.begin(), rooms.end()), directories());
+}
+
+TEST(RoomPages, HaveAtMostFortyLines) {
+  for (const std::string& room : directories()) {
+    const std::string page = test::read_text(library / room / "README.md");
+    EXPECT_GT(page.size(), 0u) << room;
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), most_lines) << room;
+  }
+}
+
+TEST(RoomPages, NameTheRoomsThatAreIncluded) {
+  for (const std::string& room : directories())
+    EXPECT_EQ(rooms_on_page(test::read_text(library / room / "README.md")), included_rooms(room)) << room;
+}
+
+TEST(RoomPages, RoomsIncludeOnlyThoseAboveThemInTheTable) {
+  std::vector<std::string> above;
+  for (const std::string& room : rooms_in_order()) {
+    EXPECT_THAT(included_rooms(room), IsSubsetOf(above)) << room;
+    above.push_back(room);
+  }
+}
+
+// A header in ROOM/detail/ may be named by the files of ROOM and by the tests alone.
+TEST(RoomPages, DetailsStayInTheirRooms) {
+  for (const char* tree : {"src", "samples", "tools"})
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(BESPOKE_SOURCE_DIR) / tree)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      const std::string from = fs::relative(entry.path(), library).begin()->string();
+      for (const std::string& room : matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"))
+        EXPECT_EQ(room, from) << entry.path();
+    }
+}
+
+TEST(RoomPages, LinkToPagesThatExist) {
+  std::vector<fs::path> pages{library / "README.md"};
+  for (const std::string& room : directories()) pages.push_back(library / room / "README.md");
+  for (const fs::path& page : pages)
+    for (const std::string& link : matches(test::read_text(page), "\\]\\(([^)#]+)"))
+      EXPECT_TRUE(fs::exists(page.parent_path() / link)) << page << ": " << link;
+}
+
+}  // namespace
+}  // namespace bespoke
