@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -14,6 +15,7 @@ namespace bespoke {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::IsEmpty;
 using ::testing::IsSubsetOf;
 
 const fs::path library = fs::path(BESPOKE_SOURCE_DIR) / "src" / "bespoke";
@@ -98,6 +100,34 @@ TEST(RoomPages, DetailsStayInTheirRooms) {
       for (const std::string& room : matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"))
         EXPECT_EQ(room, from) << entry.path();
     }
+}
+
+TEST(RoomPages, PublicHeadersNameNoDetails) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library))
+    if (entry.path().extension() == ".h" && entry.path().parent_path().filename() != "detail") {
+      EXPECT_THAT(matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"), IsEmpty())
+          << entry.path();
+    }
+}
+
+// A heavy or replaceable library is known to few files: the places that each may be included from.
+TEST(RoomPages, LibrariesAreIncludedInTheirPlacesOnly) {
+  const std::map<std::string, std::set<fs::path>> places = {
+      {"openvdb/",
+       {"asset/detail/grid_conversion.cpp", "asset/detail/source_distance.cpp", "asset/detail/vdb_leaves.h"}},
+      {"OpenMesh/", {"mesh/product_io.cpp"}},
+      {"tbb/", {"parallel.cpp"}},
+      {"nlohmann/",
+       {"anchors/anchors.cpp", "asset/detail/record_json.cpp", "pipeline/fit_mapping.cpp",
+        "pipeline/summary_json.h"}}};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string text = test::read_text(entry.path());
+    for (const auto& [name, files] : places)
+      if (text.find("#include <" + name) != std::string::npos) {
+        EXPECT_TRUE(files.contains(fs::relative(entry.path(), library))) << entry.path() << ": " << name;
+      }
+  }
 }
 
 TEST(RoomPages, LinkToPagesThatExist) {
