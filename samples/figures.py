@@ -119,7 +119,7 @@ def series(name):
 
 def space(name, panels):
     """The same plane of space, carried by maps that differ in the anchors off the surface."""
-    width, height, scale = 1700, 700, 11.0
+    width, height, scale = 1700, 620, 10.2
     start(width, height, width)
     step = width / len(panels)
     for k, (label, folder) in enumerate(panels):
@@ -149,8 +149,8 @@ def main():
     trail("fig04", [("elastic part first, Eq. 1", "elastic-first"), ("rigid part first, Eq. 19", "rigid-first")])
     space("fig05", [("a plane of space around the source", "source"), ("anchors on the surfaces", "surface"),
                     ("and the corners of the boxes", "corners"), ("and four pulled outwards", "pulled")])
-    row_of_views("fig06a", Pair("dress"), ("dress",), 3.4, (-25, 155), 1.6, 740, 330)
-    row_of_views("fig06b", Pair("girths", "_106"), ("top", "skirt"), 3.4, (-25, 155), 1.6, 740, 330)
+    row_of_views("fig06a", Pair("dress"), ("dress",), 3.2, (-25, 155), 1.6, 700, 340)
+    row_of_views("fig06b", Pair("girths", "_106"), ("top", "skirt"), 3.2, (-25, 155), 1.6, 700, 340)
     series("fig07")
     row_of_views("fig08", Pair("glasses"), ("frame", "lenses"), 12.5, (-10, -65), 0.35, 560, 330)
     row_of_views("fig09", Pair("glove"), ("glove",), 17.0, (150, -30), 0.3, 600, 330)
