@@ -69,14 +69,5 @@ TEST_F(NodeSystemTest, BendsLessTheMoreItSmooths) {
   EXPECT_LE(last, 0.2 + 1e-9);
 }
 
-TEST_F(NodeSystemTest, KeepsTheSizeThatACoarserLevelFound) {
-  // One anchor holds the place. With little smoothing local similarities decide the size, those of where the
-  // system started.
-  const Points grown = 1.3 * sphere_.vertices;
-  NodeSystem system = this->system({anchor(0, 0.3 * sphere_.vertices.col(0))});
-  system.start_from(grown);
-  EXPECT_LT((solve(std::move(system), {}, 0.1) - grown).colwise().norm().maxCoeff(), 0.02);
-}
-
 }  // namespace
 }  // namespace bespoke
