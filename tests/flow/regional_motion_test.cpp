@@ -1,0 +1,51 @@
+#include "bespoke/flow/regional_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "flow/bent_tube.h"
+#include "support/random_points.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+TEST(RegionalMotion, OfALimbIsItsTurn) {
+  const TriangleMesh source = test::tube();
+  for (const double angle : {30.0, 90.0, 150.0}) {
+    const RegionalMotion motion = regional_motion(source, test::bent(source.vertices, angle * degree));
+    EXPECT_NEAR(motion.turn, angle * degree, 1 * degree);
+  }
+}
+
+TEST(RegionalMotion, OfASimilarityIsItsTurnAndScale) {
+  const TriangleMesh source = shapes::icosphere(3);
+  const Matrix3 turn = Eigen::AngleAxisd(0.7, Vector3::UnitX()).toRotationMatrix();
+  const RegionalMotion motion = regional_motion(source, 0.25 * turn * source.vertices);
+  EXPECT_NEAR(motion.turn, 0.7, 1e-9);
+  EXPECT_NEAR(motion.stretch, 4, 1e-9);
+}
+
+TEST(RegionalMotion, DoesNotBelieveOneBadFace) {
+  const TriangleMesh source = shapes::icosphere(5);
+  Points fitted = source.vertices;
+  fitted.col(100) *= 0.9;  // its faces tilt by some 60°
+  const RegionalMotion motion = regional_motion(source, fitted);
+  EXPECT_LT(motion.turn, 10 * degree);
+  EXPECT_EQ(step_count(motion), 1);
+}
+
+TEST(StepCount, IsOneForOnePoseAndGrowsWithTheTurn) {
+  EXPECT_EQ(step_count({0, 1}), 1);
+  EXPECT_EQ(step_count({45 * degree, 2.4}), 1);
+  EXPECT_EQ(step_count({81 * degree, 1.3}), 5);
+  EXPECT_EQ(step_count({99 * degree, 2.2}), 5);
+  EXPECT_EQ(step_count({270 * degree, 1}), 14);
+  EXPECT_GT(step_count({0, 5}), 1);
+}
+
+}  // namespace
+}  // namespace bespoke
