@@ -40,8 +40,7 @@ TEST(PyramidBuilder, IsNestedAndTakesTheMapsValueAtEveryNode) {
     for (const LeafCoordinates& leaf : level.leaves) {
       Points x(3, leaf_nodes);
       for (int n = 0; n < leaf_nodes; ++n)
-        x.col(n) = pyramid.origin + level.voxel_size * Vector3(8 * leaf[0] + n / 64, 8 * leaf[1] + n / 8 % 8,
-                                                               8 * leaf[2] + n % 8);
+        x.col(n) = pyramid.origin + level.voxel_size * as_vector(moved(first_node(leaf), place_of_number(n)));
       // Up to the rounding of what is stored, half of a 128th of the tolerance.
       ASSERT_LT((baked.displacement(x) - map.displacement(x)).cwiseAbs().maxCoeff(), tolerance / 256 + 1e-7);
     }

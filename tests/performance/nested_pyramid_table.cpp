@@ -11,9 +11,10 @@
 
 #include "bespoke/bake/bake.h"
 #include "bespoke/bake/band.h"
-#include "bespoke/bake/sampling.h"
+#include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/certificate/inverse.h"
+#include "bespoke/mapping/composed_map.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/pipeline/fit_mapping.h"
 

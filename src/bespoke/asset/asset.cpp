@@ -53,7 +53,7 @@ void require_valid(const AssetRecord& record) {
   require_valid(record.target, "target");
 }
 
-/// A claim of bijection that contradicts the map it stands beside.
+/// Refuses a certificate of bijection that the stored map contradicts.
 void require_consistent(const Certificate& certificate, const Asset& asset) {
   require(std::isfinite(certificate.least_determinant) && std::isfinite(certificate.affine_determinant),
           "the certificate's determinants are not finite");

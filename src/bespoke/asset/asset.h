@@ -42,8 +42,8 @@ struct AssetRecord {
   ModelRecord target;
 };
 
-/// The grids that are for other programs' eyes: displacement, source_distance, jacobian. Opaque here; made by
-/// make_asset, kept as they are from reading to writing.
+/// The grids that only other programs read: displacement, source_distance, jacobian. Made by with_preview,
+/// kept as they are from reading to writing.
 class PreviewGrids;
 
 /// A map as a file holds it, version 1 (src/bespoke/README.md, "The file").

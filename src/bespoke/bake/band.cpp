@@ -71,7 +71,7 @@ class BandSearch {
       const std::vector<Root> parents = std::exchange(roots_, {});
       for (const Root& parent : parents)
         for (int octant = 0; octant < 8; ++octant)
-          add_root(child(parent.at, octant), parent.touching, depth_ - 1);
+          add_root(child_of(parent.at, octant), parent.touching, depth_ - 1);
     }
   }
 
@@ -89,10 +89,6 @@ class BandSearch {
     std::vector<Ball> touching;
   };
 
-  static LeafCoordinates child(const LeafCoordinates& at, int octant) {
-    return {2 * at[0] + (octant >> 2 & 1), 2 * at[1] + (octant >> 1 & 1), 2 * at[2] + (octant & 1)};
-  }
-
   void add_root(const LeafCoordinates& at, const std::vector<Ball>& candidates, int depth) {
     std::vector<Ball> touching = touching_balls(at, depth, candidates).balls;
     if (!touching.empty()) roots_.push_back({at, std::move(touching)});
@@ -106,8 +102,8 @@ class BandSearch {
   Touching touching_balls(const LeafCoordinates& at, int depth, const std::vector<Ball>& candidates) const {
     const double half_edge = 0.5 * ((leaf_edge << depth) - 1) * lattice_.voxel_size;
     const double corner = static_cast<double>(leaf_edge << depth) * lattice_.voxel_size;
-    const Vector3 middle = frame_ * Vector3(lattice_.origin + corner * Vector3(at[0], at[1], at[2]) +
-                                            Vector3::Constant(half_edge));
+    const Vector3 middle =
+        frame_ * Vector3(lattice_.origin + corner * as_vector(at) + Vector3::Constant(half_edge));
     double reach = 0;  // of the box's image around its middle
     for (int sign = 0; sign < 4; ++sign)
       reach = std::max(reach, (frame_.linear * Vector3(half_edge, sign & 1 ? half_edge : -half_edge,
@@ -129,7 +125,7 @@ class BandSearch {
     const Touching touching = touching_balls(at, depth, candidates);
     if (touching.balls.empty()) return;
     if (depth == 0 || touching.one_holds_all) return emit(at, depth);
-    for (int octant = 0; octant < 8; ++octant) descend(child(at, octant), depth - 1, touching.balls, emit);
+    for (int octant = 0; octant < 8; ++octant) descend(child_of(at, octant), depth - 1, touching.balls, emit);
   }
 
   AffineMap frame_;

@@ -2,16 +2,10 @@
 
 #include <vector>
 
-#include "bespoke/lattice/pyramid.h"
+#include "bespoke/lattice/lattice.h"
 #include "bespoke/mapping/elastic_map.h"
 
 namespace bespoke {
-
-/// A lattice: node (i, j, k) at origin + voxel_size·(i, j, k), mesh units.
-struct Lattice {
-  Vector3 origin = Vector3::Zero();
-  double voxel_size = 0;
-};
 
 /// Throws InvalidInput, at once, when the support's frame is singular or a value is not finite, or when the
 /// lattice is so fine that its leaves could not be counted.

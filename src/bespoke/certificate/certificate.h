@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,24 +44,5 @@ Certificate certify(const Pyramid& pyramid, const AffineMap& affine, double t = 
 /// The same with every place, not only the first 1000.
 Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine, double t = 1,
                                 const Progress& progress = {});
-
-/// The folded and undecided cells of a pyramid whose values change while its leaves stay: what lies around
-/// the changed nodes is certified again, the rest is not looked at.
-class FoldList {
- public:
-  /// `pyramid` must outlive the list; `places` are those of its certificate at t = 1, all of them.
-  FoldList(const Pyramid& pyramid, const AffineMap& affine, std::vector<FoldedCell> places);
-  ~FoldList();
-
-  /// `changed[level]`: nodes of that level.
-  void update(const std::vector<std::vector<std::array<int, 3>>>& changed);
-
-  const std::vector<FoldedCell>& places() const { return places_; }
-
- private:
-  struct Cells;
-  std::unique_ptr<Cells> cells_;
-  std::vector<FoldedCell> places_;
-};
 
 }  // namespace bespoke

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/elastic_map.h"
@@ -24,6 +25,9 @@ class PointwiseInverse {
 
  private:
   struct Cells;
+  Points preimages(const Points& y) const;
+  void search_cells(const Points& y, const std::vector<Eigen::Index>& columns, Points& x) const;
+
   const BakedMap& map_;
   Matrix3 inverse_linear_;
   double tolerance_;  // of |E(x) − y|, mesh units
@@ -47,31 +51,5 @@ class InverseMap : public ElasticMap {
   PointwiseInverse inverse_;
   RigidTransform target_from_source_;
 };
-
-/// a→c as b→c after a→b, as an elastic map of its own, to be baked: Γ_ab⁻¹∘E_bc∘Γ_ab∘E_ab in the frame of a,
-/// so that Ψ_ac = (Γ_bc Γ_ab)∘(this). Exactly affine outside both supports.
-class ComposedMap : public ElasticMap {
- public:
-  /// Both maps must outlive the composition.
-  ComposedMap(const ElasticMap& b_from_a, const RigidTransform& rigid_b_from_a, const ElasticMap& c_from_b);
-
-  AffineMap affine() const override;
-  Points displacement(const Points& x) const override;
-  Points displacement_gradient(const Points& x) const override;
-  Support support() const override;
-
- private:
-  const ElasticMap& b_from_a_;
-  RigidTransform rigid_b_from_a_;
-  const ElasticMap& c_from_b_;
-};
-
-/// x ↦ outer(inner(x)).
-AffineMap compose(const AffineMap& outer, const AffineMap& inner);
-
-/// Throws InvalidInput for a singular map.
-AffineMap inverse(const AffineMap& map);
-
-AffineMap as_affine(const RigidTransform& transform);
 
 }  // namespace bespoke

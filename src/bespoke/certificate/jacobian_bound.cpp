@@ -96,7 +96,7 @@ struct RowCoefficients {
   }
 };
 
-constexpr int node_of_row(int i, int j) { return (i * block_edge + j) * block_edge; }
+constexpr int node_of_row(int i, int j) { return number_in_block({i, j, 0}); }
 
 // Bound of the error of a computed coefficient: six products of three components, each at most `largest` and
 // off by `component_error`; fewer than 16 roundings on the way of each product to the coefficient.
@@ -118,7 +118,7 @@ double largest_component(const NodeBlock& sum, const Matrix3& linear, double sca
   for (int i = 0; i < leaf_edge; ++i)
     for (int j = 0; j < leaf_edge; ++j) {
       row.compute(sum, node_of_row(i, j), linear, scale);
-      double* bound = &block.lower_bound[static_cast<std::size_t>((i * leaf_edge + j) * leaf_edge)];
+      double* bound = &block.lower_bound[static_cast<std::size_t>(number_of_place({i, j, 0}))];
       for (int n = 0; n < lanes; ++n) bound[n] = row.values[0][n];
       for (int coefficient = 1; coefficient < 27; ++coefficient)
         for (int n = 0; n < lanes; ++n) {
@@ -163,10 +163,11 @@ void bound_block(const NodeBlock& sum, const Matrix3& linear, double scale, doub
 }
 
 BezierDeterminant bezier_coefficients(const NodeBlock& sum, int cell, const Matrix3& linear, double scale) {
+  const LatticeCoordinates place = place_of_number(cell);
   RowCoefficients row;
-  row.compute(sum, node_of_row(cell / 64, cell / 8 % 8), linear, scale);
+  row.compute(sum, node_of_row(place[0], place[1]), linear, scale);
   BezierDeterminant coefficients;
-  for (int n = 0; n < 27; ++n) coefficients[n] = row.values[n][cell % 8];
+  for (int n = 0; n < 27; ++n) coefficients[n] = row.values[n][static_cast<std::size_t>(place[2])];
   return coefficients;
 }
 

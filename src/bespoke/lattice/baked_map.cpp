@@ -28,16 +28,15 @@ Points BakedMap::displacement_gradient(const Points& x) const {
 
 Support BakedMap::support() const {
   Support support;
-  // Deeper leaves, with the cell around them, lie inside those of level 0 with theirs; they say where detail
-  // is.
+  // Level 0 with the cell around its leaves holds all deeper leaves with theirs. These are listed all the same:
+  // a bake of this map refines where balls are small.
   for (const PyramidLevel& level : pyramid_.levels) {
+    const Lattice lattice{pyramid_.origin, level.voxel_size};
     BallCloud cloud;
     cloud.centers.resize(3, static_cast<Eigen::Index>(level.leaves.size()));
-    for (std::size_t i = 0; i < level.leaves.size(); ++i) {
-      const Vector3 leaf(level.leaves[i][0], level.leaves[i][1], level.leaves[i][2]);
+    for (std::size_t i = 0; i < level.leaves.size(); ++i)
       cloud.centers.col(static_cast<Eigen::Index>(i)) =
-          pyramid_.origin + level.voxel_size * (leaf_edge * leaf + Vector3::Constant((leaf_edge - 1) / 2.0));
-    }
+          lattice.at(as_vector(first_node(level.leaves[i])) + Vector3::Constant((leaf_edge - 1) / 2.0));
     cloud.radius = std::sqrt(3.0) * (leaf_edge + 1) / 2.0 * level.voxel_size;
     support.clouds.push_back(std::move(cloud));
   }

@@ -6,69 +6,57 @@
 namespace bespoke {
 namespace {
 
-// Which leaves around an entry exist, from the pointers alone.
-std::array<bool, 8> present_blocks(const PyramidEntry& entry) {
-  std::array<bool, 8> present;
-  for (int octant = 0; octant < 8; ++octant) present[octant] = entry.blocks[octant] != absent_leaf();
-  return present;
-}
-
 // Cells with a corner in a leaf: all of them where the entry is a leaf, else those at faces towards one.
 CellMask nonzero_cells(const PyramidEntry& entry) {
-  const std::array<bool, 8> present = present_blocks(entry);
+  std::array<bool, 8> present;
+  for (int block = 0; block < 8; ++block) present[block] = entry.blocks[block] != absent_leaf();
   CellMask cells;
   if (present[0]) return cells.set();
-  for (int i = 0; i < leaf_edge; ++i)
-    for (int j = 0; j < leaf_edge; ++j)
-      for (int k = 0; k < leaf_edge; ++k) {
-        const int reached =
-            (i == leaf_edge - 1 ? 4 : 0) | (j == leaf_edge - 1 ? 2 : 0) | (k == leaf_edge - 1);
-        for (int octant = 1; octant < 8; ++octant)
-          if ((octant & reached) == octant && present[octant]) cells.set((i * leaf_edge + j) * leaf_edge + k);
-      }
+  for (int cell = 0; cell < leaf_nodes; ++cell)
+    for (int block = 1; block < 8; ++block)
+      if (present[block] && cell_reaches(place_of_number(cell), block))
+        cells.set(static_cast<std::size_t>(cell));
   return cells;
 }
 
-// Bit (i·4 + j)·4 + k: some cell of the 2³ group at cell (2i, 2j, 2k) is set.
-std::bitset<64> occupied_groups(const CellMask& cells) {
-  std::bitset<64> groups;
-  for (int i = 0; i < leaf_edge; ++i)
-    for (int j = 0; j < leaf_edge; ++j)
-      for (int k = 0; k < leaf_edge; ++k)
-        if (cells[(i * leaf_edge + j) * leaf_edge + k]) groups.set((i / 2 * 4 + j / 2) * 4 + k / 2);
+// Which of the 4³ groups of 2³ cells, each one cell of the level above; group (i, j, k) at (i·4 + j)·4 + k.
+using GroupMask = std::bitset<64>;
+
+constexpr std::size_t group_of(const LatticeCoordinates& cell) {
+  return static_cast<std::size_t>((cell[0] / 2 * 4 + cell[1] / 2) * 4 + cell[2] / 2);
+}
+
+GroupMask occupied_groups(const CellMask& cells) {
+  GroupMask groups;
+  for (int cell = 0; cell < leaf_nodes; ++cell)
+    if (cells[static_cast<std::size_t>(cell)]) groups.set(group_of(place_of_number(cell)));
   return groups;
 }
 
-CellMask cells_of_groups(const std::bitset<64>& groups) {
+CellMask cells_of_groups(const GroupMask& groups) {
   CellMask cells;
-  for (int i = 0; i < leaf_edge; ++i)
-    for (int j = 0; j < leaf_edge; ++j)
-      for (int k = 0; k < leaf_edge; ++k)
-        if (groups[(i / 2 * 4 + j / 2) * 4 + k / 2]) cells.set((i * leaf_edge + j) * leaf_edge + k);
+  for (int cell = 0; cell < leaf_nodes; ++cell)
+    if (groups[group_of(place_of_number(cell))]) cells.set(static_cast<std::size_t>(cell));
   return cells;
 }
 
-// The cells of an octant, one a group of the octant's entry.
-CellMask split_cells(int octant, const std::bitset<64>& groups) {
+// The cells of an octant, one a group of the entry that covers the octant.
+CellMask split_cells(int octant, const GroupMask& groups) {
+  const LatticeCoordinates first = first_place_of_octant(octant);
   CellMask cells;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      for (int k = 0; k < 4; ++k)
-        if (groups[(i * 4 + j) * 4 + k])
-          cells.set(((4 * (octant >> 2 & 1) + i) * leaf_edge + 4 * (octant >> 1 & 1) + j) * leaf_edge +
-                    4 * (octant & 1) + k);
+  for (int group = 0; group < 64; ++group)
+    if (groups[static_cast<std::size_t>(group)])
+      cells.set(
+          static_cast<std::size_t>(number_of_place(moved(first, {group >> 4, group >> 2 & 3, group & 3}))));
   return cells;
 }
 
 void add_leaves(const PyramidEntry& entry, NodeBlock& sum) {
-  int node = 0;
-  for (int i = 0; i < block_edge; ++i)
-    for (int j = 0; j < block_edge; ++j)
-      for (int k = 0; k < block_edge; ++k, ++node) {
-        const float* value =
-            entry.blocks[(i >> 3) << 2 | (j >> 3) << 1 | k >> 3] + node_offset(i & 7, j & 7, k & 7);
-        for (int c = 0; c < 3; ++c) sum[c][node] += value[c];
-      }
+  for (int node = 0; node < block_nodes; ++node) {
+    const BlockValue from = block_values[node];
+    const float* value = entry.blocks[from.leaf] + from.offset;
+    for (int c = 0; c < 3; ++c) sum[c][node] += value[c];
+  }
 }
 
 using Enter = std::function<bool(int level, const LeafCoordinates& leaf)>;
@@ -96,7 +84,7 @@ class Visitor {
     NodeBlock& sum = *blocks_[level];
     add_leaves(entry, sum);
     CellMask finest = cells;
-    std::array<std::bitset<64>, 8> groups;
+    std::array<GroupMask, 8> groups;
     for (int octant = 0; octant < 8; ++octant) {
       if (entry.children[octant] == no_leaf) continue;
       groups[octant] = occupied_groups(nonzero_cells(index_.levels[level + 1][entry.children[octant]]));
@@ -129,7 +117,7 @@ void visit_finest_cells(const PyramidIndex& index, std::size_t root, const Enter
 
 void refine_block(const NodeBlock& coarse, int octant, NodeBlock& fine) {
   constexpr int plane = block_edge * block_edge;
-  const int first = 4 * ((octant >> 2 & 1) * plane + (octant >> 1 & 1) * block_edge + (octant & 1));
+  const int first = number_in_block(first_place_of_octant(octant));
   for (int c = 0; c < 3; ++c) {
     const double* from = coarse[c].data() + first;
     double* to = fine[c].data();

@@ -8,15 +8,26 @@
 
 namespace bespoke {
 
-/// Nodes along an edge of the block that the 8³ cells of an entry need, and nodes of the block.
-inline constexpr int block_edge = leaf_edge + 1;
-inline constexpr int block_nodes = block_edge * block_edge * block_edge;
-
-/// Sum of the levels so far at the 9³ nodes of an entry, one array a component; node (i, j, k) at
-/// (i·9 + j)·9 + k. Mesh units.
+/// Sum of the levels so far at the 9³ nodes of an entry, one array a component; nodes by number_in_block.
+/// Mesh units.
 using NodeBlock = std::array<std::array<double, block_nodes>, 3>;
 
-/// Which of the 8³ cells of an entry; cell (i, j, k) at (i·8 + j)·8 + k.
+/// Where the value at a node of a block stands: in which of the eight leaves, and from which float of it.
+struct BlockValue {
+  int leaf = 0;
+  int offset = 0;
+};
+inline constexpr std::array<BlockValue, block_nodes> block_values = [] {
+  std::array<BlockValue, block_nodes> values{};
+  for (int node = 0; node < block_nodes; ++node) {
+    const LatticeCoordinates place = place_in_block(node);
+    values[static_cast<std::size_t>(node)] = {leaf_of_block(place),
+                                              3 * number_of_place(place_in_leaf(place))};
+  }
+  return values;
+}();
+
+/// Which of the 8³ cells of an entry, by number_of_place.
 using CellMask = std::bitset<leaf_nodes>;
 
 /// An entry of the pyramid with what the map is in its cells.

@@ -1,9 +1,16 @@
 #include "bespoke/lattice/leaf_table.h"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
 namespace bespoke {
+
+std::vector<LeafCoordinates> unique_leaves(std::vector<LeafCoordinates> leaves) {
+  std::sort(leaves.begin(), leaves.end());
+  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  return leaves;
+}
 
 LeafTable::LeafTable(const std::vector<LeafCoordinates>& leaves)
     : slots_(std::bit_ceil(2 * leaves.size() + 2)), mask_(slots_.size() - 1) {

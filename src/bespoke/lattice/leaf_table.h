@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
-#include "bespoke/lattice/pyramid.h"
+#include "bespoke/lattice/leaf.h"
 
 namespace bespoke {
+
+/// In lexicographic order, each once.
+std::vector<LeafCoordinates> unique_leaves(std::vector<LeafCoordinates> leaves);
 
 /// What LeafTable::find answers for a leaf that is not in the list.
 inline constexpr int no_leaf = -1;

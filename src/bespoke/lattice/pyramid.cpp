@@ -30,9 +30,9 @@ void require_valid_level(const PyramidLevel& level, ValuePrecision precision, st
   if (!(level.voxel_size > 0 && std::isfinite(level.voxel_size)))
     refuse(index, "voxel size " + std::to_string(level.voxel_size) + " is not positive and finite");
   if (level.leaves.empty()) refuse(index, "no leaf; leave the level out");
-  if (level.values.size() != 3 * leaf_nodes * level.leaves.size())
+  if (level.values.size() != leaf_floats * level.leaves.size())
     refuse(index, std::to_string(level.values.size()) + " values for " + std::to_string(level.leaves.size()) +
-                      " leaves; each has " + std::to_string(3 * leaf_nodes));
+                      " leaves; each has " + std::to_string(leaf_floats));
   for (std::size_t i = 0; i < level.leaves.size(); ++i) {
     for (const int coordinate : level.leaves[i])
       if (!(coordinate >= -largest_leaf_coordinate && coordinate <= largest_leaf_coordinate))
@@ -43,7 +43,7 @@ void require_valid_level(const PyramidLevel& level, ValuePrecision precision, st
   const auto require_all = [&](const auto& good, const char* what) {
     const auto bad = std::find_if_not(level.values.begin(), level.values.end(), good);
     if (bad == level.values.end()) return;
-    const auto leaf = static_cast<std::size_t>(bad - level.values.begin()) / 3 / leaf_nodes;
+    const auto leaf = static_cast<std::size_t>(bad - level.values.begin()) / leaf_floats;
     refuse(index, "a value of " + name(level.leaves[leaf]) + " is not " + what);
   };
   require_all([](float value) { return std::isfinite(value); }, "finite");
@@ -57,8 +57,7 @@ void require_nested(const PyramidLevel& coarse, const PyramidLevel& fine, std::s
                       std::to_string(coarse.voxel_size));
   const LeafTable table(coarse.leaves);
   for (const LeafCoordinates& leaf : fine.leaves)
-    if (table.find({leaf[0] >> 1, leaf[1] >> 1, leaf[2] >> 1}) == no_leaf)
-      refuse(index, name(leaf) + " has no leaf above it");
+    if (table.find(parent_of(leaf)) == no_leaf) refuse(index, name(leaf) + " has no leaf above it");
 }
 
 }  // namespace
@@ -92,11 +91,13 @@ void round_values(std::span<float> values, double tolerance, ValuePrecision prec
   }
 }
 
-std::size_t Pyramid::voxel_count() const {
-  std::size_t voxels = 0;
-  for (const PyramidLevel& level : levels) voxels += level.leaves.size() * leaf_nodes;
-  return voxels;
+std::size_t Pyramid::leaf_count() const {
+  std::size_t leaves = 0;
+  for (const PyramidLevel& level : levels) leaves += level.leaves.size();
+  return leaves;
 }
+
+std::size_t Pyramid::voxel_count() const { return leaf_nodes * leaf_count(); }
 
 std::size_t Pyramid::byte_count() const {
   std::size_t bytes = 0;

@@ -1,22 +1,14 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "bespoke/lattice/lattice.h"
+#include "bespoke/lattice/leaf.h"
 #include "bespoke/types.h"
 
 namespace bespoke {
-
-/// Coordinates of a leaf in units of leaves: leaf c holds the nodes 8 c … 8 c + 7 of its level along each
-/// axis.
-using LeafCoordinates = std::array<int, 3>;
-
-/// Nodes along an edge of a leaf, and nodes of a leaf. The same leaves as an OpenVDB tree's, so that storing
-/// copies them.
-inline constexpr int leaf_edge = 8;
-inline constexpr int leaf_nodes = leaf_edge * leaf_edge * leaf_edge;
 
 /// What values are rounded to and stored as.
 enum class ValuePrecision {
@@ -34,9 +26,12 @@ float rounded_to_half(float value);
 struct PyramidLevel {
   double voxel_size = 0;                ///< mesh units
   std::vector<LeafCoordinates> leaves;  ///< in lexicographic order, each once
-  /// 3·512 floats a leaf, in the leaves' order; node (i, j, k) of a leaf starts at 3·((i·8 + j)·8 + k). Mesh
+  /// leaf_floats a leaf, in the leaves' order; a node starts at 3·number_of_place within its leaf. Mesh
   /// units.
   std::vector<float> values;
+
+  const float* values_of(std::size_t leaf) const { return values.data() + leaf_floats * leaf; }
+  float* values_of(std::size_t leaf) { return values.data() + leaf_floats * leaf; }
 };
 
 /// u as a sum of nested, node-aligned lattices (src/bespoke/README.md, "Bake"): node i of a level is node 2 i
@@ -48,6 +43,8 @@ struct Pyramid {
   std::vector<PyramidLevel> levels;  ///< coarse to fine, voxel_size halved from one to the next
   ValuePrecision precision = ValuePrecision::single;
 
+  Lattice lattice(int level) const { return {origin, levels[static_cast<std::size_t>(level)].voxel_size}; }
+  std::size_t leaf_count() const;   ///< all levels
   std::size_t voxel_count() const;  ///< whole leaves, all levels
   std::size_t byte_count() const;   ///< of values and leaf coordinates
 };

@@ -1,27 +1,34 @@
 #include "bespoke/lattice/pyramid_index.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
 
-constexpr std::array<float, 3 * leaf_nodes> zeros{};
-
-LeafCoordinates octant_of(const LeafCoordinates& leaf, int octant) {
-  return {leaf[0] + (octant >> 2 & 1), leaf[1] + (octant >> 1 & 1), leaf[2] + (octant & 1)};
-}
+constexpr std::array<float, leaf_floats> zeros{};
 
 std::vector<LeafCoordinates> with_lower_neighbours(const std::vector<LeafCoordinates>& leaves) {
   std::vector<LeafCoordinates> entries;
   entries.reserve(8 * leaves.size());
-  for (const LeafCoordinates& leaf : leaves)
-    for (int octant = 0; octant < 8; ++octant)
-      entries.push_back(octant_of({leaf[0] - 1, leaf[1] - 1, leaf[2] - 1}, octant));
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  return entries;
+  for (const LeafCoordinates& leaf : leaves) {
+    const LeafCoordinates lowest = moved(leaf, {-1, -1, -1});
+    for (int block = 0; block < 8; ++block) entries.push_back(moved(lowest, corner_step(block)));
+  }
+  return unique_leaves(std::move(entries));
+}
+
+PyramidEntry make_entry(const LeafCoordinates& at, const PyramidLevel& level, const LeafTable& leaves,
+                        const LeafTable& finer_entries) {
+  PyramidEntry entry;
+  entry.leaf = at;
+  for (int n = 0; n < 8; ++n) {
+    const int leaf = leaves.find(moved(at, corner_step(n)));
+    entry.blocks[n] = leaf == no_leaf ? absent_leaf() : level.values_of(static_cast<std::size_t>(leaf));
+    entry.children[n] = finer_entries.find(child_of(at, n));
+  }
+  return entry;
 }
 
 }  // namespace
@@ -37,17 +44,8 @@ PyramidIndex::PyramidIndex(const Pyramid& pyramid) : levels(pyramid.levels.size(
     std::vector<PyramidEntry>& entries = levels[level];
     entries.resize(coordinates.size());
     parallel_for(entries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const LeafCoordinates& leaf = coordinates[i];
-        entries[i].leaf = leaf;
-        for (int octant = 0; octant < 8; ++octant) {
-          const int block = leaves.find(octant_of(leaf, octant));
-          entries[i].blocks[octant] =
-              block == no_leaf ? absent_leaf() : &stored.values[std::size_t{3} * leaf_nodes * block];
-          entries[i].children[octant] =
-              finer_entries.find(octant_of({2 * leaf[0], 2 * leaf[1], 2 * leaf[2]}, octant));
-        }
-      }
+      for (std::size_t i = begin; i < end; ++i)
+        entries[i] = make_entry(coordinates[i], stored, leaves, finer_entries);
     });
     finer_entries = LeafTable(coordinates);
   }

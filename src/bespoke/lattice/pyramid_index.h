@@ -13,7 +13,7 @@ namespace bespoke {
 /// neighbour on its upper side exists, because cells that straddle the two are not zero.
 struct PyramidEntry {
   LeafCoordinates leaf{};
-  /// Values of the leaves at `leaf` + (o >> 2 & 1, o >> 1 & 1, o & 1), o = 0 … 7; zeros where there is none.
+  /// Values of the leaves at `leaf` + corner_step(0 … 7); zeros where there is none.
   std::array<const float*, 8> blocks{};
   /// Entries of the next level that cover the octants, or no_leaf.
   std::array<std::int32_t, 8> children{};
@@ -30,8 +30,5 @@ struct PyramidIndex {
   std::vector<std::vector<PyramidEntry>> levels;  ///< entries in lexicographic order
   LeafTable roots;                                ///< finds the entries of level 0
 };
-
-/// Offset of node (i, j, k) of a leaf within its values.
-inline constexpr int node_offset(int i, int j, int k) { return 3 * ((i * leaf_edge + j) * leaf_edge + k); }
 
 }  // namespace bespoke

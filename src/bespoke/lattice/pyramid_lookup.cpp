@@ -15,7 +15,7 @@ constexpr double coordinate_limit = 1 << 30;
 
 // A cell of an entry, and where a point lies in it.
 struct CellPosition {
-  std::array<int, 3> cell;         // of the level's lattice
+  LatticeCoordinates cell;         // of the level's lattice
   std::array<double, 3> fraction;  // in [0, 1)
 };
 
@@ -103,7 +103,7 @@ class Descent {
       if (!(std::abs(lattice[axis]) < coordinate_limit)) return;
     }
     CellPosition position = locate(lattice);
-    const LeafCoordinates leaf = {position.cell[0] >> 3, position.cell[1] >> 3, position.cell[2] >> 3};
+    const LeafCoordinates leaf = leaf_of(position.cell);
     if (leaf != leaf_ || !known_) {
       leaf_ = leaf;
       known_ = true;
@@ -113,8 +113,7 @@ class Descent {
     for (std::size_t level = 0; found != no_leaf; ++level) {
       const PyramidEntry& entry = index_.levels[level][found];
       add(level, corners_of(entry, position), position.fraction);
-      found =
-          entry.children[(position.cell[0] & 4) | (position.cell[1] & 4) >> 1 | (position.cell[2] & 4) >> 2];
+      found = entry.children[octant_of_cell(position.cell)];
       if (found == no_leaf) return;
       for (int axis = 0; axis < 3; ++axis) {
         // Doubling is exact, so all levels see the same point.

@@ -2,9 +2,10 @@
 
 #include <utility>
 
-#include "bespoke/bake/sampling.h"
+#include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/error.h"
+#include "bespoke/mapping/composed_map.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {

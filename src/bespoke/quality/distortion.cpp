@@ -40,9 +40,7 @@ Points band_samples(const Support& support, std::size_t samples) {
   Points points(3, static_cast<Eigen::Index>(leaves.size() * per_leaf));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const LeafCoordinates& leaf = leaves[static_cast<std::size_t>(i) / per_leaf];
-    const Vector3 corner(leaf[0], leaf[1], leaf[2]);
-    points.col(i) = lattice.origin +
-                    leaf_edge * lattice.voxel_size * (corner + spread_over_cube(static_cast<std::size_t>(i)));
+    points.col(i) = lattice.at(leaf_edge * (as_vector(leaf) + spread_over_cube(static_cast<std::size_t>(i))));
   }
   return points;
 }

@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "bespoke/asset/detail/preview.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"
 
 namespace bespoke {
@@ -19,31 +21,51 @@ class ScalarSampler {
   float operator()(const Vector3& x) const {
     const Vector3 lattice = (x - grid_.origin) / grid_.voxel_size;
     if (!(lattice.cwiseAbs().maxCoeff() < 1 << 28)) return grid_.background;
-    const Eigen::Vector3i lower = lattice.array().floor().cast<int>();
-    const Vector3 f = lattice - lower.cast<double>();
+    const LatticeCoordinates lower = Lattice{grid_.origin, grid_.voxel_size}.cell_of(x);
+    const Vector3 f = lattice - as_vector(lower);
     double sum = 0;
-    for (int n = 0; n < 8; ++n) {
-      const Eigen::Vector3i d(n >> 2 & 1, n >> 1 & 1, n & 1);
+    for (int corner = 0; corner < 8; ++corner) {
+      const LatticeCoordinates step = corner_step(corner);
       double weight = 1;
-      for (int axis = 0; axis < 3; ++axis) weight *= d[axis] ? f[axis] : 1 - f[axis];
-      sum += weight * node(lower + d);
+      for (int axis = 0; axis < 3; ++axis) weight *= step[axis] ? f[axis] : 1 - f[axis];
+      sum += weight * value_at(moved(lower, step));
     }
     return static_cast<float>(sum);
   }
 
  private:
   // Distances from both sides look alike: beyond the band their sign is not stored.
-  double node(const Eigen::Vector3i& at) const {
-    const int leaf = table_.find({at.x() >> 3, at.y() >> 3, at.z() >> 3});
+  double value_at(const LatticeCoordinates& node) const {
+    const int leaf = table_.find(leaf_of(node));
     if (leaf == no_leaf) return grid_.background;
-    const int in_leaf = ((at.x() & 7) * leaf_edge + (at.y() & 7)) * leaf_edge + (at.z() & 7);
-    return std::abs(
-        grid_.values[static_cast<std::size_t>(leaf) * leaf_nodes + static_cast<std::size_t>(in_leaf)]);
+    return std::abs(grid_.values[static_cast<std::size_t>(leaf) * leaf_nodes +
+                                 static_cast<std::size_t>(number_of_place(place_in_leaf(node)))]);
   }
 
   const StoredGrid& grid_;
   LeafTable table_;
 };
+
+// Nodes of `count` leaves in a row along z.
+Points row_of_nodes(const Lattice& lattice, const LeafCoordinates& first, int count) {
+  Points x(3, count * leaf_nodes);
+  for (int n = 0; n < count * leaf_nodes; ++n) {
+    const LeafCoordinates leaf = moved(first, {0, 0, n / leaf_nodes});
+    x.col(n) = lattice(moved(first_node(leaf), place_of_number(n % leaf_nodes)));
+  }
+  return x;
+}
+
+// The leaf unless all its values are the background's.
+void add_leaf(const LeafCoordinates& leaf, const std::array<float, leaf_nodes>& distances, StoredGrid& grid) {
+  LeafMask mask{};
+  for (std::size_t node = 0; node < leaf_nodes; ++node)
+    if (distances[node] < grid.background) mask[node / 64] |= std::uint64_t{1} << (node % 64);
+  if (std::all_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word == 0; })) return;
+  grid.leaves.push_back(leaf);
+  grid.active.push_back(mask);
+  for (const float distance : distances) grid.values.push_back(std::min(distance, grid.background));
+}
 
 }  // namespace
 
@@ -60,31 +82,17 @@ StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
   grid.metadata["bespoke:meaning"] = std::string(
       "unsigned distance to the source model, carried from the other model's, minus one voxel: a shell");
   const ScalarSampler sample(distance);
+  const Lattice lattice{grid.origin, grid.voxel_size};
   const Eigen::Vector3i last = ((box.sizes() / grid.voxel_size).array() / leaf_edge).floor().cast<int>() + 1;
+  const int row = last.z() + 2;
   for (int i = -1; i <= last.x(); ++i)
     for (int j = -1; j <= last.y(); ++j) {
-      const int row = last.z() + 2;
-      Points x(3, row * leaf_nodes);
-      for (int n = 0; n < row * leaf_nodes; ++n) {
-        const int node = n % leaf_nodes;
-        x.col(n) =
-            grid.origin + grid.voxel_size * Vector3(leaf_edge * i + node / 64, leaf_edge * j + node / 8 % 8,
-                                                    leaf_edge * (n / leaf_nodes - 1) + node % 8);
-      }
-      const Points back = map_back(x);
+      const Points back = map_back(row_of_nodes(lattice, {i, j, -1}, row));
       for (int k = 0; k < row; ++k) {
-        std::array<float, leaf_nodes> values;
-        LeafMask mask{};
-        for (int node = 0; node < leaf_nodes; ++node) {
-          const float value = sample(back.col(k * leaf_nodes + node)) - voxel;
-          values[static_cast<std::size_t>(node)] = std::min(value, grid.background);
-          if (value < grid.background)
-            mask[static_cast<std::size_t>(node / 64)] |= std::uint64_t{1} << (node % 64);
-        }
-        if (std::all_of(mask.begin(), mask.end(), [](std::uint64_t word) { return word == 0; })) continue;
-        grid.leaves.push_back({i, j, k - 1});
-        grid.active.push_back(mask);
-        grid.values.insert(grid.values.end(), values.begin(), values.end());
+        std::array<float, leaf_nodes> distances;
+        for (int node = 0; node < leaf_nodes; ++node)
+          distances[static_cast<std::size_t>(node)] = sample(back.col(k * leaf_nodes + node)) - voxel;
+        add_leaf({i, j, k - 1}, distances, grid);
       }
     }
   if (grid.leaves.empty()) throw InvalidInput("the source's distance grid has no surface within the box");

@@ -6,12 +6,12 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 
-#include <algorithm>
 #include <cstring>
 #include <sstream>
 #include <streambuf>
 #include <utility>
 
+#include "bespoke/asset/detail/vdb_leaves.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/sha256.h"
@@ -100,8 +100,7 @@ openvdb::GridBase::Ptr to_vdb(const StoredGrid& stored) {
   std::vector<Leaf*> leaves;
   leaves.reserve(stored.leaves.size());
   for (const LeafCoordinates& leaf : stored.leaves)
-    leaves.push_back(grid->tree().touchLeaf(
-        openvdb::Coord(leaf[0] * leaf_edge, leaf[1] * leaf_edge, leaf[2] * leaf_edge)));
+    leaves.push_back(grid->tree().touchLeaf(openvdb::Coord(first_node(leaf).data())));
   constexpr std::size_t floats = leaf_nodes * component_count<Grid>;
   parallel_for(leaves.size(), leaf_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -145,18 +144,11 @@ void require(bool holds, const openvdb::GridBase& grid, const std::string& what)
 // Not parallel: this also runs in a forked child, where only the forking thread lives on.
 void read_leaves(const openvdb::GridBase& base, auto& grid, StoredGrid& stored) {
   using Grid = std::decay_t<decltype(grid)>;
-  using Leaf = typename Grid::TreeType::LeafNodeType;
   auto tile = grid.tree().cbeginValueOn();
   tile.setMaxDepth(Grid::TreeType::ValueOnCIter::LEAF_DEPTH - 1);
   require(!tile, base, "has active tiles");
 
-  std::vector<std::pair<LeafCoordinates, const Leaf*>> leaves;
-  for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
-    const openvdb::Coord origin = leaf->origin();
-    leaves.push_back({{origin.x() >> 3, origin.y() >> 3, origin.z() >> 3}, leaf.getLeaf()});
-  }
-  std::sort(leaves.begin(), leaves.end());
-
+  const auto leaves = sorted_leaves(grid.tree());
   constexpr std::size_t floats = leaf_nodes * component_count<Grid>;
   stored.components = component_count<Grid>;
   if constexpr (component_count<Grid> == 1) {
@@ -170,14 +162,12 @@ void read_leaves(const openvdb::GridBase& base, auto& grid, StoredGrid& stored) 
   stored.values.resize(leaves.size() * floats);
   bool all_active = true;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const Leaf& leaf = *leaves[i].second;
+    const auto& leaf = *leaves[i].second;
     stored.leaves[i] = leaves[i].first;
     require(leaf.buffer().data() != nullptr, base, "a leaf has no values");
     std::memcpy(stored.values.data() + i * floats, static_cast<const void*>(leaf.buffer().data()),
                 floats * sizeof(float));
-    for (std::size_t word = 0; word < stored.active[i].size(); ++word)
-      stored.active[i][word] =
-          leaf.getValueMask().template getWord<openvdb::Index64>(static_cast<openvdb::Index>(word));
+    stored.active[i] = active_mask(leaf);
     all_active = all_active && leaf.getValueMask().isOn();
   }
   if (all_active) stored.active.clear();

@@ -14,7 +14,7 @@ std::string vdb_bytes(const StoredFile& file);
 
 /// The grids and metadata of a .vdb file in memory. Refuses grids and metadata of types that an asset does
 /// not use, tiles with active values, transforms that are not uniform. Throws FormatError;
-/// but OpenVDB may crash on bytes that nobody vouches for, see read_untrusted.
+/// but OpenVDB may crash on bytes that are not as it wrote them, see read_untrusted.
 StoredFile stored_file_from_vdb(std::string_view bytes);
 
 /// Registers OpenVDB's grid types; cheap after the first time. Thread-safe.

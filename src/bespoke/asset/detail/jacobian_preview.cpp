@@ -19,8 +19,14 @@ constexpr std::size_t roots_per_batch = 1024;
 // Some ninety roundings of a double: more than summing and interpolating twenty levels takes.
 constexpr double rounding = 1e-14;
 
-/// Per cell of level 0, in the order of CellMask: least bound of the finest cells in it, infinite for none.
+/// Per cell of a level 0 entry, in the order of CellMask: least bound of the finest cells in it, infinite for
+/// none.
 using RootBounds = std::array<double, leaf_nodes>;
+
+// The cell that holds `cell` on a lattice so many levels up.
+constexpr LatticeCoordinates halved(const LatticeCoordinates& cell, int times) {
+  return {cell[0] >> times, cell[1] >> times, cell[2] >> times};
+}
 
 class RootBounder {
  public:
@@ -33,27 +39,26 @@ class RootBounder {
   RootBounds bounds(std::size_t root) const {
     RootBounds least;
     least.fill(std::numeric_limits<double>::infinity());
-    visit_finest_cells(index_, root, [&](const EntryCells& cells) {
-      const double scale = 1 / pyramid_.levels[static_cast<std::size_t>(cells.level)].voxel_size;
-      JacobianBlock block;
-      bound_block(*cells.sum, linear_, scale, rounding * linear_.cwiseAbs().maxCoeff() + scale * sum_error_,
-                  block);
-      for (int cell = 0; cell < leaf_nodes; ++cell) {
-        if (!cells.finest[static_cast<std::size_t>(cell)]) continue;
-        const std::array<int, 3> at = {cell / 64, cell / 8 % 8, cell % 8};
-        std::size_t coarse = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-          const int fine_cell = leaf_edge * cells.leaf[axis] + at[axis];
-          coarse = coarse * leaf_edge +
-                   static_cast<std::size_t>((fine_cell >> cells.level) - leaf_edge * leaf(root)[axis]);
-        }
-        least[coarse] = std::min(least[coarse], block.lower_bound[static_cast<std::size_t>(cell)]);
-      }
-    });
+    visit_finest_cells(index_, root, [&](const EntryCells& cells) { lower(cells, least); });
     return least;
   }
 
  private:
+  void lower(const EntryCells& cells, RootBounds& least) const {
+    const double scale = 1 / pyramid_.lattice(cells.level).voxel_size;
+    JacobianBlock block;
+    bound_block(*cells.sum, linear_, scale, rounding * linear_.cwiseAbs().maxCoeff() + scale * sum_error_,
+                block);
+    for (int cell = 0; cell < leaf_nodes; ++cell) {
+      const auto number = static_cast<std::size_t>(cell);
+      if (!cells.finest[number]) continue;
+      const LatticeCoordinates fine = moved(first_node(cells.leaf), place_of_number(cell));
+      double& bound =
+          least[static_cast<std::size_t>(number_of_place(place_in_leaf(halved(fine, cells.level))))];
+      bound = std::min(bound, block.lower_bound[number]);
+    }
+  }
+
   const Pyramid& pyramid_;
   PyramidIndex index_;
   Matrix3 linear_;
@@ -67,13 +72,13 @@ class NodeBounds {
       : leaves_(lattice.leaves), bounds_(lattice.leaves.size() * leaf_nodes, outside) {}
 
   /// `cell` in cells of the preview.
-  void lower(const std::array<int, 3>& cell, double bound) {
-    for (int c = 0; c < 8; ++c) {
-      const std::array<int, 3> node = {cell[0] + (c >> 2), cell[1] + (c >> 1 & 1), cell[2] + (c & 1)};
-      const int leaf = leaves_.find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
+  void lower(const LatticeCoordinates& cell, double bound) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const LatticeCoordinates node = moved(cell, corner_step(corner));
+      const int leaf = leaves_.find(leaf_of(node));
       if (leaf == no_leaf) continue;
-      const int within = ((node[0] & 7) * leaf_edge + (node[1] & 7)) * leaf_edge + (node[2] & 7);
-      double& old = bounds_[static_cast<std::size_t>(leaf) * leaf_nodes + static_cast<std::size_t>(within)];
+      double& old = bounds_[static_cast<std::size_t>(leaf) * leaf_nodes +
+                            static_cast<std::size_t>(number_of_place(place_in_leaf(node)))];
       old = std::min(old, bound);
     }
   }
@@ -98,10 +103,7 @@ void lower_by_pyramid(const RootBounder& bounder, int halvings, NodeBounds& node
       for (int cell = 0; cell < leaf_nodes; ++cell) {
         const double bound = batch[i][static_cast<std::size_t>(cell)];
         if (std::isinf(bound)) continue;
-        nodes.lower(
-            {(leaf_edge * leaf[0] + cell / 64) >> halvings, (leaf_edge * leaf[1] + cell / 8 % 8) >> halvings,
-             (leaf_edge * leaf[2] + cell % 8) >> halvings},
-            bound);
+        nodes.lower(halved(moved(first_node(leaf), place_of_number(cell)), halvings), bound);
       }
     }
   }

@@ -29,10 +29,11 @@ Box domain(const Asset& asset, Box box) {
   box.min().array() -= asset.record.lambda;
   box.max().array() += asset.record.lambda;
   for (const PyramidLevel& level : asset.pyramid.levels) {
+    const Lattice lattice{asset.pyramid.origin, level.voxel_size};
+    constexpr int last = leaf_edge - 1;
     for (const LeafCoordinates& leaf : level.leaves) {
-      const Vector3 corner = Vector3(leaf[0], leaf[1], leaf[2]) * leaf_edge;
-      box.extend(asset.pyramid.origin + level.voxel_size * corner);
-      box.extend(asset.pyramid.origin + level.voxel_size * (corner + Vector3::Constant(leaf_edge - 1)));
+      box.extend(lattice(first_node(leaf)));
+      box.extend(lattice(moved(first_node(leaf), {last, last, last})));
     }
   }
   return box;
@@ -64,19 +65,19 @@ LeafBox leaf_box(const Box& box, const Vector3& origin, double voxel_size) {
 }
 
 template <class Body>
-void for_each_node(const std::array<int, 3>& count, const Body& body) {
+void for_each_node(const LatticeCoordinates& count, const Body& body) {
   for (int i = 0; i < count[0]; ++i)
     for (int j = 0; j < count[1]; ++j)
       for (int k = 0; k < count[2]; ++k) body(i, j, k);
 }
 
 /// Nodes of the box, moved by `shift` voxels along each axis.
-Points lattice_points(const LeafBox& leaves, const Vector3& origin, double voxel_size, double shift) {
+Points lattice_points(const LeafBox& leaves, const Lattice& lattice, double shift) {
   Points points(3, leaves.node_count());
+  const LatticeCoordinates first = first_node(leaves.low);
   for_each_node({leaves.nodes(0), leaves.nodes(1), leaves.nodes(2)}, [&](int i, int j, int k) {
-    const Vector3 node(leaves.low[0] * leaf_edge + i, leaves.low[1] * leaf_edge + j,
-                       leaves.low[2] * leaf_edge + k);
-    points.col(leaves.node(i, j, k)) = origin + voxel_size * (node + Vector3::Constant(shift));
+    points.col(leaves.node(i, j, k)) =
+        lattice.at(as_vector(moved(first, {i, j, k})) + Vector3::Constant(shift));
   });
   return points;
 }
@@ -90,8 +91,10 @@ Statistics preview_error(const LeafBox& leaves, const Points& nodes, const Point
   errors.reserve(static_cast<std::size_t>(leaves.node_count()));
   for_each_node({leaves.nodes(0) - 1, leaves.nodes(1) - 1, leaves.nodes(2) - 1}, [&](int i, int j, int k) {
     Vector3 mean = Vector3::Zero();
-    for (int corner = 0; corner < 8; ++corner)
-      mean += nodes.col(leaves.node(i + (corner >> 2), j + (corner >> 1 & 1), k + (corner & 1))) / 8;
+    for (int corner = 0; corner < 8; ++corner) {
+      const LatticeCoordinates node = moved({i, j, k}, corner_step(corner));
+      mean += nodes.col(leaves.node(node[0], node[1], node[2])) / 8;
+    }
     errors.push_back((mean - centers.col(leaves.node(i, j, k))).norm());
   });
   return summarize(std::move(errors));
@@ -99,7 +102,7 @@ Statistics preview_error(const LeafBox& leaves, const Points& nodes, const Point
 
 void pack(const LeafBox& leaves, const Points& values, StoredGrid& grid) {
   for_each_node(leaves.count, [&](int a, int b, int c) {
-    grid.leaves.push_back({leaves.low[0] + a, leaves.low[1] + b, leaves.low[2] + c});
+    grid.leaves.push_back(moved(leaves.low, {a, b, c}));
     for_each_node({leaf_edge, leaf_edge, leaf_edge}, [&](int i, int j, int k) {
       const Eigen::Index node = leaves.node(a * leaf_edge + i, b * leaf_edge + j, c * leaf_edge + k);
       for (int axis = 0; axis < 3; ++axis) grid.values.push_back(static_cast<float>(values(axis, node)));
@@ -130,11 +133,10 @@ StoredGrid displacement_preview(const Asset& asset, const BakedMap& baked, const
   grid.voxel_size = preview_voxel_size(asset.pyramid, box.sizes().maxCoeff());
   grid.origin = asset.pyramid.levels.empty() ? box.min() : asset.pyramid.origin;
   const LeafBox leaves = leaf_box(box, grid.origin, grid.voxel_size);
-  const Points nodes = displacement_at(asset, baked, lattice_points(leaves, grid.origin, grid.voxel_size, 0))
-                           .cast<float>()
-                           .cast<double>();
-  const Points centers =
-      displacement_at(asset, baked, lattice_points(leaves, grid.origin, grid.voxel_size, 0.5));
+  const Lattice lattice{grid.origin, grid.voxel_size};
+  const Points nodes =
+      displacement_at(asset, baked, lattice_points(leaves, lattice, 0)).cast<float>().cast<double>();
+  const Points centers = displacement_at(asset, baked, lattice_points(leaves, lattice, 0.5));
   pack(leaves, nodes, grid);
   const Statistics error = preview_error(leaves, nodes, centers);
   grid.metadata["bespoke:meaning"] = std::string(

@@ -2,10 +2,10 @@
 #include <openvdb/tools/MeshToVolume.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "bespoke/asset/detail/grid_conversion.h"
 #include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/detail/vdb_leaves.h"
 #include "bespoke/error.h"
 
 namespace bespoke {
@@ -33,17 +33,9 @@ struct IndexSpaceMesh {
 };
 
 void copy_leaves(const openvdb::FloatTree& tree, StoredGrid& grid) {
-  std::vector<std::pair<LeafCoordinates, const openvdb::FloatTree::LeafNodeType*>> leaves;
-  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-    const openvdb::Coord origin = leaf->origin();
-    leaves.push_back({{origin.x() >> 3, origin.y() >> 3, origin.z() >> 3}, leaf.getLeaf()});
-  }
-  std::sort(leaves.begin(), leaves.end());
-  for (const auto& [coordinates, leaf] : leaves) {
+  for (const auto& [coordinates, leaf] : sorted_leaves(tree)) {
     grid.leaves.push_back(coordinates);
-    LeafMask& mask = grid.active.emplace_back();
-    for (std::size_t word = 0; word < mask.size(); ++word)
-      mask[word] = leaf->getValueMask().getWord<openvdb::Index64>(static_cast<openvdb::Index>(word));
+    grid.active.push_back(active_mask(*leaf));
     grid.values.insert(grid.values.end(), leaf->buffer().data(), leaf->buffer().data() + leaf_nodes);
   }
 }

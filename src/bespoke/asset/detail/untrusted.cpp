@@ -27,7 +27,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Many times what reading takes: sparse values shrink a hundredfold when compressed.
+// Address space and time allowed to the child, generous because sparse values compress by a factor of 100.
 constexpr std::uint64_t base_memory = std::uint64_t{1} << 29;
 constexpr std::uint64_t memory_per_byte = 512;
 constexpr std::uint64_t largest_memory = std::uint64_t{8} << 30;

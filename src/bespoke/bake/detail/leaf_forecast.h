@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "bespoke/bake/band.h"
@@ -39,7 +40,8 @@ class LeafForecast {
     double tolerance;   // below which it is needed: least error of the octants above it, mesh units
     double voxel_size;  // mesh units
   };
-  std::vector<double> errors_of(const ElasticMap& map, const Lattice& coarse,
+  static std::vector<Sample> draw_octants(const std::vector<Sample>& leaves, std::mt19937_64& engine);
+  std::vector<double> errors_of(const ElasticMap& map, const Lattice& fine,
                                 const std::vector<Sample>& octants);
 
   std::vector<Sample> samples_;

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
-
-#include "bespoke/lattice/leaf_table.h"
+#include "bespoke/lattice/leaf.h"
 
 namespace bespoke {
 
@@ -16,10 +14,10 @@ inline constexpr double test_margin = 0.8;
 
 /// The node of cell `number` at which an octant is tested, in the next level's nodes: the cell's centre, or
 /// the middle of a face or an edge, in turn, because harmonic displacements have no error at centres.
-inline std::array<int, 3> tested_node(int number) {
-  const std::array<int, 3> cell = {number / 16, number / 4 % 4, number % 4};
-  const int middle = 1 + (cell[0] + 2 * cell[1] + 4 * cell[2]) % 7;
-  return {2 * cell[0] + (middle >> 2 & 1), 2 * cell[1] + (middle >> 1 & 1), 2 * cell[2] + (middle & 1)};
+inline LatticeCoordinates tested_node(int number) {
+  const LatticeCoordinates cell = {number / 16, number / 4 % 4, number % 4};
+  const LatticeCoordinates middle = corner_step(1 + (cell[0] + 2 * cell[1] + 4 * cell[2]) % 7);
+  return {2 * cell[0] + middle[0], 2 * cell[1] + middle[1], 2 * cell[2] + middle[2]};
 }
 
 }  // namespace bespoke

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/certificate/fold_list.h"
 #include "bespoke/lattice/leaf_table.h"
 #include "bespoke/lattice/pyramid_lookup.h"
 
@@ -15,18 +16,20 @@ namespace bespoke {
 namespace {
 
 constexpr int sweeps_per_round = 2;
-// Of the way to the neighbours' mean: the whole way would keep a checkerboard alive.
+// Of the way to the neighbours' mean (damped Jacobi): a full step leaves the alternating mode undamped.
 constexpr double step_fraction = 0.7;
-// Moves of one level's nodes before those of the next coarser one take over, finer values riding on them: a
-// fold that is wider than its cells learns too slowly from its surroundings. Coarse moves cost accuracy far
-// around, so they come last and for what is left only.
+// Rounds on one level's nodes before those of the next coarser one are moved, which carry the finer residuals
+// along. A sweep smooths over one cell, so a fold that is many cells wide needs coarser ones. These change
+// the map in a wider neighbourhood, so they come last and only for the folds that are left.
 constexpr int rounds_per_level = 10;
 constexpr int levels_upwards = 3;
+// A node and its six neighbours.
+constexpr Eigen::Index stencil = 7;
 // A level is given up when so many rounds leave more than this share of its folds.
 constexpr std::size_t patience = 4;
 constexpr double least_left = 0.9;
 
-using Node = std::array<int, 3>;
+using Node = LatticeCoordinates;
 
 // Nodes of one level that may move, by their place in the level's values.
 using MovableNodes = std::map<std::pair<int, Node>, std::size_t>;
@@ -42,24 +45,19 @@ class Repair {
   // Of the cell that holds the folded one, `coarser` levels up.
   void add_corners(const FoldedCell& cell, int coarser) {
     const int level = std::max(0, cell.level - coarser);
-    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(level)].voxel_size;
-    const Vector3 lattice = (cell.center - pyramid_.origin) / voxel_size;
-    for (int corner = 0; corner < 8; ++corner)
-      add_node(level, {static_cast<int>(std::floor(lattice.x())) + (corner >> 2 & 1),
-                       static_cast<int>(std::floor(lattice.y())) + (corner >> 1 & 1),
-                       static_cast<int>(std::floor(lattice.z())) + (corner & 1)});
+    const Node lower = pyramid_.lattice(level).cell_of(cell.center);
+    for (int corner = 0; corner < 8; ++corner) add_node(level, moved(lower, corner_step(corner)));
   }
 
   void grow() {
     const MovableNodes inner = nodes_;
     for (const auto& [place, offset] : inner)
-      for (int side = 0; side < 27; ++side)
-        add_node(place.first, {place.second[0] + side / 9 - 1, place.second[1] + side / 3 % 3 - 1,
-                               place.second[2] + side % 3 - 1});
+      for (int side = 0; side < neighbour_steps; ++side)
+        add_node(place.first, moved(place.second, neighbour_step(side)));
   }
 
-  // Every movable node goes towards the mean of its six neighbours; one level after the other, because nodes
-  // of several levels may lie at one place and would move it several times.
+  // Every movable node moves towards the mean of its six neighbours; one level after the other, because nodes
+  // of several levels may lie at one place and their moves would add up.
   void sweep() {
     for (int level = 0; level < static_cast<int>(pyramid_.levels.size()); ++level) sweep_level(level);
   }
@@ -84,36 +82,40 @@ class Repair {
     const auto begin = nodes_.lower_bound({level, {lowest, lowest, lowest}});
     const auto end = nodes_.lower_bound({level + 1, {lowest, lowest, lowest}});
     if (begin == end) return;
-    PyramidLevel& stored = pyramid_.levels[static_cast<std::size_t>(level)];
-    Points x(3, 7 * std::distance(begin, end));
+    const Lattice lattice = pyramid_.lattice(level);
+    Points x(3, stencil * std::distance(begin, end));
     Eigen::Index column = 0;
-    for (auto at = begin; at != end; ++at) {
-      const Node& place = at->first.second;
-      const Vector3 node(place[0], place[1], place[2]);
-      x.col(column++) = pyramid_.origin + stored.voxel_size * node;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const double step : {-1.0, 1.0})
-          x.col(column++) = pyramid_.origin + stored.voxel_size * (node + step * Vector3::Unit(axis));
-    }
+    for (auto at = begin; at != end; ++at, column += stencil)
+      put_stencil(lattice, at->first.second, x, column);
     const Points u = look_up(pyramid_, index_, x);
     column = 0;
-    for (auto at = begin; at != end; ++at, column += 7) {
-      const Vector3 change = step_fraction * (u.middleCols(column + 1, 6).rowwise().mean() - u.col(column));
-      float* value = &stored.values[at->second];
-      for (int c = 0; c < 3; ++c) {
-        value[c] += static_cast<float>(change[c]);
-        if (pyramid_.precision == ValuePrecision::half) value[c] = rounded_to_half(value[c]);
-      }
+    for (auto at = begin; at != end; ++at, column += stencil) {
+      const Vector3 mean = u.middleCols(column + 1, stencil - 1).rowwise().mean();
+      const Vector3 change = step_fraction * (mean - u.col(column));
+      move(&pyramid_.levels[static_cast<std::size_t>(level)].values[at->second], change);
       moved_.try_emplace(at->first, Vector3::Zero()).first->second += change;
     }
   }
 
+  static void put_stencil(const Lattice& lattice, const Node& node, Points& x, Eigen::Index column) {
+    x.col(column++) = lattice(node);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double step : {-1.0, 1.0})
+        x.col(column++) = lattice.at(as_vector(node) + step * Vector3::Unit(axis));
+  }
+
+  void move(float* value, const Vector3& change) const {
+    for (int c = 0; c < 3; ++c) {
+      value[c] += static_cast<float>(change[c]);
+      if (pyramid_.precision == ValuePrecision::half) value[c] = rounded_to_half(value[c]);
+    }
+  }
+
   void add_node(int level, const Node& node) {
-    const int leaf =
-        tables_[static_cast<std::size_t>(level)].find({node[0] >> 3, node[1] >> 3, node[2] >> 3});
+    const int leaf = tables_[static_cast<std::size_t>(level)].find(leaf_of(node));
     if (leaf == no_leaf) return;
-    nodes_[{level, node}] = std::size_t{3} * leaf_nodes * static_cast<std::size_t>(leaf) +
-                            static_cast<std::size_t>(node_offset(node[0] & 7, node[1] & 7, node[2] & 7));
+    nodes_[{level, node}] = static_cast<std::size_t>(leaf) * leaf_floats +
+                            static_cast<std::size_t>(3 * number_of_place(place_in_leaf(node)));
   }
 
   Pyramid& pyramid_;

@@ -6,14 +6,25 @@
 #include <cstdio>
 #include <string>
 
-#include "bespoke/bake/sampling.h"
+#include "bespoke/bake/band.h"
+#include "bespoke/bake/detail/measurement.h"
+#include "bespoke/bake/error_points.h"
+#include "bespoke/bake/leaf_samples.h"
 #include "bespoke/error.h"
+#include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
 
+// Memory and error of one uniform level, estimated before anything is allocated.
+struct UniformEstimate {
+  double voxel_size = 0;  // mesh units
+  double bytes = 0;       // somewhat too many where there are millions of leaves
+  double error = 0;       // expected largest trilinear error, mesh units
+};
+
 // Values, coordinates, and the index that the look-up needs (measured: 1.3 entries of 112 bytes a leaf).
-constexpr std::size_t bytes_per_leaf = 3 * leaf_nodes * sizeof(float) + 400;
+constexpr std::size_t bytes_per_leaf = leaf_floats * sizeof(float) + 400;
 // Points and values in flight, and the errors that are measured.
 constexpr std::size_t fixed_bytes = std::size_t{24} << 20;
 
@@ -52,8 +63,7 @@ double probe_error(const ElasticMap& map, const Points& x, double voxel_size) {
     nodes.col(9 * i) = x.col(i);
     for (int corner = 0; corner < 8; ++corner)
       nodes.col(9 * i + 1 + corner) =
-          x.col(i) +
-          voxel_size * (Vector3(corner >> 2 & 1, corner >> 1 & 1, corner & 1) - Vector3::Constant(0.5));
+          x.col(i) + voxel_size * (as_vector(corner_step(corner)) - Vector3::Constant(0.5));
   }
   const Points u = map.displacement(nodes);
   double error = 0;
@@ -67,8 +77,6 @@ std::string short_number(double value) {
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
-
-}  // namespace
 
 UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) {
   const Support support = map.support();
@@ -101,6 +109,32 @@ void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std:
   const double growth = voxel_size / estimate.voxel_size;
   throw MemoryLimitError(message + "; voxels of " + short_number(voxel_size) + " or a tolerance of " +
                          short_number(estimate.error * growth * growth) + " would fit");
+}
+
+}  // namespace
+
+Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions& options,
+                    const Progress& progress) {
+  const Support support = map.support();
+  const Lattice lattice{bounding_box(support).min(), voxel_size};
+  const UniformEstimate estimate = estimate_uniform(map, lattice);
+  require_memory(map, estimate, options.max_memory);
+
+  Bake result;
+  Stopwatch watch;
+  result.summary.peak_bytes = static_cast<std::size_t>(estimate.bytes);
+  const std::vector<LeafCoordinates> leaves = band_leaves(support, lattice);
+  PyramidLevel level = sample_level(map, lattice, leaves, progress);
+  round_values(level.values, options.tolerance, options.precision);
+  keep_leaves(level, [](const LeafCoordinates&, bool zero) { return !zero; });
+  result.summary.evaluated_points = leaves.size() * leaf_nodes;
+  result.pyramid.origin = lattice.origin;
+  result.pyramid.precision = options.precision;
+  if (!level.leaves.empty()) result.pyramid.levels.push_back(std::move(level));
+  result.summary.refine_seconds = watch.lap();
+  Measurement(map, lattice, leaves, options, progress).fully(result.pyramid, result.summary);
+  result.summary.measure_seconds = watch.lap();
+  return result;
 }
 
 }  // namespace bespoke

@@ -39,7 +39,7 @@ struct Part {
 Box image_of(const Corners& corners, const Part& part) {
   Box box;
   for (int n = 0; n < 8; ++n)
-    box.extend(trilinear(corners, part.low + part.edge * Vector3(n >> 2 & 1, n >> 1 & 1, n & 1)));
+    box.extend(trilinear(corners, part.low + part.edge * as_vector(corner_step(n))));
   return box;
 }
 
@@ -68,16 +68,13 @@ std::optional<Vector3> solve(const Corners& corners, const Vector3& y, double to
     }
     if (part.depth == deepest) continue;
     for (int n = 0; n < 8; ++n)
-      parts.push_back(
-          {part.low + part.edge / 2 * Vector3(n >> 2 & 1, n >> 1 & 1, n & 1), part.edge / 2, part.depth + 1});
+      parts.push_back({part.low + part.edge / 2 * as_vector(corner_step(n)), part.edge / 2, part.depth + 1});
   }
   return std::nullopt;
 }
 
-Vector3 node_place(const Pyramid& pyramid, int level, const LeafCoordinates& leaf, int i, int j, int k) {
-  return pyramid.origin +
-         pyramid.levels[static_cast<std::size_t>(level)].voxel_size *
-             Vector3(leaf_edge * leaf[0] + i, leaf_edge * leaf[1] + j, leaf_edge * leaf[2] + k);
+Vector3 node_place(const Pyramid& pyramid, int level, const LeafCoordinates& leaf, int number) {
+  return pyramid.lattice(level)(moved(first_node(leaf), place_in_block(number)));
 }
 
 }  // namespace
@@ -89,8 +86,7 @@ CellSearch::CellSearch(const BakedMap& map) : map_(map) {
     visit_finest_cells(index, root, [&](const EntryCells& cells) {
       Entry entry{cells.level, cells.leaf, cells.finest, {}};
       for (int node = 0; node < block_nodes; ++node) {
-        const Vector3 x = node_place(map.pyramid(), cells.level, cells.leaf, node / (block_edge * block_edge),
-                                     node / block_edge % block_edge, node % block_edge);
+        const Vector3 x = node_place(map.pyramid(), cells.level, cells.leaf, node);
         entry.image.extend(map.affine() * x +
                            Vector3((*cells.sum)[0][node], (*cells.sum)[1][node], (*cells.sum)[2][node]));
       }
@@ -109,17 +105,16 @@ std::optional<Vector3> CellSearch::find(const Vector3& y, double tolerance) cons
 std::optional<Vector3> CellSearch::find_in(const Entry& entry, const Vector3& y, double tolerance) const {
   Points nodes(3, block_nodes);
   for (int node = 0; node < block_nodes; ++node)
-    nodes.col(node) = node_place(map_.pyramid(), entry.level, entry.leaf, node / (block_edge * block_edge),
-                                 node / block_edge % block_edge, node % block_edge);
+    nodes.col(node) = node_place(map_.pyramid(), entry.level, entry.leaf, node);
   const Points images = map_(nodes);
-  const double voxel_size = map_.pyramid().levels[static_cast<std::size_t>(entry.level)].voxel_size;
+  const double voxel_size = map_.pyramid().lattice(entry.level).voxel_size;
   for (int cell = 0; cell < leaf_nodes; ++cell) {
     if (!entry.finest[static_cast<std::size_t>(cell)]) continue;
-    const int lower = (cell / 64 * block_edge + cell / 8 % 8) * block_edge + cell % 8;
+    const LatticeCoordinates place = place_of_number(cell);
+    const int lower = number_in_block(place);
     Corners corners;
     for (int n = 0; n < 8; ++n)
-      corners[static_cast<std::size_t>(n)] =
-          images.col(lower + ((n >> 2 & 1) * block_edge + (n >> 1 & 1)) * block_edge + (n & 1));
+      corners[static_cast<std::size_t>(n)] = images.col(number_in_block(moved(place, corner_step(n))));
     const std::optional<Vector3> fraction = solve(corners, y, tolerance / 2);
     if (fraction) return Vector3(nodes.col(lower) + voxel_size * *fraction);
   }

@@ -1,32 +1,16 @@
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
-#include "bespoke/bake/band.h"
 #include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/progress.h"
 
 namespace bespoke {
-
-/// u at all nodes of the leaves as PyramidLevel::values has them. Throws InvalidInput when the map answers
-/// with a value that is not finite.
-std::vector<float> sample_leaves(const ElasticMap& map, const Lattice& lattice,
-                                 const std::vector<LeafCoordinates>& leaves, const Progress& progress);
-
-/// A level of the leaves that are not zero everywhere, holding u. Throws as sample_leaves does.
-PyramidLevel sample_level(const ElasticMap& map, const Lattice& lattice,
-                          const std::vector<LeafCoordinates>& leaves, const Progress& progress);
-
-/// Drops the leaves for which `keep(leaf, all values are zero)` is false.
-void keep_leaves(PyramidLevel& level,
-                 const std::function<bool(const LeafCoordinates& leaf, bool zero)>& keep);
 
 /// `count` points of the leaves' cells, as many in one leaf as in another, in the leaves' order; the same for
 /// the same seed. 3×count, mesh units.
@@ -36,7 +20,7 @@ Points random_points(const Lattice& lattice, const std::vector<LeafCoordinates>&
 /// A finest cell: the lower node of the finest level that has a leaf there.
 struct FinestCell {
   int level = 0;
-  std::array<int, 3> node{};
+  LatticeCoordinates node{};
 
   auto operator<=>(const FinestCell&) const = default;
 };

@@ -1,12 +1,10 @@
-#include "bespoke/bake/sampling.h"
+#include "bespoke/bake/error_points.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
-#include <sstream>
 
-#include "bespoke/error.h"
 #include "bespoke/lattice/leaf_table.h"
 #include "bespoke/parallel.h"
 
@@ -14,22 +12,17 @@ namespace bespoke {
 namespace {
 
 // Enough points for a call to keep all threads busy, few enough to stay in the caches.
-constexpr std::size_t leaves_per_call = 128;
-constexpr std::size_t points_per_call = leaves_per_call * leaf_nodes;
-
-void put_nodes(const Lattice& lattice, const LeafCoordinates& leaf, double* nodes) {
-  for (int i = 0; i < leaf_edge; ++i)
-    for (int j = 0; j < leaf_edge; ++j)
-      for (int k = 0; k < leaf_edge; ++k) {
-        const std::array<int, 3> local = {i, j, k};
-        for (int axis = 0; axis < 3; ++axis)
-          *nodes++ = lattice.origin[axis] + lattice.voxel_size * (leaf_edge * leaf[axis] + local[axis]);
-      }
-}
+constexpr std::size_t points_per_call = 1 << 16;
 
 void sort_unique(std::vector<FinestCell>& cells) {
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+Vector3 point_of_unit_cube(std::mt19937_64& engine) {
+  const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  const double x = fraction(), y = fraction(), z = fraction();
+  return {x, y, z};
 }
 
 class CellFinder {
@@ -39,15 +32,10 @@ class CellFinder {
   }
 
   FinestCell find(const Vector3& x) const {
-    FinestCell cell;
-    for (cell.level = static_cast<int>(tables_.size()) - 1;; --cell.level) {
-      const auto level = static_cast<std::size_t>(cell.level);
-      const Vector3 lattice = (x - pyramid_.origin) / pyramid_.levels[level].voxel_size;
-      for (int axis = 0; axis < 3; ++axis)
-        cell.node[static_cast<std::size_t>(axis)] = static_cast<int>(std::floor(lattice[axis]));
-      if (cell.level == 0 ||
-          tables_[level].find({cell.node[0] >> 3, cell.node[1] >> 3, cell.node[2] >> 3}) != no_leaf)
-        return cell;
+    for (int level = static_cast<int>(tables_.size()) - 1;; --level) {
+      const LatticeCoordinates node = pyramid_.lattice(level).cell_of(x);
+      if (level == 0 || tables_[static_cast<std::size_t>(level)].find(leaf_of(node)) != no_leaf)
+        return {level, node};
     }
   }
 
@@ -75,72 +63,18 @@ void split_if_longer(const Triangle& triangle, double length, std::vector<Triang
   }
 }
 
-[[noreturn]] void refuse_point(const Points& x, const Points& u) {
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    if (!u.col(i).allFinite()) {
-      std::ostringstream message;
-      message << "the map is not finite at (" << x.col(i).transpose() << ")";
-      throw InvalidInput(message.str());
-    }
-  throw InvalidInput("the map exceeds the range of float");
-}
-
 }  // namespace
-
-std::vector<float> sample_leaves(const ElasticMap& map, const Lattice& lattice,
-                                 const std::vector<LeafCoordinates>& leaves, const Progress& progress) {
-  std::vector<float> sampled(3 * leaf_nodes * leaves.size());
-  Points x;
-  for (std::size_t first = 0; first < leaves.size(); first += leaves_per_call) {
-    progress.step("bake", first, leaves.size());
-    const std::size_t count = std::min(leaves_per_call, leaves.size() - first);
-    x.resize(3, static_cast<Eigen::Index>(count * leaf_nodes));
-    for (std::size_t i = 0; i < count; ++i)
-      put_nodes(lattice, leaves[first + i], x.data() + 3 * leaf_nodes * i);
-    const Points u = map.displacement(x);
-    Eigen::Map<Eigen::Matrix3Xf> values(&sampled[3 * leaf_nodes * first], 3, u.cols());
-    values = u.cast<float>();
-    if (!values.allFinite()) refuse_point(x, u);
-  }
-  progress.step("bake", leaves.size(), leaves.size());
-  return sampled;
-}
-
-PyramidLevel sample_level(const ElasticMap& map, const Lattice& lattice,
-                          const std::vector<LeafCoordinates>& leaves, const Progress& progress) {
-  PyramidLevel level{lattice.voxel_size, leaves, sample_leaves(map, lattice, leaves, progress)};
-  keep_leaves(level, [](const LeafCoordinates&, bool zero) { return !zero; });
-  return level;
-}
-
-void keep_leaves(PyramidLevel& level,
-                 const std::function<bool(const LeafCoordinates& leaf, bool zero)>& keep) {
-  std::size_t kept = 0;
-  for (std::size_t leaf = 0; leaf < level.leaves.size(); ++leaf) {
-    const auto values = level.values.begin() + static_cast<std::ptrdiff_t>(3 * leaf_nodes * leaf);
-    const bool zero = std::all_of(values, values + 3 * leaf_nodes, [](float value) { return value == 0; });
-    if (!keep(level.leaves[leaf], zero)) continue;
-    level.leaves[kept] = level.leaves[leaf];
-    std::copy(values, values + 3 * leaf_nodes,
-              level.values.begin() + static_cast<std::ptrdiff_t>(3 * leaf_nodes * kept));
-    ++kept;
-  }
-  level.leaves.resize(kept);
-  level.values.resize(3 * leaf_nodes * kept);
-}
 
 Points random_points(const Lattice& lattice, const std::vector<LeafCoordinates>& leaves, std::size_t count,
                      std::uint64_t seed) {
   if (leaves.empty()) return Points(3, 0);
   std::mt19937_64 engine(seed);
-  const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
   Points x(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    const LeafCoordinates& leaf = leaves[static_cast<std::size_t>(
-        static_cast<double>(i) / static_cast<double>(count) * static_cast<double>(leaves.size()))];
-    for (int axis = 0; axis < 3; ++axis)
-      x(axis, static_cast<Eigen::Index>(i)) =
-          lattice.origin[axis] + lattice.voxel_size * leaf_edge * (leaf[axis] + fraction());
+    const auto leaf = static_cast<std::size_t>(static_cast<double>(i) / static_cast<double>(count) *
+                                               static_cast<double>(leaves.size()));
+    x.col(static_cast<Eigen::Index>(i)) =
+        lattice.at(leaf_edge * (as_vector(leaves[leaf]) + point_of_unit_cube(engine)));
   }
   return x;
 }
@@ -191,17 +125,16 @@ Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& ce
                        std::uint64_t seed) {
   const std::size_t drawn = std::min(cells.size(), count / 27);
   std::mt19937_64 engine(seed);
-  const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
   // Another seed draws other cells.
   const std::size_t start = engine() % std::max<std::size_t>(cells.size(), 1);
   Points x(3, static_cast<Eigen::Index>(27 * drawn));
   for (std::size_t i = 0; i < drawn; ++i) {
     const FinestCell& cell = cells[(i * cells.size() + start) / drawn];
     for (int part = 0; part < 27; ++part) {
-      const Vector3 place(part / 9 + fraction(), part / 3 % 3 + fraction(), part % 3 + fraction());
+      const Vector3 third(part / 9, part / 3 % 3, part % 3);
+      const Vector3 within = third + point_of_unit_cube(engine).reverse();
       x.col(static_cast<Eigen::Index>(27 * i) + part) =
-          pyramid.origin + pyramid.levels[static_cast<std::size_t>(cell.level)].voxel_size *
-                               (Vector3(cell.node[0], cell.node[1], cell.node[2]) + place / 3);
+          pyramid.lattice(cell.level).at(as_vector(cell.node) + within / 3);
     }
   }
   return x;

@@ -1,0 +1,103 @@
+#include "bespoke/bake/detail/adaptive_bake.h"
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "bespoke/bake/detail/measurement.h"
+#include "bespoke/bake/detail/mend_folds.h"
+#include "bespoke/bake/detail/pyramid_builder.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+// Places where a finished pyramid misses the tolerance are refined and it is measured anew: at a few points,
+// around those that missed it, then everywhere.
+constexpr int quick_rounds = 2;
+constexpr int local_rounds = 6;
+constexpr int full_rounds = 3;
+// A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
+// are as small as they get, the worst points stay however often they are found.
+constexpr double most_left_by_a_round = 0.7;
+
+class AdaptiveBake {
+ public:
+  AdaptiveBake(const ElasticMap& map, const BakeOptions& options, const Progress& progress)
+      : map_(map),
+        options_(options),
+        progress_(progress),
+        builder_(std::make_unique<PyramidBuilder>(
+            map, RefinementOptions{options.tolerance, options.max_memory, options.precision}, progress)),
+        measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
+
+  Bake run() && {
+    refine();
+    meet_tolerance();
+    mend();
+    return std::move(result_);
+  }
+
+ private:
+  BakeSummary& summary() { return result_.summary; }
+
+  void refine() {
+    builder_->refine();
+    result_.pyramid = builder_->pyramid();
+    summary().refine_seconds += watch_.lap();
+  }
+
+  void meet_tolerance() {
+    for (int round = 0; round < quick_rounds; ++round)
+      if (measurement_.quickly(result_.pyramid) > options_.tolerance) refine_around_worst();
+    measurement_.fully(result_.pyramid, summary());
+    for (int round = 1; round < full_rounds && summary().error.max > options_.tolerance; ++round) {
+      if (!refine_around_worst()) break;
+      measurement_.fully(result_.pyramid, summary());
+    }
+    summary().measure_seconds += watch_.lap();
+  }
+
+  void mend() {
+    mend_folds(map_, std::move(builder_), result_, progress_);
+    summary().mend_seconds += watch_.lap();
+    if (summary().refined_folds > 0 || summary().repaired_cells > 0)
+      measurement_.fully(result_.pyramid, summary());
+    summary().measure_seconds += watch_.lap();
+  }
+
+  // Around what a sample has found, until nothing more is. Returns whether anything was refined.
+  bool refine_around_worst() {
+    double before = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < local_rounds; ++round) {
+      const auto worst = static_cast<double>(measurement_.worst().cols());
+      if (worst == 0 || !(worst < most_left_by_a_round * before) || !refine_worst()) return round > 0;
+      before = worst;
+      measurement_.near_worst(result_.pyramid);
+    }
+    return true;
+  }
+
+  bool refine_worst() {
+    summary().measure_seconds += watch_.lap();
+    const bool refined = builder_->refine_at(measurement_.worst()) > 0;
+    if (refined) refine();
+    return refined;
+  }
+
+  const ElasticMap& map_;
+  const BakeOptions& options_;
+  const Progress& progress_;
+  Stopwatch watch_;
+  std::unique_ptr<PyramidBuilder> builder_;
+  Measurement measurement_;
+  Bake result_;
+};
+
+}  // namespace
+
+Bake bake_adaptively(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {
+  return AdaptiveBake(map, options, progress).run();
+}
+
+}  // namespace bespoke

@@ -1,0 +1,96 @@
+#include "bespoke/bake/detail/measurement.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bespoke/lattice/baked_map.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::uint64_t error_seed = 3;
+// Points of an error above this share of the tolerance are refined when a round does not meet it: what one
+// sample finds just below, the next will find just above.
+constexpr double refined_share = 0.85;
+// Of BakeOptions::error_points: points on the surface at most, and points of a quick measurement.
+constexpr std::size_t most_surface_points = 8;
+constexpr std::size_t quick_share = 4;
+
+// Where detail is: as many in a small leaf as in a large one.
+std::vector<FinestCell> cells_in_all_leaves(const Pyramid& pyramid, std::uint64_t seed) {
+  constexpr std::size_t cells_per_leaf = 16;
+  Points x(3, static_cast<Eigen::Index>(cells_per_leaf * pyramid.leaf_count()));
+  Eigen::Index column = 0;
+  for (const PyramidLevel& level : pyramid.levels) {
+    const std::size_t count = cells_per_leaf * level.leaves.size();
+    x.middleCols(column, static_cast<Eigen::Index>(count)) =
+        random_points({pyramid.origin, level.voxel_size}, level.leaves, count, seed);
+    column += static_cast<Eigen::Index>(count);
+  }
+  return finest_cells_at(pyramid, x);
+}
+
+// Each cell with the 26 around it.
+std::vector<FinestCell> with_neighbours(const Pyramid& pyramid, const std::vector<FinestCell>& cells) {
+  Points centers(3, static_cast<Eigen::Index>(neighbour_steps * cells.size()));
+  Eigen::Index column = 0;
+  for (const FinestCell& cell : cells)
+    for (int side = 0; side < neighbour_steps; ++side)
+      centers.col(column++) =
+          pyramid.lattice(cell.level)
+              .at(as_vector(moved(cell.node, neighbour_step(side))) + Vector3::Constant(0.5));
+  return finest_cells_at(pyramid, centers);
+}
+
+}  // namespace
+
+Measurement::Measurement(const ElasticMap& map, const Lattice& band_lattice,
+                         std::vector<LeafCoordinates> band, const BakeOptions& options,
+                         const Progress& progress)
+    : map_(map),
+      band_lattice_(band_lattice),
+      band_(std::move(band)),
+      options_(options),
+      progress_(progress),
+      seed_(error_seed) {}
+
+double Measurement::quickly(Pyramid& pyramid) {
+  const std::vector<FinestCell> cells = surface_cells(pyramid);
+  return measure(pyramid, points_in_cells(pyramid, cells, options_.error_points / quick_share, ++seed_));
+}
+
+double Measurement::near_worst(Pyramid& pyramid) {
+  const std::vector<FinestCell> cells = with_neighbours(pyramid, finest_cells_at(pyramid, worst_));
+  return measure(pyramid, points_in_cells(pyramid, cells, options_.error_points / quick_share, ++seed_));
+}
+
+double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
+  const std::vector<FinestCell> cells = surface_cells(pyramid);
+  Points x = points_in_cells(pyramid, cells, most_surface_points * options_.error_points, ++seed_);
+  const Points random = random_points(band_lattice_, band_, options_.error_points, ++seed_);
+  summary.surface_cells = cells.size();
+  summary.error_surface_points = static_cast<std::size_t>(x.cols());
+  summary.error_random_points = static_cast<std::size_t>(random.cols());
+  x.conservativeResize(3, x.cols() + random.cols());
+  x.rightCols(random.cols()) = random;
+  measure(pyramid, x);
+  summary.error = summarize(std::move(errors_));
+  return summary.error.max;
+}
+
+std::vector<FinestCell> Measurement::surface_cells(const Pyramid& pyramid) const {
+  return options_.surface ? finest_cells_on(pyramid, *options_.surface) : cells_in_all_leaves(pyramid, seed_);
+}
+
+double Measurement::measure(Pyramid& pyramid, const Points& x) {
+  BakedMap baked(map_.affine(), std::move(pyramid));
+  errors_ = displacement_errors(baked, map_, x, progress_);
+  pyramid = std::move(baked).release();
+  std::vector<Eigen::Index> worst;
+  for (std::size_t i = 0; i < errors_.size(); ++i)
+    if (!(errors_[i] <= refined_share * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
+  worst_ = x(Eigen::all, worst);
+  return errors_.empty() ? 0 : *std::max_element(errors_.begin(), errors_.end());
+}
+
+}  // namespace bespoke

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bespoke/bake/bake.h"
+#include "bespoke/bake/error_points.h"
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// Compares pyramids with the map at points that no decision used before. Each comparison moves the pyramid
+/// in and out, and leaves in worst() the points that miss the tolerance, or nearly do.
+class Measurement {
+ public:
+  /// `band`: the leaves of a lattice that hold the support. Map, options and progress must outlive it.
+  Measurement(const ElasticMap& map, const Lattice& band_lattice, std::vector<LeafCoordinates> band,
+              const BakeOptions& options, const Progress& progress);
+
+  /// Largest error (mesh units) at a few points of the surface's cells.
+  double quickly(Pyramid& pyramid);
+
+  /// The same in the cells of worst() and those around them.
+  double near_worst(Pyramid& pyramid);
+
+  /// Everywhere, as BakeSummary tells: fills its error and what it says about the sample.
+  double fully(Pyramid& pyramid, BakeSummary& summary);
+
+  const Points& worst() const { return worst_; }
+
+ private:
+  std::vector<FinestCell> surface_cells(const Pyramid& pyramid) const;
+  double measure(Pyramid& pyramid, const Points& x);
+
+  const ElasticMap& map_;
+  Lattice band_lattice_;
+  std::vector<LeafCoordinates> band_;
+  const BakeOptions& options_;
+  const Progress& progress_;
+  std::uint64_t seed_;
+  std::vector<double> errors_;
+  Points worst_;
+};
+
+}  // namespace bespoke

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+
+#include "bespoke/lattice/pyramid.h"
+
+namespace bespoke {
+
+struct RefinementOptions {
+  double tolerance = 0;        ///< wanted largest |baked − exact|, > 0, mesh units
+  std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
+  ValuePrecision precision = ValuePrecision::single;
+};
+
+}  // namespace bespoke

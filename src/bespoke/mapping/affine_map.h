@@ -1,0 +1,16 @@
+#pragma once
+
+#include "bespoke/rigid/rigid_transform.h"
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// x ↦ outer(inner(x)).
+AffineMap compose(const AffineMap& outer, const AffineMap& inner);
+
+/// Throws InvalidInput for a singular map.
+AffineMap inverse(const AffineMap& map);
+
+AffineMap as_affine(const RigidTransform& transform);
+
+}  // namespace bespoke
