@@ -90,7 +90,9 @@ TEST_F(FitCommand, PaperIsThePrintedMethod) {
   EXPECT_EQ(printed.size(), 6u);
   for (const json& added : printed) EXPECT_EQ(added, false);
   ASSERT_EQ(pair_.fit("own.vdb", {"--surface-fit", "laplacian"}).exit_code, 0);
-  for (const json& added : info("own.vdb")["options"]["laplacian"]) EXPECT_EQ(added, true);
+  const json own = info("own.vdb")["options"]["laplacian"];
+  EXPECT_EQ(own.size(), 6u);
+  for (const json& added : own) EXPECT_EQ(added, true);
   EXPECT_EQ(pair_.fit("map.vdb", {"--paper", "--elastic", "pffd"}).exit_code, 1);
 }
 
