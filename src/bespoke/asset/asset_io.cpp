@@ -57,8 +57,8 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw FormatError(what);
 }
 
-/// The plain entries repeat the record for other programs; where the two differ, programs would disagree about
-/// the map.
+/// The plain entries repeat the record for other programs; where the two differ, programs would disagree
+/// about the map.
 void require_same_metadata(const Metadata& found, const std::string& record) {
   const Metadata expected = file_metadata(record);
   for (const auto& [key, value] : expected) {

@@ -28,8 +28,8 @@ Points BakedMap::displacement_gradient(const Points& x) const {
 
 Support BakedMap::support() const {
   Support support;
-  // Level 0 with the cell around its leaves holds all deeper leaves with theirs. These are listed all the same:
-  // a bake of this map refines where balls are small.
+  // Level 0 with the cell around its leaves holds all deeper leaves with theirs. These are listed all the
+  // same: a bake of this map refines where balls are small.
   for (const PyramidLevel& level : pyramid_.levels) {
     const Lattice lattice{pyramid_.origin, level.voxel_size};
     BallCloud cloud;

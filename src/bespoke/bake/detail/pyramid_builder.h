@@ -13,9 +13,9 @@
 
 namespace bespoke {
 
-/// Grows the nested pyramid of a map (src/bespoke/README.md, "Bake"): octants in which the sum so far misses u by more than the tolerance get
-/// a leaf of the next level (OctantRefinement); where a level ends with large residuals, neighbours are added
-/// (rim_neighbours), and the leaves above what was added.
+/// Grows the nested pyramid of a map (src/bespoke/README.md, "Bake"): octants in which the sum so far misses
+/// u by more than the tolerance get a leaf of the next level (OctantRefinement); where a level ends with
+/// large residuals, neighbours are added (rim_neighbours), and the leaves above what was added.
 ///
 /// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
