@@ -1,12 +1,13 @@
 #include "isosurface.h"
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -174,24 +175,35 @@ TriangleMesh clip(const TriangleMesh& mesh, const Field& keep) {
 
   std::vector<Vector3> vertices;
   std::vector<Index3> faces;
-  std::map<std::pair<int, int>, int> new_index;
-  const auto vertex = [&](int a, int b) {
-    const auto [place, is_new] = new_index.try_emplace(std::minmax(a, b), static_cast<int>(vertices.size()));
-    if (is_new) {
-      const double s = a == b ? 0 : std::clamp(value[a] / (value[a] - value[b]), 0.02, 0.98);
+  const MeshEdges table = mesh_edges(mesh);
+  std::vector<std::optional<int>> of_vertex(value.size()), of_edge(table.edges.size());
+  const auto kept_vertex = [&](int vertex) {
+    std::optional<int>& made = of_vertex[vertex];
+    if (!made) {
+      made = static_cast<int>(vertices.size());
+      vertices.push_back(mesh.vertices.col(vertex));
+    }
+    return *made;
+  };
+  const auto cut_vertex = [&](int edge) {
+    std::optional<int>& made = of_edge[edge];
+    if (!made) {
+      const int a = table.edges[edge].a, b = table.edges[edge].b;
+      const double s = std::clamp(value[a] / (value[a] - value[b]), 0.02, 0.98);
+      made = static_cast<int>(vertices.size());
       vertices.push_back((1 - s) * mesh.vertices.col(a) + s * mesh.vertices.col(b));
     }
-    return place->second;
+    return *made;
   };
   for (Eigen::Index column = 0; column < mesh.faces.cols(); ++column) {
+    if (table.of_face(0, column) == MeshEdges::none) continue;  // no area
     const Index3 face = mesh.faces.col(column);
     std::vector<int> polygon;
     for (int i = 0; i < 3; ++i) {
       const int from = face[i];
       const int to = face[(i + 1) % 3];
-      if (value[from] < 0) polygon.push_back(vertex(from, from));
-      if ((value[from] < 0) != (value[to] < 0))
-        polygon.push_back(from < to ? vertex(from, to) : vertex(to, from));
+      if (value[from] < 0) polygon.push_back(kept_vertex(from));
+      if ((value[from] < 0) != (value[to] < 0)) polygon.push_back(cut_vertex(table.of_face(i, column)));
     }
     for (std::size_t i = 2; i < polygon.size(); ++i)
       faces.emplace_back(polygon[0], polygon[i - 1], polygon[i]);

@@ -13,8 +13,6 @@
 namespace bespoke {
 namespace {
 
-using ::testing::Each;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -158,17 +156,10 @@ TEST(VertexNormals, AreZeroWhereUndefined) {
   EXPECT_EQ(vertex_normals(two_triangles(Faces{{0, 0}, {1, 2}, {2, 1}})), Points::Zero(3, 5));
 }
 
-TEST(VertexAdjacency, ListsNeighboursInOrder) {
-  const VertexAdjacency adjacency = vertex_adjacency(two_triangles(Faces{{2, 1}, {0, 3}, {1, 2}}));
-  EXPECT_THAT(adjacency.start, ElementsAre(0, 2, 5, 8, 10, 10));
-  EXPECT_THAT(adjacency.neighbours, ElementsAre(1, 2, 0, 2, 3, 0, 1, 3, 1, 2));
-}
-
-TEST(VertexAdjacency, OfNothingIsEmpty) { EXPECT_THAT(vertex_adjacency({}).start, ElementsAre(0)); }
-
-TEST(BoundaryVertices, AreThoseOfTheRim) {
-  EXPECT_THAT(boundary_vertices(shapes::square_grid(2)), ElementsAre(1, 1, 1, 1, 0, 1, 1, 1, 1));
-  EXPECT_THAT(boundary_vertices(shapes::cube()), Each(0));
+TEST(VertexAreas, ShareTheFacesInThirds) {
+  const Eigen::VectorXd areas = vertex_areas(two_triangles(Faces{{2, 1}, {0, 3}, {1, 2}}));
+  EXPECT_TRUE(areas.isApprox((Eigen::VectorXd(5) << 1, 2, 2, 1, 0).finished() / 6, 1e-15));
+  EXPECT_NEAR(vertex_areas(shapes::cube()).sum(), 6, 1e-14);
 }
 
 TEST(ContentHash, DependsOnContentAlone) {

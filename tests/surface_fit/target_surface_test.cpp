@@ -27,6 +27,46 @@ TEST(TargetSurface, GivesNoPointOnItsBoundary) {
   EXPECT_TRUE(surface.match(Vector3(0.01, 0.5, 0), up, {0, 1}));
 }
 
+TEST(TargetSurface, AnswersOnItsBoundaryWhereThatIsAllowed) {
+  const TargetSurface surface(shapes::square_grid(4));
+  const auto found = surface.match(Vector3(-0.1, 0.5, 0), Vector3::UnitZ(), {0, 1, 0, true});
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->point, Vector3(0, 0.5, 0));
+}
+
+TEST(TargetSurface, AnswersAtInnerEdgesAndVertices) {
+  const TargetSurface surface(shapes::square_grid(2));
+  for (const Vector3& x : {Vector3(0.5, 0.5, 0.1), Vector3(0.5, 0.25, 0.1)}) {
+    const auto found = surface.match(x, Vector3::UnitZ(), {0, 1});
+    ASSERT_TRUE(found);
+    EXPECT_TRUE(found->point.isApprox(Vector3(x[0], x[1], 0), 1e-14));
+  }
+}
+
+TEST(TargetSurface, PassesOverFacesThatFaceAway) {
+  TriangleMesh sheet = shapes::square_grid(4);
+  TriangleMesh far_sheet = sheet;
+  far_sheet.vertices.row(2).setConstant(-1);
+  sheet.faces.row(0).swap(sheet.faces.row(1));  // the near one faces down
+  const TargetSurface surface(shapes::joined(sheet, far_sheet));
+  const auto found = surface.match(Vector3(0.3, 0.6, 0.1), Vector3::UnitZ(), {0, 2});
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->point.isApprox(Vector3(0.3, 0.6, -1), 1e-14));
+}
+
+TEST(TargetSurface, MeasuresDistancesWhateverTheNormals) {
+  const TargetSurface surface(shapes::square_grid(2));
+  Points points(3, 3);
+  points << 0.5, 0.5, 1.5,  //
+      0.5, 0.5, 0.5,        //
+      0.25, -0.75, 0;
+  const Statistics found = distances(surface, points);
+  EXPECT_EQ(found.count, 3u);
+  EXPECT_NEAR(found.min, 0.25, 1e-14);
+  EXPECT_NEAR(found.median, 0.5, 1e-14);
+  EXPECT_NEAR(found.max, 0.75, 1e-14);
+}
+
 TEST(TargetSurface, GivesNoPointThatIsFarOrFacesAway) {
   const TargetSurface surface(shapes::square_grid(4));
   EXPECT_FALSE(surface.match(Vector3(0.5, 0.5, 0.2), Vector3(0, 0, 1), {0, 0.1}));

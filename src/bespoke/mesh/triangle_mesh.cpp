@@ -1,12 +1,14 @@
 #include "bespoke/mesh/triangle_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
+#include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/disjoint_sets.h"
+#include "bespoke/mesh/equal_positions.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 #include "bespoke/sha256.h"
 
@@ -15,14 +17,6 @@ namespace {
 
 // Below this share of the squared longest edge, twice the area is rounding noise of the cross product.
 constexpr double relative_area_noise = 1e-14;
-
-struct Edge {
-  int a;  ///< a < b
-  int b;
-  int forward;   ///< faces that run from a to b
-  int backward;  ///< faces that run from b to a
-  int faces() const { return forward + backward; }
-};
 
 /// In parallel: visit(face) may write what is that face's alone.
 template <class Visit>
@@ -33,81 +27,20 @@ void for_each_face(const TriangleMesh& mesh, const Visit& visit) {
   });
 }
 
-bool has_three_vertices(const Faces& faces, Eigen::Index face) {
-  return faces(0, face) != faces(1, face) && faces(1, face) != faces(2, face) &&
-         faces(2, face) != faces(0, face);
-}
-
-// Faces that name a vertex twice have no edges of their own.
-template <class Visit>
-void for_each_half_edge(const TriangleMesh& mesh, const Visit& visit) {
-  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
-    if (!has_three_vertices(mesh.faces, face)) continue;
-    for (int corner = 0; corner < 3; ++corner)
-      visit(mesh.faces(corner, face), mesh.faces((corner + 1) % 3, face));
-  }
-}
-
-// Sorted by (a, b). Bucketing by the smaller vertex keeps the cost linear.
-std::vector<Edge> collect_edges(const TriangleMesh& mesh) {
-  struct HalfEdge {
-    int larger;
-    bool forward;
-  };
-  std::vector<std::size_t> start(static_cast<std::size_t>(mesh.vertices.cols()) + 1, 0);
-  for_each_half_edge(mesh,
-                     [&](int from, int to) { ++start[static_cast<std::size_t>(std::min(from, to)) + 1]; });
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  std::vector<HalfEdge> half_edges(start.back());
-  std::vector<std::size_t> next(start.begin(), start.end() - 1);
-  for_each_half_edge(mesh, [&](int from, int to) {
-    half_edges[next[static_cast<std::size_t>(std::min(from, to))]++] = {std::max(from, to), from < to};
-  });
-  std::vector<Edge> edges;
-  edges.reserve(half_edges.size() / 2);
-  for (std::size_t vertex = 0; vertex + 1 < start.size(); ++vertex) {
-    const auto begin = half_edges.begin() + static_cast<std::ptrdiff_t>(start[vertex]);
-    const auto end = half_edges.begin() + static_cast<std::ptrdiff_t>(start[vertex + 1]);
-    std::sort(begin, end, [](const HalfEdge& x, const HalfEdge& y) { return x.larger < y.larger; });
-    for (auto half_edge = begin; half_edge != end; ++half_edge) {
-      if (half_edge == begin || half_edge->larger != edges.back().b)
-        edges.push_back({static_cast<int>(vertex), half_edge->larger, 0, 0});
-      ++(half_edge->forward ? edges.back().forward : edges.back().backward);
-    }
-  }
-  return edges;
-}
-
 std::size_t count_components(const TriangleMesh& mesh, const std::vector<char>& referenced) {
-  std::vector<int> parent(referenced.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int vertex) {
-    while (parent[static_cast<std::size_t>(vertex)] != vertex) {
-      int& up = parent[static_cast<std::size_t>(vertex)];
-      up = parent[static_cast<std::size_t>(up)];
-      vertex = up;
-    }
-    return vertex;
-  };
+  DisjointSets sets(static_cast<int>(referenced.size()));
   auto components = static_cast<std::size_t>(std::count(referenced.begin(), referenced.end(), 1));
-  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
-    for (int corner = 1; corner < 3; ++corner) {
-      const int a = root(mesh.faces(0, face)), b = root(mesh.faces(corner, face));
-      if (a == b) continue;
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-      --components;
-    }
-  }
+  for (const auto& face : mesh.faces.colwise())
+    for (int corner = 1; corner < 3; ++corner) components -= sets.join(face[0], face[corner]) ? 1 : 0;
   return components;
 }
 
 std::size_t count_duplicates(const Points& vertices) {
-  std::vector<std::array<double, 3>> finite;
-  finite.reserve(static_cast<std::size_t>(vertices.cols()));
+  std::vector<int> finite;
   for (Eigen::Index i = 0; i < vertices.cols(); ++i)
-    if (vertices.col(i).allFinite()) finite.push_back({vertices(0, i), vertices(1, i), vertices(2, i)});
-  std::sort(finite.begin(), finite.end());
-  return finite.size() - static_cast<std::size_t>(std::unique(finite.begin(), finite.end()) - finite.begin());
+    if (vertices.col(i).allFinite()) finite.push_back(static_cast<int>(i));
+  const EqualPositions equal = equal_positions(vertices, std::move(finite));
+  return equal.columns.size() - equal.groups();
 }
 
 // Twice the area as a vector.
@@ -137,8 +70,8 @@ MeshFindings inspect_mesh(const TriangleMesh& mesh) {
       static_cast<std::size_t>(std::count(referenced.begin(), referenced.end(), 0));
   findings.components = count_components(mesh, referenced);
   findings.duplicate_vertices = count_duplicates(mesh.vertices);
-  for (const Edge& edge : collect_edges(mesh)) {
-    findings.boundary_edges += edge.faces() == 1;
+  for (const MeshEdge& edge : mesh_edges(mesh).edges) {
+    findings.boundary_edges += edge.on_boundary();
     findings.non_manifold_edges += edge.faces() > 2;
     findings.inconsistent_edges += edge.forward > 1 || edge.backward > 1;
   }
@@ -236,34 +169,13 @@ Points vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-VertexAdjacency vertex_adjacency(const TriangleMesh& mesh) {
-  const std::vector<Edge> edges = collect_edges(mesh);
-  VertexAdjacency adjacency;
-  adjacency.start.assign(static_cast<std::size_t>(mesh.vertices.cols()) + 1, 0);
-  for (const Edge& edge : edges) {
-    ++adjacency.start[static_cast<std::size_t>(edge.a) + 1];
-    ++adjacency.start[static_cast<std::size_t>(edge.b) + 1];
+Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
+  Eigen::VectorXd areas = Eigen::VectorXd::Zero(mesh.vertices.cols());
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
+    const double sixth = area_vector(mesh, face).norm() / 6;
+    for (int k = 0; k < 3; ++k) areas[mesh.faces(k, face)] += sixth;
   }
-  std::partial_sum(adjacency.start.begin(), adjacency.start.end(), adjacency.start.begin());
-  adjacency.neighbours.resize(2 * edges.size());
-  std::vector<int> next(adjacency.start.begin(), adjacency.start.end() - 1);
-  const auto add = [&](int vertex, int neighbour) {
-    adjacency.neighbours[static_cast<std::size_t>(next[static_cast<std::size_t>(vertex)]++)] = neighbour;
-  };
-  // Edges come sorted, so smaller neighbours first, then larger ones, fills every list in order.
-  for (const Edge& edge : edges) add(edge.b, edge.a);
-  for (const Edge& edge : edges) add(edge.a, edge.b);
-  return adjacency;
-}
-
-std::vector<char> boundary_vertices(const TriangleMesh& mesh) {
-  std::vector<char> on_boundary(static_cast<std::size_t>(mesh.vertices.cols()), 0);
-  for (const Edge& edge : collect_edges(mesh)) {
-    if (edge.faces() != 1) continue;
-    on_boundary[static_cast<std::size_t>(edge.a)] = 1;
-    on_boundary[static_cast<std::size_t>(edge.b)] = 1;
-  }
-  return on_boundary;
+  return areas;
 }
 
 std::string content_hash(const TriangleMesh& mesh) {

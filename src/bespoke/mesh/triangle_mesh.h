@@ -49,17 +49,8 @@ Points face_normals(const TriangleMesh& mesh);
 /// 3×n unit normals, one per vertex, faces weighted by the angle at the vertex; zero where undefined.
 Points vertex_normals(const TriangleMesh& mesh);
 
-/// The vertices that share an edge with each vertex, in increasing order: neighbours of vertex v are
-/// `neighbours[start[v]] … neighbours[start[v + 1] - 1]`.
-struct VertexAdjacency {
-  std::vector<int> start;  ///< n+1
-  std::vector<int> neighbours;
-};
-
-VertexAdjacency vertex_adjacency(const TriangleMesh& mesh);
-
-/// One flag per vertex: 1 where the vertex lies on an edge of exactly one face.
-std::vector<char> boundary_vertices(const TriangleMesh& mesh);
+/// n: a third of the area of the faces around each vertex, mesh units squared.
+Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
 
 /// SHA-256 of the vertices' doubles and the faces' indices, lower-case hex: names a model in an asset,
 /// whatever its file was called.

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "bespoke/mesh/equal_positions.h"
 
 namespace bespoke {
 namespace {
@@ -20,20 +23,17 @@ std::vector<char> at_folded_faces(const TriangleMesh& images, const TriangleMesh
 /// 1 where another vertex of some face has the same place, but not the same fitted position.
 std::vector<char> at_shared_places(const TriangleMesh& source, const std::vector<char>& used,
                                    const Points& fitted) {
-  std::vector<int> order;
+  std::vector<int> referenced;
   for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i]) order.push_back(static_cast<int>(i));
-  const auto before = [&](int i, int j) {
-    const auto a = source.vertices.col(i), b = source.vertices.col(j);
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  };
-  std::stable_sort(order.begin(), order.end(), before);
+    if (used[i]) referenced.push_back(static_cast<int>(i));
+  const EqualPositions equal = equal_positions(source.vertices, std::move(referenced));
   std::vector<char> result(used.size(), 0);
-  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-    bool parted = false;
-    for (; end < order.size() && !before(order[begin], order[end]); ++end)
-      parted = parted || fitted.col(order[end]) != fitted.col(order[begin]);
-    for (std::size_t k = begin; k < end; ++k) result[static_cast<std::size_t>(order[k])] = parted;
+  for (std::size_t index = 0; index < equal.groups(); ++index) {
+    const std::span<const int> group = equal.group(index);
+    const bool parted = std::any_of(group.begin(), group.end(), [&](int vertex) {
+      return fitted.col(vertex) != fitted.col(group.front());
+    });
+    for (const int vertex : group) result[static_cast<std::size_t>(vertex)] = parted;
   }
   return result;
 }

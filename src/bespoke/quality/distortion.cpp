@@ -9,6 +9,7 @@
 
 #include "bespoke/bake/band.h"
 #include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <utility>
+#include <vector>
 
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/equal_positions.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -14,28 +15,36 @@ namespace {
 
 // Vertices at exactly one position get the index of the first of them.
 TriangleMesh joined_at_equal_positions(const TriangleMesh& mesh) {
-  const auto position = [&](int i) {
-    return std::array{mesh.vertices(0, i), mesh.vertices(1, i), mesh.vertices(2, i)};
-  };
-  std::vector<int> order(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return std::pair(position(i), i) < std::pair(position(j), j); });
-  std::vector<int> first(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && position(order[k]) == position(order[k - 1]);
-    first[static_cast<std::size_t>(order[k])] =
-        same ? first[static_cast<std::size_t>(order[k - 1])] : order[k];
-  }
+  const EqualPositions equal = equal_positions(mesh.vertices);
+  std::vector<int> first(static_cast<std::size_t>(mesh.vertices.cols()));
+  for (std::size_t index = 0; index < equal.groups(); ++index)
+    for (const int vertex : equal.group(index))
+      first[static_cast<std::size_t>(vertex)] = equal.group(index).front();
   TriangleMesh joined = mesh;
   for (int& vertex : joined.faces.reshaped()) vertex = first[static_cast<std::size_t>(vertex)];
   return joined;
 }
 
-struct HalfEdge {
-  int a, b;  // a < b
-  int face, corner;
-};
+// 3×3m, column 3 f + k: the sum of the normals of the faces along the edge opposite to corner k of face f.
+// Zero marks an edge without sides: a boundary, or two faces back to back.
+Points edge_normals(const TriangleMesh& mesh, const Points& face_normals) {
+  constexpr double back_to_back = 1e-9;  // far above the rounding of a sum of unit normals
+  const MeshEdges table = mesh_edges(mesh);
+  Points of_edges = Points::Zero(3, static_cast<Eigen::Index>(table.edges.size()));
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face)
+    for (const int edge : table.of_face.col(face))
+      if (edge != MeshEdges::none) of_edges.col(edge) += face_normals.col(face);
+  for (std::size_t edge = 0; edge < table.edges.size(); ++edge) {
+    auto normal = of_edges.col(static_cast<Eigen::Index>(edge));
+    if (table.edges[edge].on_boundary() || !(normal.norm() > back_to_back)) normal.setZero();
+  }
+  Points at_sides = Points::Zero(3, 3 * mesh.faces.cols());
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face)
+    for (int corner = 0; corner < 3; ++corner)
+      if (const int edge = table.of_face((corner + 1) % 3, face); edge != MeshEdges::none)
+        at_sides.col(3 * face + corner) = of_edges.col(edge);
+  return at_sides;
+}
 
 }  // namespace
 
@@ -46,27 +55,7 @@ struct SignedDistance::Surface {
         normals(face_normals(joined)),
         at_vertices(vertex_normals(joined)),
         vertex_on_boundary(boundary_vertices(joined)),
-        at_edges(Points::Zero(3, 3 * mesh.faces.cols())) {
-    std::vector<HalfEdge> edges;
-    for (int face = 0; face < joined.faces.cols(); ++face)
-      for (int corner = 0; corner < 3; ++corner) {
-        const auto [a, b] =
-            std::minmax({joined.faces((corner + 1) % 3, face), joined.faces((corner + 2) % 3, face)});
-        if (a != b) edges.push_back({a, b, face, corner});
-      }
-    const auto key = [](const HalfEdge& edge) { return std::array{edge.a, edge.b, edge.face, edge.corner}; };
-    std::sort(edges.begin(), edges.end(),
-              [&](const HalfEdge& x, const HalfEdge& y) { return key(x) < key(y); });
-    for (auto begin = edges.begin(); begin != edges.end();) {
-      auto end = begin;
-      Vector3 sum = Vector3::Zero();
-      for (; end != edges.end() && end->a == begin->a && end->b == begin->b; ++end)
-        sum += normals.col(end->face);
-      // Zero marks an edge without sides: a boundary, or two faces back to back.
-      if (end - begin < 2 || !(sum.norm() > 1e-9)) sum.setZero();
-      for (; begin != end; ++begin) at_edges.col(3 * begin->face + begin->corner) = sum;
-    }
-  }
+        at_edges(edge_normals(joined, normals)) {}
 
   // The weight of an edge's point is exactly zero for the opposite corner, and so on: see ClosestPointTree.
   Vector3 normal_at(const SurfacePoint& at) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/rigid/nearest_rotation.h"
 
 namespace bespoke {
 namespace {
@@ -64,11 +65,9 @@ RigidTransform align_rigidly(const Points& source, const Points& target, const E
   require_not_collinear(centred_source, "source");
   require_not_collinear(centred_target, "target");
 
-  // Eq. 4–6: the rotation that maximises tr(R · Σ w q q'ᵀ); the last sign keeps it from being a reflection.
+  // Eq. 4–6: the rotation that maximises tr(R · Σ w q q'ᵀ).
   const Matrix3 covariance = centred_target * w.asDiagonal() * centred_source.transpose();
-  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double handedness = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
-  const Matrix3 rotation = svd.matrixU() * Vector3(1, 1, handedness).asDiagonal() * svd.matrixV().transpose();
+  const Matrix3 rotation = nearest_rotation(covariance).rotation;
   return {rotation, target_centre - rotation * source_centre};
 }
 

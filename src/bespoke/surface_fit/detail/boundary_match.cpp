@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
+#include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -25,22 +25,16 @@ BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points&
   const Eigen::Matrix2Xi& edges = source_rest.boundary_edges();
   const Points& rest = source_rest.mesh().vertices;
   std::map<int, double> length;
-  std::map<int, int> parent;
-  const auto root = [&](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const auto& edge : edges.colwise())
-    for (int k = 0; k < 2; ++k) parent.try_emplace(edge[k], edge[k]);
+  DisjointSets boundaries(static_cast<int>(rest.cols()));
   for (const auto& edge : edges.colwise()) {
     const double half = (rest.col(edge[0]) - rest.col(edge[1])).norm() / 2;
     for (int k = 0; k < 2; ++k) length[edge[k]] += half;
-    const int a = root(edge[0]), b = root(edge[1]);
-    parent[std::max(a, b)] = std::min(a, b);
+    boundaries.join(edge[0], edge[1]);
   }
-  std::map<int, int> number_of_root;
+  std::map<int, int> number_of_least;
   for (const auto& [vertex, own_length] : length) {
-    const auto numbered = number_of_root.try_emplace(root(vertex), static_cast<int>(number_of_root.size()));
+    const auto numbered =
+        number_of_least.try_emplace(boundaries.least(vertex), static_cast<int>(number_of_least.size()));
     vertices_.push_back(vertex);
     boundary_.push_back(numbered.first->second);
     length_.push_back(own_length);
@@ -48,7 +42,7 @@ BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points&
       anchor_distance_.push_back(
           std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
   }
-  boundaries_ = static_cast<int>(number_of_root.size());
+  boundaries_ = static_cast<int>(number_of_least.size());
   accepted_.assign(static_cast<std::size_t>(boundaries_), 0);
 }
 

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <utility>
 
+#include "bespoke/mesh/disjoint_sets.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/point_grid.h"
-#include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {
 namespace {
@@ -61,29 +61,20 @@ class EdgeDistances {
   std::priority_queue<Near, std::vector<Near>, std::greater<>> queue_;
 };
 
-int root_of(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 /// 1 for the vertices of components large enough to carry nodes of their own.
 std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing) {
-  std::vector<int> parent(static_cast<std::size_t>(mesh.vertices.cols()));
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets components(static_cast<int>(mesh.vertices.cols()));
   for (const auto& face : mesh.faces.colwise())
-    for (int k = 0; k < 2; ++k) {
-      const int a = root_of(parent, face[k]), b = root_of(parent, face[k + 1]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 0; k < 2; ++k) components.join(face[k], face[k + 1]);
   const Eigen::VectorXd areas = vertex_areas(mesh);
-  std::vector<double> component_area(parent.size(), 0);
-  for (std::size_t i = 0; i < parent.size(); ++i)
-    component_area[root_of(parent, static_cast<int>(i))] += areas[static_cast<Eigen::Index>(i)];
-  std::vector<char> carries(parent.size());
+  const auto count = static_cast<int>(mesh.vertices.cols());
+  std::vector<double> component_area(static_cast<std::size_t>(count), 0);
+  for (int i = 0; i < count; ++i) component_area[components.least(i)] += areas[i];
+  std::vector<char> carries(component_area.size());
   double carried = 0;
-  for (std::size_t i = 0; i < parent.size(); ++i) {
-    carries[i] = component_area[root_of(parent, static_cast<int>(i))] >= spacing * spacing ? 1 : 0;
-    if (carries[i]) carried += areas[static_cast<Eigen::Index>(i)];
+  for (int i = 0; i < count; ++i) {
+    carries[i] = component_area[components.least(i)] >= spacing * spacing ? 1 : 0;
+    if (carries[i]) carried += areas[i];
   }
   if (carried < 0.5 * areas.sum()) carries.assign(carries.size(), 0);
   return carries;
@@ -175,18 +166,13 @@ void complete_links(DeformationNodes& nodes) {
   for (int node = 0; node < nodes.size(); ++node)
     if (static_cast<int>(nodes.neighbours[node].size()) < min_neighbours)
       link_nearest(nodes, node, min_neighbours, [](int) { return true; });
-  std::vector<int> parent(static_cast<std::size_t>(nodes.size()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto join = [&](int a, int b) {
-    const int ra = root_of(parent, a), rb = root_of(parent, b);
-    parent[std::max(ra, rb)] = std::min(ra, rb);
-  };
+  DisjointSets tied(nodes.size());
   for (int node = 0; node < nodes.size(); ++node)
-    for (const int other : nodes.neighbours[node]) join(node, other);
+    for (const int other : nodes.neighbours[node]) tied.join(node, other);
   for (int node = 1; node < nodes.size(); ++node) {
-    if (root_of(parent, node) != node) continue;  // the first node of a component
-    link_nearest(nodes, node, min_neighbours / 2, [&](int other) { return root_of(parent, other) != node; });
-    join(node, nodes.neighbours[node].back());
+    if (tied.least(node) != node) continue;  // the first node of a component
+    link_nearest(nodes, node, min_neighbours / 2, [&](int other) { return tied.least(other) != node; });
+    tied.join(node, nodes.neighbours[node].back());
   }
   for (auto& list : nodes.neighbours) std::sort(list.begin(), list.end());
 }

@@ -7,12 +7,14 @@
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
-#include "bespoke/surface_fit/detail/correspondence.h"
+#include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {
 namespace {
 
+constexpr std::size_t grain = 64;
 using Triplet = Eigen::Triplet<double>;
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
@@ -121,6 +123,31 @@ Points DisplacementSmoother::solve(const Points& wished, const std::vector<char>
 
 namespace {
 
+/// What every vertex of one surface finds on another.
+struct Correspondence {
+  Points points;              // 3×n; the vertex's own position where it found nothing
+  std::vector<char> matched;  // n; 1 where `points` holds a compatible point
+  std::size_t unmatched = 0;  // vertices without one
+};
+
+Correspondence closest_compatible_points(const TriangleMesh& moving, const TargetSurface& target) {
+  const auto count = static_cast<std::size_t>(moving.vertices.cols());
+  const Points normals = vertex_normals(moving);
+  const MatchLimits limits{0, std::numeric_limits<double>::infinity()};
+  Correspondence result{moving.vertices, std::vector<char>(count, 0), 0};
+  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      const auto found = target.match(moving.vertices.col(column), normals.col(column), limits);
+      if (!found) continue;
+      result.points.col(column) = found->point;
+      result.matched[i] = 1;
+    }
+  });
+  result.unmatched = static_cast<std::size_t>(std::count(result.matched.begin(), result.matched.end(), 0));
+  return result;
+}
+
 /// An anchor that lies on both surfaces, and where it shall go.
 struct SurfaceAnchors {
   std::vector<DisplacementAnchor> places;
@@ -160,16 +187,6 @@ Points anchor_wishes(const SurfaceAnchors& anchors, const Points& vertices) {
 
 double root_mean_square(const Points& columns) {
   return columns.cols() == 0 ? 0 : columns.norm() / std::sqrt(static_cast<double>(columns.cols()));
-}
-
-/// Distance of every vertex from the nearest point of the target, whatever its normal.
-Statistics distances(const ClosestPointTree& target, const Points& vertices) {
-  std::vector<double> result(static_cast<std::size_t>(vertices.cols()));
-  parallel_for(result.size(), 64, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      result[i] = std::sqrt(target.closest(vertices.col(static_cast<Eigen::Index>(i)))->squared_distance);
-  });
-  return summarize(std::move(result));
 }
 
 /// Matched vertices on their counterparts, exact anchors on theirs. A vertex whose snap would turn a face
@@ -218,21 +235,20 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
   const auto start = std::chrono::steady_clock::now();
   const double source_diagonal = diagonal(input.source.vertices);
   const double stiffness = options.stiffness.value_or(default_stiffness(input.source.vertices.cols()));
-  const CompatiblePoints target(input.target);
+  const TargetSurface target(input.target);
   const SurfaceAnchors anchors = anchors_on_surfaces(input, stiffness);
   const DisplacementSmoother smoother(input.source, anchors.places, stiffness);
 
   TriangleMesh moving{input.warped_vertices, input.source.faces};
   SurfaceFit fit;
   SurfaceFitSummary& summary = fit.summary;
-  const ClosestPointTree anywhere(input.target);
-  summary.before = distances(anywhere, moving.vertices);
+  summary.before = distances(target, moving.vertices);
   double best_distance = std::numeric_limits<double>::infinity();
   int since_best = 0;
   for (summary.iterations = 0; summary.iterations < options.max_iterations; ++summary.iterations) {
     progress.step("surface-fit", static_cast<std::size_t>(summary.iterations),
                   static_cast<std::size_t>(options.max_iterations));
-    const Correspondence found = target.closest(moving.vertices, vertex_normals(moving));
+    const Correspondence found = closest_compatible_points(moving, target);
     const Points wished = found.points - moving.vertices;
     const double distance = root_mean_square(wished);
     // Real scans never come closer than their noise and their missing parts let them.
@@ -251,11 +267,11 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
       break;
     }
   }
-  const Correspondence found = target.closest(moving.vertices, vertex_normals(moving));
+  const Correspondence found = closest_compatible_points(moving, target);
   moving.vertices = snapped(found, anchors, moving);
   fit.confidence.assign(found.matched.begin(), found.matched.end());
   summary.unmatched_vertices = found.unmatched;
-  summary.after = distances(anywhere, moving.vertices);
+  summary.after = distances(target, moving.vertices);
   fit.vertices = std::move(moving.vertices);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return fit;

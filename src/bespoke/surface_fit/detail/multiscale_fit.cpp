@@ -21,15 +21,6 @@ constexpr double similarity_tolerance = 5e-4;  // of the diagonal: remeshing noi
 constexpr double edges_per_area = 1125;  // an edge longer than √(area / this) is halved: about a node spacing
 constexpr std::size_t grain = 256;
 
-Statistics distances(const Points& vertices, const TargetSurface& target) {
-  std::vector<double> all(static_cast<std::size_t>(vertices.cols()));
-  parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      all[i] = std::sqrt(target.closest(vertices.col(static_cast<Eigen::Index>(i))).squared_distance);
-  });
-  return summarize(std::move(all));
-}
-
 /// 1 where a vertex has a counterpart at its place that faces the same way, 0 where it has none.
 std::vector<double> confidences(const TriangleMesh& fitted, const TargetSurface& target, double diagonal) {
   constexpr double near = 0.002;  // of the diagonal: the distance at which confidence falls to 1/e
@@ -104,7 +95,7 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
 
   SurfaceFit fit;
   fit.summary.similarity_suffices = similarity_suffices;
-  fit.summary.before = distances(input.warped_vertices, target);
+  fit.summary.before = distances(target, input.warped_vertices);
   Points exact_sources = anchors(Eigen::all, exact);
   if (!similarity_suffices) {
     const NodeFit nodes = fit_nodes({surface, target, anchors, input.anchor_targets, input.anchor_weights,
@@ -131,7 +122,7 @@ SurfaceFit fit_surface_multiscale(const SurfaceFitInput& input, const SurfaceFit
   surface.vertices = meet_anchors({surface, target, exact_sources, exact_targets, scaled_diagonal}).vertices;
 
   fit.vertices = surface.vertices.leftCols(count);
-  fit.summary.after = distances(fit.vertices, target);
+  fit.summary.after = distances(target, fit.vertices);
   fit.confidence = confidences({fit.vertices, input.source.faces}, target, scaled_diagonal);
   for (const double confidence : fit.confidence) fit.summary.unmatched_vertices += confidence > 0 ? 0 : 1;
   fit.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bespoke/parallel.h"
+#include "bespoke/rigid/nearest_rotation.h"
 #include "bespoke/surface_fit/detail/block_system.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
@@ -227,10 +228,7 @@ class LevelFit {
         spread += edge.squaredNorm();
       }
       if (!(spread > 0)) continue;
-      const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      Vector3 sign = Vector3::Ones();
-      if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-      const Matrix3 rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+      const Matrix3 rotation = nearest_rotation(covariance).rotation;
       const Matrix3 similarity = ((rotation.transpose() * covariance).trace() / spread) * rotation;
       const double share = weight * nodes_.areas[node] / double(nodes_.neighbours[node].size());
       const Matrix3 form = share * Matrix3::Identity();

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/statistics.h"
 
 namespace bespoke {
 
@@ -26,10 +28,12 @@ struct MatchLimits {
   double min_cosine = 0;     ///< between the query's normal and that of the face
   double max_distance = 0;   ///< mesh units
   double normal_length = 0;  ///< mesh units; prefers faces of like normal (ClosestPointQuery)
+  /// Whether a point on the surface's boundary answers. Usually it does not: there the surface ends, not the
+  /// body, and whatever lies beyond would collapse onto the boundary curve.
+  bool boundary_answers = false;
 };
 
-/// A surface that answers closest compatible points. A point on its boundary is no answer: there the surface
-/// ends, not the body, and whatever lies beyond would collapse onto the boundary curve. Thread-safe.
+/// A surface that answers closest compatible points. Thread-safe.
 class TargetSurface {
  public:
   /// Throws InvalidInput as ClosestPointTree.
@@ -38,8 +42,8 @@ class TargetSurface {
   /// The same faces with other vertices (3×n, mesh units).
   TargetSurface moved(Points vertices) const;
 
-  /// Closest point within the limits; empty when there is none, when it lies on the boundary, or when
-  /// `normal` (unit) is zero.
+  /// Closest point within the limits; empty when there is none, when it lies on the boundary and that does
+  /// not answer, or when `normal` (unit) is zero.
   std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, const MatchLimits& limits) const;
 
   /// Closest point, whatever the normals and on the boundary too.
@@ -53,8 +57,8 @@ class TargetSurface {
 
  private:
   struct Boundary {
+    MeshEdges table;
     Eigen::Matrix2Xi edges;
-    std::vector<unsigned char> face_bits;  // bit k where edge (k, k+1) belongs to one face
     std::vector<char> vertices;
   };
   TargetSurface(TriangleMesh mesh, ClosestPointTree tree, std::shared_ptr<const Boundary> boundary);
@@ -68,7 +72,7 @@ class TargetSurface {
   std::shared_ptr<const Boundary> boundary_;
 };
 
-/// n: a third of the area of the faces around each vertex, mesh units squared.
-Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
+/// Distances of points (3×n, mesh units) from the surface, whatever the normals.
+Statistics distances(const TargetSurface& surface, const Points& points);
 
 }  // namespace bespoke

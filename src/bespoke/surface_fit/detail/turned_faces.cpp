@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
 
 namespace bespoke {
 namespace {

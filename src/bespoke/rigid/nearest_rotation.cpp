@@ -1,0 +1,14 @@
+#include "bespoke/rigid/nearest_rotation.h"
+
+#include <Eigen/SVD>
+
+namespace bespoke {
+
+NearestRotation nearest_rotation(const Matrix3& matrix) {
+  const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3 sign = Vector3::Ones();
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
+  return {svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose(), svd.singularValues().dot(sign)};
+}
+
+}  // namespace bespoke
