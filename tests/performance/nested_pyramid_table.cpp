@@ -80,7 +80,7 @@ Pair turned(Pair pair) {
 FittedMapping fit(const Pair& pair) {
   const double length = diagonal(pair.source.vertices);
   FitOptions options;
-  options.surface_fit.method = SurfaceFitMethod::multiscale;
+  options.surface_fit.method = SurfaceFitMethod::deformation_graph;
   options.elastic = ElasticMethod::diffeomorphic;
   options.lambda = 0.1 * length;
   options.fit_tolerance = 1e-4 * length;

@@ -39,7 +39,7 @@ BENCHMARK_CAPTURE(fit, laplacian, SurfaceFitMethod::laplacian)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK_CAPTURE(fit, multiscale, SurfaceFitMethod::multiscale)
+BENCHMARK_CAPTURE(fit, deformation_graph, SurfaceFitMethod::deformation_graph)
     ->Arg(4)
     ->Arg(5)
     ->Unit(benchmark::kMillisecond)

@@ -122,7 +122,7 @@ TEST(FitMapping, ReportsEveryStageWithoutTimes) {
     EXPECT_FALSE(json.contains("seconds"));
   }
   const auto surface = nlohmann::json::parse(fit.stages[2].json);
-  EXPECT_EQ(surface["method"], "multiscale");
+  EXPECT_EQ(surface["method"], "deformation-graph");
   EXPECT_GT(surface["iterations"], 0);
   EXPECT_EQ(surface["after"]["count"], 642);
   EXPECT_EQ(nlohmann::json::parse(fit.stages[3].json)["method"], "csrbf");

@@ -16,7 +16,7 @@ TriangleMesh square_from(double left) {
 TEST(BoundaryMatcher, TakesNearbyCutsForTheSame) {
   const TargetSurface target(square_from(0.1));
   const TriangleMesh source = shapes::square_grid(8);
-  BoundaryMatcher matcher(TargetSurface(source), Vector3(0.5, 0.5, 0), target, BoundaryRule::automatic);
+  BoundaryMatcher matcher({TargetSurface(source), Vector3(0.5, 0.5, 0), target, BoundaryRule::automatic});
   EXPECT_EQ(matcher.boundaries(), 1);
   EXPECT_TRUE(matcher.match(source.vertices).empty());  // before the decision
   matcher.decide(source.vertices);
@@ -38,7 +38,7 @@ TEST(BoundaryMatcher, TakesNearbyCutsForTheSame) {
 TEST(BoundaryMatcher, LeavesACutThatWouldStretchTheSourceByHalf) {
   const TargetSurface target(square_from(0.45));
   const TriangleMesh source = shapes::square_grid(8);
-  BoundaryMatcher matcher(TargetSurface(source), Vector3(0.5, 0.5, 0), target, BoundaryRule::automatic);
+  BoundaryMatcher matcher({TargetSurface(source), Vector3(0.5, 0.5, 0), target, BoundaryRule::automatic});
   matcher.decide(source.vertices);
   EXPECT_EQ(matcher.matched_boundaries(), 0);
   EXPECT_TRUE(matcher.match(source.vertices).empty());
@@ -47,11 +47,11 @@ TEST(BoundaryMatcher, LeavesACutThatWouldStretchTheSourceByHalf) {
 TEST(BoundaryMatcher, ObeysTheCaller) {
   const TargetSurface near(square_from(0.1)), far(square_from(0.45));
   const TriangleMesh source = shapes::square_grid(8);
-  BoundaryMatcher free(TargetSurface(source), Vector3(0.5, 0.5, 0), near, BoundaryRule::free);
+  BoundaryMatcher free({TargetSurface(source), Vector3(0.5, 0.5, 0), near, BoundaryRule::free});
   free.decide(source.vertices);
   EXPECT_TRUE(free.match(source.vertices).empty());
   for (const Points& anchors : {Points(Vector3(0.5, 0.5, 0)), Points(3, 0)}) {
-    BoundaryMatcher matched(TargetSurface(source), anchors, far, BoundaryRule::matched);
+    BoundaryMatcher matched({TargetSurface(source), anchors, far, BoundaryRule::matched});
     matched.decide(source.vertices);
     EXPECT_EQ(matched.matched_boundaries(), 1);
     EXPECT_EQ(matched.match(source.vertices).size(), 32u);
@@ -60,8 +60,8 @@ TEST(BoundaryMatcher, ObeysTheCaller) {
 
 TEST(BoundaryMatcher, HasNothingToDoOnClosedModels) {
   const TargetSurface closed(shapes::cube()), open(shapes::square_grid(4));
-  EXPECT_EQ(BoundaryMatcher(open, Vector3::Zero(), closed, BoundaryRule::matched).boundaries(), 0);
-  EXPECT_EQ(BoundaryMatcher(closed, Vector3::Zero(), open, BoundaryRule::matched).boundaries(), 0);
+  EXPECT_EQ(BoundaryMatcher({open, Vector3::Zero(), closed, BoundaryRule::matched}).boundaries(), 0);
+  EXPECT_EQ(BoundaryMatcher({closed, Vector3::Zero(), open, BoundaryRule::matched}).boundaries(), 0);
 }
 
 }  // namespace

@@ -30,6 +30,34 @@ TEST(DeformationNodes, ReproduceTranslationsExactlyAndTurnsAlongTheSurfaceNearly
   }
 }
 
+TEST(DeformationNodes, SpacingGivesAboutTheCountAskedFor) {
+  const TriangleMesh sphere = shapes::icosphere(5);
+  for (const int count : {100, 400}) {
+    const double spacing = node_spacing(vertex_areas(sphere).sum(), count);
+    EXPECT_NEAR(make_deformation_nodes(sphere, spacing).size(), count, 0.2 * count);
+  }
+}
+
+TEST(DeformationNodes, CombineAtAPointLikeItsCorners) {
+  const TriangleMesh sphere = shapes::icosphere(3);
+  const DeformationNodes nodes = make_deformation_nodes(sphere, 0.4);
+  const Points displacements = nodes.rest.array().square().matrix();
+  SurfacePoint point;
+  point.face = 17;
+  point.barycentric = Vector3(0.2, 0.3, 0.5);
+  Vector3 expected = Vector3::Zero(), found = Vector3::Zero();
+  for (int k = 0; k < 3; ++k)
+    expected += point.barycentric[k] * nodes.displacement(displacements, sphere.faces(k, point.face));
+  const auto combination = nodes.at_point(point, sphere.faces);
+  for (std::size_t i = 0; i < combination.size(); ++i) {
+    found += combination[i].weight * displacements.col(combination[i].node);
+    if (i > 0) {
+      EXPECT_LT(combination[i - 1].node, combination[i].node);
+    }
+  }
+  EXPECT_TRUE(found.isApprox(expected, 1e-12));
+}
+
 TEST(DeformationNodes, NeighboursAreMutualAndEnough) {
   const DeformationNodes nodes = make_deformation_nodes(shapes::icosphere(4), 0.25);
   for (int node = 0; node < nodes.size(); ++node) {

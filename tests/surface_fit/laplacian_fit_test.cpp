@@ -5,130 +5,15 @@
 #include <Eigen/Dense>
 #include <limits>
 
-#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "support/fitting_scene.h"
-#include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-using test::random_points;
-
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// Eq. 11, summed as it is written.
-struct Energy {
-  TriangleMesh mesh;
-  std::vector<DisplacementAnchor> anchors;
-  double stiffness = 1;
-  Points wished;
-  std::vector<char> matched;
-  Points anchor_wished;
-
-  double operator()(const Points& displacement) const {
-    double energy = 0;
-    const VertexAdjacency adjacency = vertex_adjacency(mesh);
-    for (int i = 0; i < displacement.cols(); ++i) {
-      if (matched[static_cast<std::size_t>(i)]) energy += (displacement.col(i) - wished.col(i)).squaredNorm();
-      for (int k = adjacency.start[static_cast<std::size_t>(i)];
-           k < adjacency.start[static_cast<std::size_t>(i) + 1]; ++k) {
-        const int j = adjacency.neighbours[static_cast<std::size_t>(k)];
-        if (i < j) energy += stiffness * (displacement.col(i) - displacement.col(j)).squaredNorm();
-      }
-    }
-    for (std::size_t k = 0; k < anchors.size(); ++k) {
-      Vector3 at = Vector3::Zero();
-      for (int corner = 0; corner < 3; ++corner)
-        at += anchors[k].barycentric[corner] * displacement.col(anchors[k].vertices[corner]);
-      energy += anchors[k].weight * (at - anchor_wished.col(static_cast<Eigen::Index>(k))).squaredNorm();
-    }
-    return energy;
-  }
-};
-
-Energy energy_on(const TriangleMesh& mesh, double stiffness) {
-  Energy energy;
-  energy.mesh = mesh;
-  energy.stiffness = stiffness;
-  energy.wished = random_points(mesh.vertices.cols(), 1);
-  energy.matched.assign(static_cast<std::size_t>(mesh.vertices.cols()), 1);
-  energy.anchor_wished.resize(3, 0);
-  return energy;
-}
-
-/// The energy is quadratic, so that central differences of step 1 give its gradient exactly.
-double largest_gradient(const Energy& energy, Points at) {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < at.size(); ++i) {
-    const double value = at(i);
-    at(i) = value + 1;
-    const double above = energy(at);
-    at(i) = value - 1;
-    const double below = energy(at);
-    at(i) = value;
-    largest = std::max(largest, std::abs(above - below) / 2);
-  }
-  return largest;
-}
-
-TEST(DisplacementSmoother, SolvesForTheMinimumOfTheEnergy) {
-  for (const double stiffness : {0.0, 1.0, 40.0}) {
-    Energy energy = energy_on(shapes::square_grid(5), stiffness);
-    energy.anchors = {{energy.mesh.faces.col(7), Vector3(0.2, 0.3, 0.5), 10}};
-    energy.anchor_wished = Vector3(1, 2, 3);
-    const DisplacementSmoother smoother(energy.mesh, energy.anchors, stiffness);
-    const Points solution = smoother.solve(energy.wished, energy.matched, energy.anchor_wished);
-    EXPECT_LT(largest_gradient(energy, solution), 1e-9);
-  }
-}
-
-TEST(DisplacementSmoother, EqualsTheDenseSolutionOfTheEquation) {
-  const Energy energy = energy_on(shapes::icosphere(1), 1);
-  const VertexAdjacency adjacency = vertex_adjacency(energy.mesh);
-  const Eigen::Index count = energy.mesh.vertices.cols();
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(count, count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    for (int k = adjacency.start[static_cast<std::size_t>(i)];
-         k < adjacency.start[static_cast<std::size_t>(i) + 1]; ++k) {
-      matrix(i, i) += 1;
-      matrix(i, adjacency.neighbours[static_cast<std::size_t>(k)]) -= 1;
-    }
-  const Points dense = matrix.fullPivLu().solve(energy.wished.transpose()).transpose();
-  const DisplacementSmoother smoother(energy.mesh, {}, 1);
-  EXPECT_TRUE(smoother.solve(energy.wished, energy.matched, energy.anchor_wished).isApprox(dense, 1e-12));
-}
-
-TEST(DisplacementSmoother, LeavesUnmatchedVerticesToTheirNeighbours) {
-  Energy energy = energy_on(shapes::square_grid(6), 3);
-  for (std::size_t i = 0; i < energy.matched.size(); i += 2) energy.matched[i] = 0;
-  const DisplacementSmoother smoother(energy.mesh, {}, 3);
-  const Points solution = smoother.solve(energy.wished, energy.matched, energy.anchor_wished);
-  EXPECT_LT(largest_gradient(energy, solution), 1e-4);
-}
-
-TEST(DisplacementSmoother, KeepsConstantDisplacements) {
-  Energy energy = energy_on(shapes::joined(shapes::icosphere(2), shapes::square_grid(3)), 100);
-  energy.wished.colwise() = Vector3(1, -2, 3);
-  energy.matched[5] = energy.matched[17] = 0;
-  const DisplacementSmoother smoother(energy.mesh, {}, 100);
-  EXPECT_LT((smoother.solve(energy.wished, energy.matched, energy.anchor_wished) - energy.wished).norm(),
-            1e-4);
-}
-
-TEST(DisplacementSmoother, LeavesAPieceWithoutAnyMatchAlone) {
-  Energy energy = energy_on(shapes::joined(shapes::square_grid(2), shapes::square_grid(2)), 2);
-  for (std::size_t i = 9; i < 18; ++i) energy.matched[i] = 0;
-  const DisplacementSmoother smoother(energy.mesh, {}, 2);
-  EXPECT_LT(smoother.solve(energy.wished, energy.matched, energy.anchor_wished).rightCols(9).norm(), 1e-12);
-}
-
-TEST(DisplacementSmoother, RejectsAStiffnessThatIsNone) {
-  EXPECT_THROW(DisplacementSmoother(shapes::triangle(), {}, -1), InvalidInput);
-  EXPECT_THROW(DisplacementSmoother(shapes::triangle(), {}, std::nan("")), InvalidInput);
-}
-
-// ---- the whole fitting
 
 struct Scene : test::FittingScene {
   SurfaceFit fit(SurfaceFitOptions options = {}) const {
@@ -224,35 +109,102 @@ TEST(FitSurfaceLaplacian, SaysWhyItStopped) {
   EXPECT_NE(to_string(fit.summary).find("iteration cap"), std::string::npos);
 }
 
-TEST(FitSurface, RejectsWhatDoesNotBelongTogether) {
-  const TriangleMesh sphere = shapes::icosphere(1);
-  Scene scene{sphere, sphere};
-  scene.warped = scene.warped.leftCols(5).eval();
-  EXPECT_THROW(scene.fit(), InvalidInput);
-  scene.warped = sphere.vertices;
-  scene.warped(0, 0) = std::nan("");
-  EXPECT_THROW(scene.fit(), InvalidInput);
-  scene.warped = sphere.vertices;
-  scene.anchor_weights = Eigen::VectorXd::Ones(2);
-  EXPECT_THROW(scene.fit(), InvalidInput);
-  scene.anchor_weights.resize(0);
+// ---- the printed method
+
+SurfaceFit fit_as_printed(const Scene& scene, int max_iterations = 100) {
   SurfaceFitOptions options;
-  options.max_iterations = 0;
-  EXPECT_THROW(scene.fit(options), InvalidInput);
-  options = {};
-  options.epsilon = std::nan("");
-  EXPECT_THROW(scene.fit(options), InvalidInput);
-  scene.target.faces.resize(3, 0);
-  EXPECT_THROW(scene.fit(), InvalidInput);
+  options.laplacian = no_additions;
+  options.max_iterations = max_iterations;
+  return scene.fit(options);
 }
 
-TEST(FitSurface, StopsWhenAsked) {
-  const TriangleMesh sphere = shapes::icosphere(1);
-  const Eigen::VectorXd none(0);
-  Progress progress;
-  progress.cancelled = [] { return true; };
-  EXPECT_THROW(fit_surface({sphere, sphere.vertices, sphere, Points(3, 0), Points(3, 0), none}, {}, progress),
-               Interrupted);
+TriangleMesh bumpy_sphere(int levels) {
+  TriangleMesh mesh = shapes::icosphere(levels);
+  for (auto&& x : mesh.vertices.colwise()) x *= 1.1 + 0.1 * std::sin(5 * x[0]) * std::cos(4 * x[1]);
+  return mesh;
+}
+
+/// Closest points of all vertices on faces whose normals lie within 90 degrees.
+Points closest_compatible(const TriangleMesh& moving, const TriangleMesh& target) {
+  const ClosestPointTree tree(target);
+  const Points normals = vertex_normals(moving);
+  Points found = moving.vertices;
+  for (Eigen::Index i = 0; i < found.cols(); ++i) {
+    ClosestPointQuery query;
+    query.normal = normals.col(i);
+    if (const auto point = tree.closest(moving.vertices.col(i), query)) found.col(i) = point->point;
+  }
+  return found;
+}
+
+/// I + L of Eq. 13, dense: 1 + valence on the diagonal, -1 for each neighbour.
+Eigen::MatrixXd printed_matrix(const TriangleMesh& mesh) {
+  const Eigen::Index count = mesh.vertices.cols();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(count, count);
+  for (const MeshEdge& edge : mesh_edges(mesh).edges) {
+    matrix(edge.a, edge.a) += 1;
+    matrix(edge.b, edge.b) += 1;
+    matrix(edge.a, edge.b) -= 1;
+    matrix(edge.b, edge.a) -= 1;
+  }
+  return matrix;
+}
+
+TEST(FitSurfaceLaplacian, AsPrintedIsEquation13RepeatedAndASnap) {
+  const TriangleMesh target = bumpy_sphere(3);
+  const Scene scene{shapes::icosphere(2), target};
+  const Eigen::MatrixXd inverse = printed_matrix(scene.source).inverse();
+  TriangleMesh moving = scene.source;
+  for (int iteration = 1; iteration <= 4; ++iteration) {
+    moving.vertices += (closest_compatible(moving, target) - moving.vertices) * inverse;
+    const SurfaceFit fit = fit_as_printed(scene, iteration);
+    EXPECT_EQ(fit.summary.iterations, iteration);
+    EXPECT_EQ(fit.summary.stiffness, 1);
+    EXPECT_TRUE(fit.vertices.isApprox(closest_compatible(moving, target), 1e-10));
+  }
+}
+
+TEST(FitSurfaceLaplacian, AsPrintedStopsWhenTheDisplacementsAreWithinEpsilonAndNotBefore) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const SurfaceFit there = fit_as_printed(Scene{sphere, sphere});
+  EXPECT_EQ(there.summary.stop_reason, StopReason::converged);
+  EXPECT_EQ(there.summary.iterations, 0);
+
+  // Beside the end of an open target there is no compatible point nearer than the boundary: ‖T⁰‖ stays.
+  TriangleMesh half = shapes::square_grid(6);
+  half.vertices.row(0) /= 2;
+  const SurfaceFit never = fit_as_printed(Scene{shapes::square_grid(6), half}, 30);
+  EXPECT_EQ(never.summary.iterations, 30);
+  EXPECT_EQ(never.summary.stop_reason, StopReason::unprinted_cap);
+}
+
+TEST(FitSurfaceLaplacian, AsPrintedLetsTheWarpAloneKnowTheAnchors) {
+  const TriangleMesh sphere = shapes::icosphere(3);
+  Scene scene{sphere, bumpy_sphere(4)};
+  const SurfaceFit without = fit_as_printed(scene, 5);
+  scene.anchor_sources = sphere.vertices.leftCols(4);
+  scene.anchor_targets = scene.target.vertices.leftCols(4);
+  scene.anchor_weights = Eigen::VectorXd::Constant(4, infinity);
+  EXPECT_EQ(fit_as_printed(scene, 5).vertices, without.vertices);
+}
+
+TEST(FitSurfaceLaplacian, AsPrintedTakesTheBoundaryForACounterpart) {
+  const TriangleMesh strip = shapes::square_grid(10);
+  TriangleMesh shorter = strip;
+  shorter.vertices.row(0) *= 0.8;
+  const SurfaceFit printed = fit_as_printed(Scene{strip, shorter});
+  EXPECT_EQ(printed.summary.unmatched_vertices, 0u);
+  EXPECT_NEAR(printed.vertices.row(0).maxCoeff(), 0.8, 1e-12);
+  EXPECT_NEAR((Scene{strip, shorter}.fit().vertices.row(0).maxCoeff()), 1, 1e-9);
+}
+
+TEST(FitSurfaceLaplacian, ScaledStiffnessGrowsWithTheVerticesUnlessToldOtherwise) {
+  const TriangleMesh fine = shapes::icosphere(4), coarse = shapes::icosphere(1);
+  EXPECT_GT((Scene{fine, fine}.fit().summary.stiffness), 1);
+  EXPECT_EQ((Scene{coarse, coarse}.fit().summary.stiffness), 1);
+  SurfaceFitOptions options;
+  options.stiffness = 7;
+  EXPECT_EQ((Scene{fine, fine}.fit(options).summary.stiffness), 7);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(FitNodes, FollowsASmoothBendOfAFeaturedSurface) {
   const TargetSurface surface(target);
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(6, infinity);
   const NodeFit fit =
-      fit_nodes({source, surface, anchors, anchor_targets, weights, diagonal(source.vertices)}, {});
+      fit_nodes({source, surface, anchors, anchor_targets, weights, diagonal(source.vertices)}, {}, {});
   EXPECT_LT((fit.vertices - target.vertices).colwise().norm().mean(), 0.01);
   EXPECT_LT((fit.anchor_sources - anchor_targets).colwise().norm().maxCoeff(), 0.01);
 }
@@ -40,7 +40,7 @@ TEST(FitNodes, WeighsSoftAnchorsLess) {
   for (const double weight : {0.01, 1.0, 100.0, infinity}) {
     const NodeFit fit = fit_nodes(
         {sphere, surface, anchors, targets, Eigen::VectorXd::Constant(4, weight), diagonal(sphere.vertices)},
-        {});
+        {}, {});
     const double pulled = fit.anchor_sources.col(0).norm() - 1;
     EXPECT_GT(pulled, last);
     last = pulled;

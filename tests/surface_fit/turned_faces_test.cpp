@@ -80,7 +80,7 @@ TEST(MendTurnedFaces, LeavesTheFitWhereMostOfItTurned) {
 TEST(MendTurnedFaces, TakesBackWhatTurnedFartherThanItsLimitOnly) {
   const TriangleMesh two = shapes::joined(shapes::square_grid(2), shapes::square_grid(2));
   for (const double beyond : {-1.0, 1.0}) {
-    const double angle = (most_degrees_turned + beyond) * std::numbers::pi / 180;
+    const double angle = (MendingSettings{}.most_degrees + beyond) * std::numbers::pi / 180;
     Points after = two.vertices;
     const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
     after.leftCols(9) = turn * two.vertices.leftCols(9);

@@ -65,6 +65,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
   MakeMapOptions options = default_options(source_diagonal);
   if (arguments.paper) {
     options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
+    options.fit.surface_fit.laplacian = no_additions;
     options.fit.elastic = ElasticMethod::csrbf;
     options.path = RotationPath::euler;
   }
@@ -191,17 +192,20 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
                                    name_of(surface_fit_methods, defaults.fit.surface_fit.method)));
   add_name_option(
       fit, "--boundaries", arguments.boundaries, boundary_rules,
-      with_default("multiscale: whether open boundaries of the source meet the target's; free when the "
-                   "models were cut at different places",
-                   name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
+      with_default(
+          "deformation-graph: whether open boundaries of the source meet the target's; free when the "
+          "models were cut at different places",
+          name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
   CLI::Option* elastic = add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
   CLI::Option* path = add_name_option(fit, "--path", arguments.path, rotation_paths,
                                       with_default("How the rotation grows with t; stored in the asset",
                                                    name_of(rotation_paths, defaults.path)));
-  fit.add_flag("--paper", arguments.paper,
-               "The printed method: --surface-fit laplacian --elastic csrbf --path euler")
+  fit.add_flag(
+         "--paper", arguments.paper,
+         "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, "
+         "--path euler")
       ->excludes(surface_fit, elastic, path);
   fit.add_flag("--add-corners", arguments.add_corners,
                "Add the eight corners of the bounding boxes of the two models, aligned, as anchor pairs");

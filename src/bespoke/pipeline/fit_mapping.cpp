@@ -74,21 +74,20 @@ StageReport coarse_report(const Statistics& residual, const Anchors& anchors, co
   return {"coarse", line, json.dump(), watch.seconds()};
 }
 
-const char* name(SurfaceFitMethod method) {
-  return method == SurfaceFitMethod::laplacian ? "laplacian" : "multiscale";
-}
-
 StageReport surface_fit_report(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
-  const Json json = {{"method", name(method)},
+  const std::string name(entry_of(method).name);
+  const Json json = {{"method", name},
                      {"before", to_json(summary.before)},
                      {"after", to_json(summary.after)},
                      {"iterations", summary.iterations},
                      {"stop_reason", to_string(summary.stop_reason)},
                      {"unmatched_vertices", summary.unmatched_vertices},
+                     {"off_surface_anchors", summary.off_surface_anchors},
+                     {"stiffness", summary.stiffness},
                      {"similarity_suffices", summary.similarity_suffices},
                      {"matched_boundaries", summary.matched_boundaries},
                      {"mended_vertices", summary.mended_vertices}};
-  return {"surface-fit", std::string(name(method)) + ": " + to_string(summary), json.dump(), summary.seconds};
+  return {"surface-fit", name + ": " + to_string(summary), json.dump(), summary.seconds};
 }
 
 // ---- what the elastic map is fitted to

@@ -10,6 +10,16 @@
 namespace bespoke {
 namespace {
 
+Json laplacian_json(const SurfaceFitOptions& options) {
+  const LaplacianAdditions& additions = options.laplacian;
+  Json json = {
+      {"scaled_stiffness", additions.scaled_stiffness}, {"refuse_boundary", additions.refuse_boundary},
+      {"free_unmatched", additions.free_unmatched},     {"hold_anchors", additions.hold_anchors},
+      {"stop_at_rest", additions.stop_at_rest},         {"undo_turning_snaps", additions.undo_turning_snaps}};
+  if (options.stiffness) json["stiffness"] = *options.stiffness;
+  return json;
+}
+
 std::string options_json(const MakeMapOptions& options, bool given_fitted) {
   Json json;
   json["path"] = name_of(rotation_paths, options.path);
@@ -18,6 +28,8 @@ std::string options_json(const MakeMapOptions& options, bool given_fitted) {
     json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
     json["max_iterations"] = options.fit.surface_fit.max_iterations;
     json["epsilon"] = options.fit.surface_fit.epsilon;
+    if (options.fit.surface_fit.method == SurfaceFitMethod::laplacian)
+      json["laplacian"] = laplacian_json(options.fit.surface_fit);
   }
   json["elastic"] = name_of(elastic_methods, options.fit.elastic);
   json["lambda"] = options.fit.lambda;

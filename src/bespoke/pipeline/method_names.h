@@ -4,8 +4,10 @@
 #include <optional>
 #include <string_view>
 
+#include "bespoke/error.h"
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/surface_fit/surface_fit_methods.h"
 
 namespace bespoke {
 
@@ -16,9 +18,11 @@ struct Named {
   Value value;
 };
 
-inline constexpr std::array surface_fit_methods{
-    Named<SurfaceFitMethod>{"laplacian", SurfaceFitMethod::laplacian},
-    Named<SurfaceFitMethod>{"multiscale", SurfaceFitMethod::multiscale}};
+inline constexpr auto surface_fit_methods = [] {
+  std::array<Named<SurfaceFitMethod>, surface_fits.size()> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) names[i] = {surface_fits[i].name, surface_fits[i].value};
+  return names;
+}();
 
 inline constexpr std::array boundary_rules{Named<BoundaryRule>{"auto", BoundaryRule::automatic},
                                            Named<BoundaryRule>{"free", BoundaryRule::free},
@@ -41,7 +45,7 @@ template <class Value, std::size_t size>
 constexpr std::string_view name_of(const std::array<Named<Value>, size>& names, Value value) {
   for (const Named<Value>& named : names)
     if (named.value == value) return named.name;
-  return "unknown";
+  throw InvalidInput("a value has no name in its table");
 }
 
 template <class Value, std::size_t size>

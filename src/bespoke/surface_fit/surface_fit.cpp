@@ -3,8 +3,6 @@
 #include <cstdio>
 
 #include "bespoke/error.h"
-#include "bespoke/surface_fit/detail/laplacian_fit.h"
-#include "bespoke/surface_fit/detail/multiscale_fit.h"
 
 namespace bespoke {
 namespace {
@@ -33,6 +31,13 @@ void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& o
 
 }  // namespace
 
+const SurfaceFitEntry& entry_of(SurfaceFitMethod method) {
+  for (const SurfaceFitEntry& entry : surface_fits)
+    if (entry.value == method) return entry;
+  throw InvalidInput("surface fitting method " + std::to_string(static_cast<int>(method)) +
+                     " is not in the table");
+}
+
 const char* to_string(StopReason reason) {
   switch (reason) {
     case StopReason::converged:
@@ -41,6 +46,8 @@ const char* to_string(StopReason reason) {
       return "stagnated";
     case StopReason::iteration_cap:
       return "stopped at the iteration cap";
+    case StopReason::unprinted_cap:
+      return "stopped at the iteration cap, which the paper does not have";
   }
   return "";
 }
@@ -54,6 +61,8 @@ std::string to_string(const SurfaceFitSummary& summary) {
                 summary.iterations, to_string(summary.stop_reason), summary.unmatched_vertices,
                 summary.seconds);
   std::string line = text;
+  if (summary.off_surface_anchors > 0)
+    line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.matched_boundaries > 0)
     line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
@@ -65,13 +74,7 @@ std::string to_string(const SurfaceFitSummary& summary) {
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress) {
   require_consistent(input, options);
-  switch (options.method) {
-    case SurfaceFitMethod::laplacian:
-      return fit_surface_laplacian(input, options, progress);
-    case SurfaceFitMethod::multiscale:
-      return fit_surface_multiscale(input, options, progress);
-  }
-  throw InvalidInput("unknown surface fitting method");
+  return entry_of(options.method).fit(input, options, progress);
 }
 
 }  // namespace bespoke

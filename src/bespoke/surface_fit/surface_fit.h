@@ -8,35 +8,52 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/progress.h"
 #include "bespoke/statistics.h"
+#include "bespoke/surface_fit/surface_fit_methods.h"
 
 namespace bespoke {
 
-enum class SurfaceFitMethod {
-  laplacian,   ///< the paper's (IV.C, Eq. 11–15)
-  multiscale,  ///< smooth deformations, coarse to fine (multiscale_fit.h)
-};
-
 /// What an open boundary of the source does where the target is open too.
 enum class BoundaryRule {
-  automatic,  ///< meets the target's boundary where both are plausibly the same cut (boundary_match.h)
+  automatic,  ///< meets the target's boundary where both are plausibly the same cut (detail/boundary_match.h)
   free,       ///< goes where the surface around it goes: for models that were cut at different places
   matched,    ///< meets the target's boundary
 };
 
-struct SurfaceFitOptions {
-  SurfaceFitMethod method = SurfaceFitMethod::multiscale;
-  int max_iterations = 100;  ///< laplacian only: multiscale runs a fixed schedule
-  /// ε of the paper: stop when the root mean square of a step falls below this fraction of the source's
-  /// bounding-box diagonal.
-  double epsilon = 1e-5;
-  /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit: how much smoothness counts against reaching
-  /// the target in one step (laplacian only). 1 is the printed equation. By default it grows with the number
-  /// of vertices, so that displacements spread over the same distance at any resolution.
-  std::optional<double> stiffness;
-  BoundaryRule boundaries = BoundaryRule::automatic;  ///< multiscale only
+/// What the laplacian fit adds to Eq. 11–15 for real meshes. All false is the printed method.
+struct LaplacianAdditions {
+  /// s of Eq. 11 grows with the number of vertices, so that displacements spread over the same distance at
+  /// any resolution; else it is 1.
+  bool scaled_stiffness = true;
+  bool refuse_boundary = true;  ///< a point on the target's boundary is no counterpart
+  /// A vertex without counterpart follows its neighbours (its term of Eq. 11 is left out); else its T⁰ is
+  /// zero.
+  bool free_unmatched = true;
+  bool hold_anchors =
+      true;  ///< anchors on both surfaces have terms in Eq. 11; else the warp alone knows them
+  /// Stop when a step falls below ε or ‖T⁰‖ no longer falls; else only when ‖T⁰‖ ≤ ε.
+  bool stop_at_rest = true;
+  bool undo_turning_snaps = true;  ///< a vertex whose snap turns a face over stays where it was
 };
 
-enum class StopReason { converged, stagnated, iteration_cap };
+inline constexpr LaplacianAdditions no_additions{false, false, false, false, false, false};
+
+struct SurfaceFitOptions {
+  SurfaceFitMethod method = SurfaceFitMethod::deformation_graph;
+  int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
+  double epsilon = 1e-5;     ///< ε of the paper, a fraction of the source's bounding-box diagonal
+  /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit, instead of the printed or the scaled one:
+  /// how much smoothness counts against reaching the target in one step (laplacian only).
+  std::optional<double> stiffness;
+  LaplacianAdditions laplacian;
+  BoundaryRule boundaries = BoundaryRule::automatic;  ///< deformation-graph only
+};
+
+enum class StopReason {
+  converged,
+  stagnated,
+  iteration_cap,
+  unprinted_cap,  ///< the cap on iterations, in the paper's method, which has none
+};
 
 const char* to_string(StopReason reason);
 
@@ -46,12 +63,13 @@ struct SurfaceFitSummary {
   int iterations = 0;
   StopReason stop_reason = StopReason::iteration_cap;
   std::size_t unmatched_vertices =
-      0;  ///< no compatible point in the last iteration: moved by the smoothness term alone
-  bool similarity_suffices =
-      false;                   ///< multiscale: one similarity explains the target, nothing else was fitted
-  int matched_boundaries = 0;  ///< multiscale: open boundaries of the source taken for the target's cut
-  std::size_t mended_vertices =
-      0;  ///< multiscale: drawn to the wrong side of a fold, so they follow their neighbours
+      0;                 ///< no compatible point in the last iteration: moved by the smoothness term alone
+  double stiffness = 0;  ///< laplacian: s of Eq. 11
+  // deformation-graph:
+  bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
+  int matched_boundaries = 0;        ///< open boundaries of the source taken for the target's cut
+  std::size_t mended_vertices = 0;   ///< drawn to the wrong side of a fold, so they follow their neighbours
+  std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
   double seconds = 0;
 };
 

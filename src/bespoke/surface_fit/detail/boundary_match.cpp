@@ -11,19 +11,16 @@
 namespace bespoke {
 namespace {
 
-constexpr double max_stretch = 0.5;
-constexpr double must_agree = 0.9;  // of a boundary's vertices
 constexpr std::size_t grain = 32;
 
 }  // namespace
 
-BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors,
-                                 const TargetSurface& target, BoundaryRule rule)
-    : target_(target), rule_(rule) {
-  if (target.boundary_edges().cols() == 0 || rule == BoundaryRule::free) return;
-  if (anchors.cols() == 0 && rule == BoundaryRule::automatic) return;
-  const Eigen::Matrix2Xi& edges = source_rest.boundary_edges();
-  const Points& rest = source_rest.mesh().vertices;
+BoundaryMatcher::BoundaryMatcher(const BoundaryMatchInput& input, const BoundarySettings& settings)
+    : target_(input.target), rule_(input.rule), settings_(settings) {
+  if (target_.boundary_edges().cols() == 0 || rule_ == BoundaryRule::free) return;
+  if (input.anchors.cols() == 0 && rule_ == BoundaryRule::automatic) return;
+  const Eigen::Matrix2Xi& edges = input.source_rest.boundary_edges();
+  const Points& rest = input.source_rest.mesh().vertices;
   std::map<int, double> length;
   DisjointSets boundaries(static_cast<int>(rest.cols()));
   for (const auto& edge : edges.colwise()) {
@@ -38,9 +35,9 @@ BoundaryMatcher::BoundaryMatcher(const TargetSurface& source_rest, const Points&
     vertices_.push_back(vertex);
     boundary_.push_back(numbered.first->second);
     length_.push_back(own_length);
-    if (rule == BoundaryRule::automatic)
+    if (rule_ == BoundaryRule::automatic)
       anchor_distance_.push_back(
-          std::sqrt((anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
+          std::sqrt((input.anchors.colwise() - rest.col(vertex)).colwise().squaredNorm().minCoeff()));
   }
   boundaries_ = static_cast<int>(number_of_least.size());
   accepted_.assign(static_cast<std::size_t>(boundaries_), 0);
@@ -77,11 +74,11 @@ void BoundaryMatcher::decide(const Points& vertices) {
     const BoundaryMatch found = closest(vertices_[k], vertices);
     const double offset = (found.point - vertices.col(vertices_[k])).norm();
     ++total[boundary_[k]];
-    if (offset <= max_stretch * anchor_distance_[k]) ++agree[boundary_[k]];
+    if (offset <= settings_.max_stretch * anchor_distance_[k]) ++agree[boundary_[k]];
   }
   matched_boundaries_ = 0;
   for (std::size_t b = 0; b < accepted_.size(); ++b) {
-    accepted_[b] = agree[b] >= must_agree * total[b] ? 1 : 0;
+    accepted_[b] = agree[b] >= settings_.must_agree * total[b] ? 1 : 0;
     matched_boundaries_ += accepted_[b];
   }
 }

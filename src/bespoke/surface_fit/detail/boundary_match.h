@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
@@ -15,15 +16,20 @@ struct BoundaryMatch {
   Vector3 tangent;    ///< unit, of the target's boundary
 };
 
+struct BoundaryMatchInput {
+  const TargetSurface& source_rest;  ///< the source, aligned
+  const Points& anchors;             ///< 3×k, on the source, aligned with it, mesh units
+  const TargetSurface& target;       ///< must outlive the matcher
+  BoundaryRule rule = BoundaryRule::automatic;
+};
+
 /// Ties the cuts of open models to each other. Whether two cuts are the same place of the body cannot be seen
 /// from the surfaces; unless the caller rules it, a boundary of the source counts as the same cut when
-/// meeting the target's boundary stretches the strip between it and the nearest anchor by less than half for
-/// nine tenths of its vertices.
+/// meeting the target's boundary stretches the strip between it and the nearest anchor little enough for most
+/// of its vertices (settings).
 class BoundaryMatcher {
  public:
-  /// `source_rest`: the source, aligned; anchors: 3×k, aligned with it, mesh units.
-  BoundaryMatcher(const TargetSurface& source_rest, const Points& anchors, const TargetSurface& target,
-                  BoundaryRule rule);
+  explicit BoundaryMatcher(const BoundaryMatchInput& input, const BoundarySettings& settings = {});
 
   /// Decides, once, with the source's vertices (3×n) where they are when only surfaces and anchors were met.
   void decide(const Points& vertices);
@@ -39,6 +45,7 @@ class BoundaryMatcher {
 
   const TargetSurface& target_;
   BoundaryRule rule_;
+  BoundarySettings settings_;
   std::vector<int> vertices_;   // of the source's boundaries
   std::vector<int> boundary_;   // of each of them: which one
   std::vector<double> length_;  // of each, mesh units

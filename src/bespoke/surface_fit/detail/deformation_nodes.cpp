@@ -17,9 +17,6 @@ namespace {
 
 using Near = std::pair<double, int>;  // distance, node: sorts by distance, then by index
 
-constexpr double follow_reach = 2.6;     // spacings: a vertex follows nodes up to there
-constexpr double neighbour_reach = 2.3;  // spacings
-constexpr int min_neighbours = 8;        // fewer do not determine an affine map robustly
 constexpr std::size_t grain = 512;
 
 /// Shortest ways along the edges, from one vertex up to a limit; the arrays are reused.
@@ -62,7 +59,7 @@ class EdgeDistances {
 };
 
 /// 1 for the vertices of components large enough to carry nodes of their own.
-std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing) {
+std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing, double least_carried_area) {
   DisjointSets components(static_cast<int>(mesh.vertices.cols()));
   for (const auto& face : mesh.faces.colwise())
     for (int k = 0; k < 2; ++k) components.join(face[k], face[k + 1]);
@@ -76,7 +73,7 @@ std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing) {
     carries[i] = component_area[components.least(i)] >= spacing * spacing ? 1 : 0;
     if (carries[i]) carried += areas[i];
   }
-  if (carried < 0.5 * areas.sum()) carries.assign(carries.size(), 0);
+  if (carried < least_carried_area * areas.sum()) carries.assign(carries.size(), 0);
   return carries;
 }
 
@@ -101,15 +98,15 @@ struct Sampling {
 };
 
 /// Vertices without a node near them follow the nearest ones in space.
-void follow_in_space(const Points& vertices, double spacing, Sampling& sampling) {
+void follow_in_space(const Points& vertices, double first_reach, Sampling& sampling) {
   Points nodes(3, static_cast<Eigen::Index>(sampling.node_vertices.size()));
   for (Eigen::Index k = 0; k < nodes.cols(); ++k) nodes.col(k) = vertices.col(sampling.node_vertices[k]);
-  const PointGrid grid(nodes, follow_reach * spacing);
+  const PointGrid grid(nodes, first_reach);
   parallel_for(sampling.near.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::vector<Near>& near = sampling.near[i];
       const Vector3 x = vertices.col(static_cast<Eigen::Index>(i));
-      for (double reach = follow_reach * spacing; near.empty(); reach *= 2) {
+      for (double reach = first_reach; near.empty(); reach *= 2) {
         grid.for_each_within(x, reach,
                              [&](int node, double squared) { near.emplace_back(std::sqrt(squared), node); });
         std::sort(near.begin(), near.end());
@@ -118,11 +115,12 @@ void follow_in_space(const Points& vertices, double spacing, Sampling& sampling)
   });
 }
 
-Sampling sample(const TriangleMesh& mesh, double spacing) {
+Sampling sample(const TriangleMesh& mesh, double spacing, const NodeSettings& settings) {
+  const double reach = settings.follow_reach * spacing;
   Sampling sampling;
   const std::size_t count = static_cast<std::size_t>(mesh.vertices.cols());
   sampling.near.resize(count);
-  const std::vector<char> carries = carries_nodes(mesh, spacing);
+  const std::vector<char> carries = carries_nodes(mesh, spacing, settings.least_carried_area);
   if (std::find(carries.begin(), carries.end(), 1) == carries.end()) {
     sampling.node_vertices = thin_points(mesh.vertices, spacing);
   } else {
@@ -132,14 +130,14 @@ Sampling sample(const TriangleMesh& mesh, double spacing) {
       if (!carries[start] || covered[start]) continue;
       const int node = static_cast<int>(sampling.node_vertices.size());
       sampling.node_vertices.push_back(start);
-      distances.visit_within(start, follow_reach * spacing, [&](int vertex, double distance) {
+      distances.visit_within(start, reach, [&](int vertex, double distance) {
         if (distance < spacing) covered[vertex] = 1;
         sampling.near[vertex].emplace_back(distance, node);
       });
     }
     for (auto& near : sampling.near) std::sort(near.begin(), near.end());
   }
-  follow_in_space(mesh.vertices, spacing, sampling);
+  follow_in_space(mesh.vertices, reach, sampling);
   return sampling;
 }
 
@@ -162,7 +160,7 @@ void link_nearest(DeformationNodes& nodes, int node, int wanted, const Accepts& 
 }
 
 /// Nodes with too few neighbours, and components that nothing ties to the rest.
-void complete_links(DeformationNodes& nodes) {
+void complete_links(DeformationNodes& nodes, int min_neighbours) {
   for (int node = 0; node < nodes.size(); ++node)
     if (static_cast<int>(nodes.neighbours[node].size()) < min_neighbours)
       link_nearest(nodes, node, min_neighbours, [](int) { return true; });
@@ -178,18 +176,20 @@ void complete_links(DeformationNodes& nodes) {
 }
 
 /// Shepard weights, corrected so that linear functions along the surface are reproduced.
-void weigh(const Vector3& x, const std::vector<Near>& near, int used, DeformationNodes& nodes,
-           Eigen::Index vertex) {
-  constexpr double flatness = 0.02;  // of the spread: across the surface the nodes say nothing about slopes
+void weigh(const TriangleMesh& mesh, const std::vector<Near>& near, const NodeSettings& settings,
+           DeformationNodes& nodes, Eigen::Index vertex) {
+  const Vector3 x = mesh.vertices.col(vertex);
+  const int used = std::min<int>(DeformationNodes::per_vertex, static_cast<int>(near.size()));
   // Nodes fade out before they are dropped: the farthest of the full number, else those at the reach.
-  const double farthest = 1.05 * near[used - 1].first;
-  const double reach =
-      used < DeformationNodes::per_vertex ? std::max(farthest, follow_reach * nodes.spacing) : farthest;
+  const double farthest = settings.fade_margin * near[used - 1].first;
+  const double reach = used < DeformationNodes::per_vertex
+                           ? std::max(farthest, settings.follow_reach * nodes.spacing)
+                           : farthest;
   Eigen::VectorXd share(used);
   Vector3 mean = Vector3::Zero();
   for (int k = 0; k < used; ++k) {
     const double t = std::max(0.0, 1 - near[k].first / reach);
-    share[k] = t * t * t + 1e-9;
+    share[k] = t * t * t + settings.weight_floor;
   }
   share /= share.sum();
   for (int k = 0; k < used; ++k) mean += share[k] * nodes.rest.col(near[k].second);
@@ -198,7 +198,8 @@ void weigh(const Vector3& x, const std::vector<Near>& near, int used, Deformatio
     const Vector3 arm = nodes.rest.col(near[k].second) - mean;
     spread += share[k] * arm * arm.transpose();
   }
-  spread.diagonal().array() += flatness * spread.trace() + 1e-3 * nodes.spacing * nodes.spacing;
+  spread.diagonal().array() +=
+      settings.flatness * spread.trace() + settings.spread_floor * nodes.spacing * nodes.spacing;
   const Vector3 slope = spread.ldlt().solve(x - mean);
   for (int k = 0; k < used; ++k) {
     nodes.vertex_nodes(k, vertex) = near[k].second;
@@ -215,8 +216,37 @@ Vector3 DeformationNodes::displacement(const Points& node_displacements, Eigen::
   return sum;
 }
 
-DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing) {
-  const Sampling sampling = sample(mesh, spacing);
+VertexNodes DeformationNodes::at_vertex(int vertex) const {
+  VertexNodes followed;
+  for (int k = 0; k < per_vertex; ++k)
+    if (vertex_weights(k, vertex) != 0)
+      followed.nodes[followed.count++] = {vertex_nodes(k, vertex), vertex_weights(k, vertex)};
+  return followed;
+}
+
+std::vector<NodeWeight> DeformationNodes::at_point(const SurfacePoint& point, const Faces& faces) const {
+  std::vector<std::pair<int, double>> all;
+  for (int corner = 0; corner < 3; ++corner)
+    for (const auto& [node, weight] : at_vertex(faces(corner, point.face)))
+      all.emplace_back(node, point.barycentric[corner] * weight);
+  std::sort(all.begin(), all.end());
+  std::vector<NodeWeight> merged;
+  for (const auto& [node, weight] : all) {
+    if (!merged.empty() && merged.back().node == node)
+      merged.back().weight += weight;
+    else
+      merged.push_back({node, weight});
+  }
+  return merged;
+}
+
+double node_spacing(double area, int count, const NodeSettings& settings) {
+  return std::sqrt(area / count / settings.packing);
+}
+
+DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing,
+                                        const NodeSettings& settings) {
+  const Sampling sampling = sample(mesh, spacing, settings);
   DeformationNodes nodes;
   nodes.spacing = spacing;
   const auto count = static_cast<Eigen::Index>(sampling.node_vertices.size());
@@ -226,10 +256,10 @@ DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing
     const int vertex = sampling.node_vertices[static_cast<std::size_t>(k)];
     nodes.rest.col(k) = mesh.vertices.col(vertex);
     for (const auto& [distance, other] : sampling.near[static_cast<std::size_t>(vertex)])
-      if (other != k && distance < neighbour_reach * spacing)
+      if (other != k && distance < settings.neighbour_reach * spacing)
         link(nodes.neighbours, static_cast<int>(k), other);
   }
-  complete_links(nodes);
+  complete_links(nodes, settings.min_neighbours);
 
   const Eigen::VectorXd areas = vertex_areas(mesh);
   nodes.areas = Eigen::VectorXd::Zero(count);
@@ -238,15 +268,14 @@ DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing
   for (Eigen::Index i = 0; i < mesh.vertices.cols(); ++i) {
     const std::vector<Near>& near = sampling.near[static_cast<std::size_t>(i)];
     nodes.areas[near.front().second] += areas[i];
-    weigh(mesh.vertices.col(i), near,
-          std::min<int>(DeformationNodes::per_vertex, static_cast<int>(near.size())), nodes, i);
+    weigh(mesh, near, settings, nodes, i);
   }
   nodes.areas /= nodes.areas.sum();
   return nodes;
 }
 
-std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places) {
-  constexpr double slope_penalty = 1e-3;  // decides slopes across a flat neighbourhood, which no node shows
+std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, const Points& places,
+                                             const BendingSettings& settings) {
   std::vector<BendingStencil> stencils(static_cast<std::size_t>(nodes.size()));
   const auto fill = [&](int node) {
     BendingStencil& stencil = stencils[node];
@@ -258,13 +287,12 @@ std::vector<BendingStencil> bending_stencils(const DeformationNodes& nodes, cons
     for (Eigen::Index a = 0; a < count; ++a) {
       const Vector3 arm = (places.col(stencil.ids[a]) - places.col(node)) / nodes.spacing;
       basis.row(a) << 1, arm.transpose();
-      // The floor keeps distant components tied.
-      weight[a] = std::max(std::exp(-arm.squaredNorm() / 3), 1e-2);
+      weight[a] = std::max(std::exp(-arm.squaredNorm() / settings.squared_width), settings.weight_floor);
     }
     weight /= weight.sum();
     const Eigen::MatrixXd weighted = weight.asDiagonal() * basis;
     Eigen::Matrix4d gram = basis.transpose() * weighted;
-    gram.diagonal().tail<3>().array() += slope_penalty;
+    gram.diagonal().tail<3>().array() += settings.slope_penalty;
     stencil.quadratic = -weighted * gram.ldlt().solve(weighted.transpose());
     stencil.quadratic.diagonal() += weight;
   };

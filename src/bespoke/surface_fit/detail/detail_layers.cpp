@@ -7,29 +7,70 @@
 #include <vector>
 
 #include "bespoke/parallel.h"
+#include "bespoke/rbf/conjugate_gradients.h"
 #include "bespoke/rbf/kernels.h"
 #include "bespoke/rbf/point_grid.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double coarsest = 0.06, ratio = 0.6;  // λ of the first scale in diagonals, and from scale to scale
-constexpr int scales = 6, steps_per_scale = 2;
-constexpr double centers_per_radius = 3;
-constexpr double min_cosine = 0.3;
-constexpr double slide = 0.1;     // weight of point-to-point beside point-to-plane
-constexpr double stay = 0.03;     // weight of staying in place, against noise in single points
-constexpr double max_move = 0.3;  // of λ: a layer moves nothing farther
-constexpr double max_gradient = 0.5;
-constexpr double ridge = 1e-3;  // bounds the condition of a layer
 constexpr std::size_t grain = 128;
+
+/// Values of Wendland's C4 function between centres, plus a ridge on the diagonal.
+class RidgeSystem {
+ public:
+  RidgeSystem(const Points& centers, const PointGrid& grid, double lambda, const DetailSettings& settings)
+      : rows_(static_cast<std::size_t>(centers.cols())), settings_(settings) {
+    parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i)
+        grid.for_each_within(centers.col(static_cast<Eigen::Index>(i)), lambda, [&](int j, double squared) {
+          const double value = WendlandC4::value(std::sqrt(squared) / lambda);
+          if (value > settings_.negligible_kernel) rows_[i].emplace_back(j, value);
+        });
+    });
+  }
+
+  /// Coefficients (3×m) that interpolate `values` at the centres, up to the ridge.
+  Points solve(const Points& values) {
+    enough_ = settings_.solver_residual * products(values, values);
+    Points solution = Points::Zero(3, values.cols());
+    conjugate_gradients(*this, solution, values);
+    return solution;
+  }
+
+  Points multiply(const Points& x) const {
+    Points image(3, x.cols());
+    parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto column = static_cast<Eigen::Index>(i);
+        Vector3 sum = settings_.ridge * x.col(column);
+        for (const auto& [j, value] : rows_[i]) sum += value * x.col(j);
+        image.col(column) = sum;
+      }
+    });
+    return image;
+  }
+  const Points& precondition(const Points& residual) const { return residual; }
+  Vector3 products(const Points& a, const Points& b) const { return a.cwiseProduct(b).rowwise().sum(); }
+  bool solved(const Points&, const Vector3& squared, int steps) const {
+    return steps == settings_.max_solver_iterations || (squared.array() <= enough_.array()).all();
+  }
+
+ private:
+  std::vector<std::vector<std::pair<int, double>>> rows_;
+  const DetailSettings& settings_;
+  Vector3 enough_ = Vector3::Zero();
+};
 
 /// u(x) = Σ cⱼ φ(|x − zⱼ|/λ).
 class Layer {
  public:
-  /// Interpolates `values` (3×m) at `centers` by conjugate gradients, up to the ridge.
-  Layer(double lambda, const Points& centers, const Points& values)
-      : lambda_(lambda), centers_(centers), grid_(centers, lambda), coefficients_(solve(values)) {}
+  /// Interpolates `values` (3×m) at `centers`, up to the ridge.
+  Layer(double lambda, const Points& centers, const Points& values, const DetailSettings& settings)
+      : lambda_(lambda),
+        centers_(centers),
+        grid_(centers, lambda),
+        coefficients_(RidgeSystem(centers_, grid_, lambda, settings).solve(values)) {}
 
   void scale(double factor) { coefficients_ *= factor; }
 
@@ -51,45 +92,6 @@ class Layer {
   }
 
  private:
-  Points solve(const Points& values) const {
-    constexpr int max_iterations = 40;
-    constexpr double enough = 1e-6;  // of the squared residual
-    const Eigen::Index count = centers_.cols();
-    std::vector<std::vector<std::pair<int, double>>> rows(static_cast<std::size_t>(count));
-    parallel_for(rows.size(), grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        grid_.for_each_within(centers_.col(static_cast<Eigen::Index>(i)), lambda_,
-                              [&](int j, double squared) {
-                                const double value = WendlandC4::value(std::sqrt(squared) / lambda_);
-                                if (value > 1e-6) rows[i].emplace_back(j, value);
-                              });
-    });
-    Points solution = Points::Zero(3, count), residual = values, direction = values, image(3, count);
-    Vector3 squared = residual.rowwise().squaredNorm();
-    const Vector3 first = squared;
-    for (int iteration = 0; iteration < max_iterations && !(squared.array() <= enough * first.array()).all();
-         ++iteration) {
-      parallel_for(rows.size(), grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const auto column = static_cast<Eigen::Index>(i);
-          Vector3 sum = ridge * direction.col(column);
-          for (const auto& [j, value] : rows[i]) sum += value * direction.col(j);
-          image.col(column) = sum;
-        }
-      });
-      const Vector3 curvature = direction.cwiseProduct(image).rowwise().sum();
-      const Vector3 length =
-          (curvature.array() > 0).select(squared.cwiseQuotient(curvature), Vector3::Zero());
-      solution += length.asDiagonal() * direction;
-      residual -= length.asDiagonal() * image;
-      const Vector3 next = residual.rowwise().squaredNorm();
-      const Vector3 turn = (squared.array() > 0).select(next.cwiseQuotient(squared), Vector3::Zero());
-      direction = residual + turn.asDiagonal() * direction;
-      squared = next;
-    }
-    return solution;
-  }
-
   double lambda_;
   Points centers_;
   PointGrid grid_;
@@ -101,21 +103,51 @@ struct Residual {
   Vector3 pull = Vector3::Zero();  // form · (counterpart − vertex)
 };
 
-std::vector<Residual> residuals(const DetailInput& input, const TriangleMesh& moved,
-                                const Eigen::VectorXd& areas, double within) {
-  std::vector<Residual> all(static_cast<std::size_t>(moved.vertices.cols()));
-  const Points normals = vertex_normals(moved);
+/// One scale: what moves, towards what, with a layer of radius `lambda`.
+struct DetailStep {
+  const DetailInput& input;
+  const DetailSettings& settings;
+  const TriangleMesh& moved;
+  const Points& anchors;         // 3×k, where they are now
+  const Eigen::VectorXd& areas;  // of the vertices
+  double lambda;                 // mesh units
+};
+
+std::vector<Residual> residuals(const DetailStep& step) {
+  const Points& vertices = step.moved.vertices;
+  std::vector<Residual> all(static_cast<std::size_t>(vertices.cols()));
+  const Points normals = vertex_normals(step.moved);
+  const MatchLimits limits{step.settings.min_cosine,
+                           std::max(step.lambda, step.settings.min_reach * step.input.diagonal)};
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      const auto found = input.target.match(moved.vertices.col(i), normals.col(i), {min_cosine, within});
+      const auto found = step.input.target.match(vertices.col(i), normals.col(i), limits);
       if (!found) continue;
-      const double weight = areas[i] * found->agreement * found->agreement;
-      all[k].form = weight * (found->halfway * found->halfway.transpose() + slide * Matrix3::Identity());
-      all[k].pull = all[k].form * (found->point - moved.vertices.col(i));
+      const double weight = step.areas[i] * found->agreement * found->agreement;
+      all[k].form =
+          weight * (found->halfway * found->halfway.transpose() + step.settings.slide * Matrix3::Identity());
+      all[k].pull = all[k].form * (found->point - vertices.col(i));
     }
   });
   return all;
+}
+
+/// The displacement that the residuals around a centre agree on: the minimum of their quadratic forms,
+/// weighted by distance, and of the term that keeps the centre in place.
+Vector3 agreed_displacement(const DetailStep& step, const std::vector<Residual>& residuals,
+                            const PointGrid& grid, const Vector3& center, double spacing) {
+  Matrix3 form = Matrix3::Zero();
+  Vector3 pull = Vector3::Zero();
+  double total = 0;
+  grid.for_each_within(center, spacing, [&](int i, double squared) {
+    const double weight = WendlandC4::value(std::sqrt(squared) / spacing);
+    total += weight * step.areas[i];
+    form += weight * residuals[i].form;
+    pull += weight * residuals[i].pull;
+  });
+  form.diagonal().array() += step.settings.stay * total;
+  return total > 0 ? Vector3(form.ldlt().solve(pull)) : Vector3(Vector3::Zero());
 }
 
 struct Samples {
@@ -123,43 +155,30 @@ struct Samples {
 };
 
 /// Anchors first, so that thinning keeps them; then averages of the residuals around the thinned vertices.
-Samples sample(const DetailInput& input, const Points& anchors, const Points& vertices,
-               const std::vector<Residual>& residuals, const Eigen::VectorXd& areas, double lambda) {
-  const double spacing = lambda / centers_per_radius;
-  Points candidates(3, anchors.cols() + vertices.cols());
-  candidates << anchors, vertices;
+Samples sample(const DetailStep& step) {
+  constexpr double tiny = 1e-300;  // no move, no division by zero
+  const std::vector<Residual> found = residuals(step);
+  const double spacing = step.lambda / step.settings.centers_per_radius;
+  Points candidates(3, step.anchors.cols() + step.moved.vertices.cols());
+  candidates << step.anchors, step.moved.vertices;
   const std::vector<int> kept = thin_points(candidates, spacing);
-  const PointGrid grid(vertices, spacing);
-  Samples samples{Points(3, static_cast<Eigen::Index>(kept.size())),
-                  Points(3, static_cast<Eigen::Index>(kept.size()))};
+  const PointGrid grid(step.moved.vertices, spacing);
+  Samples samples{candidates(Eigen::all, kept), Points(3, static_cast<Eigen::Index>(kept.size()))};
   parallel_for(kept.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto column = static_cast<Eigen::Index>(k);
-      samples.centers.col(column) = candidates.col(kept[k]);
-      Vector3 value;
-      if (kept[k] < anchors.cols()) {
-        value = input.anchor_targets.col(kept[k]) - anchors.col(kept[k]);
-      } else {
-        Matrix3 form = Matrix3::Zero();
-        Vector3 pull = Vector3::Zero();
-        double total = 0;
-        grid.for_each_within(candidates.col(kept[k]), spacing, [&](int i, double squared) {
-          const double weight = WendlandC4::value(std::sqrt(squared) / spacing);
-          total += weight * areas[i];
-          form += weight * residuals[i].form;
-          pull += weight * residuals[i].pull;
-        });
-        form.diagonal().array() += stay * total;
-        value = total > 0 ? Vector3(form.ldlt().solve(pull)) : Vector3(Vector3::Zero());
-      }
-      samples.values.col(column) = value * std::min(1.0, max_move * lambda / std::max(value.norm(), 1e-300));
+      const Vector3 value = kept[k] < step.anchors.cols()
+                                ? Vector3(step.input.anchor_targets.col(kept[k]) - step.anchors.col(kept[k]))
+                                : agreed_displacement(step, found, grid, candidates.col(kept[k]), spacing);
+      const double most = step.settings.max_move * step.lambda;
+      samples.values.col(column) = value * std::min(1.0, most / std::max(value.norm(), tiny));
     }
   });
   return samples;
 }
 
 /// Moves vertices and anchors; root mean square of the vertices' displacements.
-double apply(Layer& layer, Points& vertices, Points& anchors) {
+double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchors) {
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
   const double steepest = parallel_reduce(
       count, grain, 0.0,
@@ -183,31 +202,31 @@ double apply(Layer& layer, Points& vertices, Points& anchors) {
 
 }  // namespace
 
-DetailFit fit_details(const DetailInput& input, const Progress& progress) {
+DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress) {
   const Eigen::VectorXd areas = vertex_areas(input.surface);
+  const int layers = settings.scales * settings.steps_per_scale;
   TriangleMesh moved = input.surface;
   DetailFit fit;
   fit.anchor_sources = input.anchor_sources;
-  double lambda = coarsest * input.diagonal;
-  for (int scale = 0; scale < scales; ++scale, lambda *= ratio)
-    for (int step = 0; step < steps_per_scale; ++step) {
-      progress.step("surface-fit details", static_cast<std::size_t>(fit.layers), scales * steps_per_scale);
-      const double within = std::max(lambda, 0.01 * input.diagonal);
-      const Samples samples = sample(input, fit.anchor_sources, moved.vertices,
-                                     residuals(input, moved, areas, within), areas, lambda);
-      Layer layer(lambda, samples.centers, samples.values);
-      fit.last_step = apply(layer, moved.vertices, fit.anchor_sources);
-      ++fit.layers;
+  double lambda = settings.coarsest * input.diagonal;
+  for (int scale = 0; scale < settings.scales; ++scale, lambda *= settings.ratio)
+    for (int step = 0; step < settings.steps_per_scale; ++step, ++fit.layers) {
+      progress.step("surface-fit details", static_cast<std::size_t>(fit.layers),
+                    static_cast<std::size_t>(layers));
+      const Samples samples = sample({input, settings, moved, fit.anchor_sources, areas, lambda});
+      Layer layer(lambda, samples.centers, samples.values, settings);
+      fit.last_step = apply(layer, settings.max_gradient, moved.vertices, fit.anchor_sources);
     }
   fit.vertices = std::move(moved.vertices);
   return fit;
 }
 
-DetailFit meet_anchors(const DetailInput& input) {
+DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings) {
   DetailFit fit{input.surface.vertices, input.anchor_sources, 0, 0};
   if (fit.anchor_sources.cols() == 0) return fit;
-  Layer layer(coarsest / 2 * input.diagonal, fit.anchor_sources, input.anchor_targets - fit.anchor_sources);
-  fit.last_step = apply(layer, fit.vertices, fit.anchor_sources);
+  Layer layer(settings.anchor_radius * input.diagonal, fit.anchor_sources,
+              input.anchor_targets - fit.anchor_sources, settings);
+  fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
   fit.layers = 1;
   return fit;
 }

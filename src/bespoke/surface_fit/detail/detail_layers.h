@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bespoke/progress.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {
@@ -21,13 +22,14 @@ struct DetailFit {
   double last_step = 0;  ///< root mean square of the last layer's displacements, mesh units
 };
 
-/// Small deformations of space, coarse to fine, from 6 % of the diagonal down to the spacing of the vertices:
-/// the residuals to the closest compatible points (point to plane mostly) are averaged around thinned centres
-/// λ/3 apart, interpolated by Wendland's C4 function of radius λ, scaled so that ‖∇u‖ stays below one half at
-/// the vertices, and move all vertices. Exact anchors are centres of every layer.
-DetailFit fit_details(const DetailInput& input, const Progress& progress);
+/// Small deformations of space, coarse to fine, from a few per cent of the diagonal down to the spacing of
+/// the vertices: the residuals to the closest compatible points (point to plane mostly) are averaged around
+/// thinned centres a fraction of λ apart, interpolated by Wendland's C4 function of radius λ, scaled so that
+/// ‖∇u‖ stays well below one at the vertices, and move all vertices. Exact anchors are centres of every
+/// layer.
+DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress);
 
-/// One layer that carries the exact anchors onto their targets and vanishes 3 % of the diagonal away.
-DetailFit meet_anchors(const DetailInput& input);
+/// One layer that carries the exact anchors onto their targets and vanishes a short way off.
+DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings = {});
 
 }  // namespace bespoke

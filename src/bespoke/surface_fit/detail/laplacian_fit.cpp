@@ -1,127 +1,44 @@
 #include "bespoke/surface_fit/detail/laplacian_fit.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <utility>
+#include <vector>
 
-#include "bespoke/error.h"
-#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
+#include "bespoke/stopwatch.h"
+#include "bespoke/surface_fit/detail/displacement_smoother.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {
 namespace {
 
 constexpr std::size_t grain = 64;
-using Triplet = Eigen::Triplet<double>;
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
 /// Anchors count only where both ends lie on their surfaces to this fraction of the source's bounding-box
 /// diagonal: farther off, the surface point beneath them is not what the user paired.
 constexpr double on_surface = 1e-3;
 
-/// s per vertex when the caller leaves it open: displacements then spread over some 0.08 of the square root
-/// of the surface's area (√s edges). Measured on eight pairs of bodies, heads, a hand and a foot, of 4,514
-/// to 14,062 vertices, where s from 1 to 300 was tried; 1 at least, the printed equation.
-double default_stiffness(Eigen::Index vertices) {
-  return std::max(1.0, 0.005 * static_cast<double>(vertices));
+/// s of Eq. 11. With scaled_stiffness s grows with the vertices: displacements then spread over some 0.08 of
+/// the square root of the surface's area (√s edges). Measured on eight pairs of bodies, heads, a hand and a
+/// foot, of 4,514 to 14,062 vertices, where s from 1 to 300 was tried; 1 at least, the printed equation.
+double stiffness_of(const SurfaceFitOptions& options, Eigen::Index vertices) {
+  constexpr double printed = 1, per_vertex = 0.005;
+  if (options.stiffness) return *options.stiffness;
+  if (!options.laplacian.scaled_stiffness) return printed;
+  return std::max(printed, per_vertex * static_cast<double>(vertices));
 }
 
-/// An anchor that must be met outweighs all that the six neighbours of a usual vertex can hold against it.
+/// An anchor that must be met outweighs by a thousand all that the six neighbours of a usual vertex can hold
+/// against it.
 double exact_anchor_weight(double stiffness) { return 1e3 * (1 + 6 * stiffness); }
-
-Eigen::SparseMatrix<double> umbrella_system(const TriangleMesh& mesh,
-                                            const std::vector<DisplacementAnchor>& anchors,
-                                            double stiffness) {
-  const VertexAdjacency adjacency = vertex_adjacency(mesh);
-  const auto count = static_cast<int>(mesh.vertices.cols());
-  std::vector<Triplet> entries;
-  entries.reserve(adjacency.neighbours.size() + static_cast<std::size_t>(count) + 9 * anchors.size());
-  for (int i = 0; i < count; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    const int valence = adjacency.start[row + 1] - adjacency.start[row];
-    entries.emplace_back(i, i, 1 + stiffness * valence);
-    for (int k = adjacency.start[row]; k < adjacency.start[row + 1]; ++k)
-      entries.emplace_back(i, adjacency.neighbours[static_cast<std::size_t>(k)], -stiffness);
-  }
-  for (const DisplacementAnchor& anchor : anchors)
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        entries.emplace_back(anchor.vertices[i], anchor.vertices[j],
-                             anchor.weight * anchor.barycentric[i] * anchor.barycentric[j]);
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
 
 Vector3 at_anchor(const Points& values, const DisplacementAnchor& anchor) {
   return values.col(anchor.vertices[0]) * anchor.barycentric[0] +
          values.col(anchor.vertices[1]) * anchor.barycentric[1] +
          values.col(anchor.vertices[2]) * anchor.barycentric[2];
 }
-
-}  // namespace
-
-DisplacementSmoother::DisplacementSmoother(const TriangleMesh& mesh,
-                                           const std::vector<DisplacementAnchor>& anchors, double stiffness)
-    : anchors_(anchors) {
-  if (!(stiffness >= 0 && std::isfinite(stiffness)))
-    throw InvalidInput("stiffness is " + std::to_string(stiffness) + ", but must be finite and at least 0");
-  matrix_ = umbrella_system(mesh, anchors_, stiffness);
-  factor_.compute(matrix_);
-  if (factor_.info() != Eigen::Success)
-    throw SolverError("the surface-fitting matrix of " + std::to_string(matrix_.rows()) +
-                      " vertices could not be factored");
-}
-
-Points DisplacementSmoother::solve(const Points& wished, const std::vector<char>& matched,
-                                   const Points& anchor_wished) const {
-  Columns right = wished.transpose();
-  Eigen::VectorXd missing = Eigen::VectorXd::Zero(right.rows());
-  for (Eigen::Index i = 0; i < right.rows(); ++i)
-    if (!matched[static_cast<std::size_t>(i)]) {
-      right.row(i).setZero();
-      missing[i] = 1;
-    }
-  for (std::size_t k = 0; k < anchors_.size(); ++k)
-    for (int corner = 0; corner < 3; ++corner)
-      right.row(anchors_[k].vertices[corner]) += anchors_[k].weight * anchors_[k].barycentric[corner] *
-                                                 anchor_wished.col(static_cast<Eigen::Index>(k)).transpose();
-  const Columns first = factor_.solve(right);
-  if (!(missing.maxCoeff() > 0)) return first.transpose();
-
-  // The matrix without the unmatched vertices' ones differs from the factored one in a few diagonal entries:
-  // conjugate gradients preconditioned by the factor need few steps, and no new factorisation.
-  constexpr int most_steps = 50;
-  constexpr double relative_residual = 1e-5;
-  const auto multiply = [&](const Columns& x) -> Columns { return matrix_ * x - missing.asDiagonal() * x; };
-  Columns solution = first;
-  Columns residual = right - multiply(solution);
-  Columns preconditioned = factor_.solve(residual);
-  Columns direction = preconditioned;
-  Eigen::RowVector3d product = residual.cwiseProduct(preconditioned).colwise().sum();
-  const Eigen::RowVector3d enough =
-      relative_residual * relative_residual * right.cwiseProduct(first).colwise().sum();
-  for (int step = 0; step < most_steps && (product.array() > enough.array()).any(); ++step) {
-    const Columns image = multiply(direction);
-    const Eigen::RowVector3d curvature = direction.cwiseProduct(image).colwise().sum();
-    const Eigen::RowVector3d length =
-        (curvature.array() > 0).select(product.array() / curvature.array(), 0.0).matrix();
-    solution += direction * length.asDiagonal();
-    residual -= image * length.asDiagonal();
-    preconditioned = factor_.solve(residual);
-    const Eigen::RowVector3d next = residual.cwiseProduct(preconditioned).colwise().sum();
-    const Eigen::RowVector3d ratio =
-        (product.array() > 0).select(next.array() / product.array(), 0.0).matrix();
-    direction = preconditioned + direction * ratio.asDiagonal();
-    product = next;
-  }
-  return solution.transpose();
-}
-
-namespace {
 
 /// What every vertex of one surface finds on another.
 struct Correspondence {
@@ -130,10 +47,11 @@ struct Correspondence {
   std::size_t unmatched = 0;  // vertices without one
 };
 
-Correspondence closest_compatible_points(const TriangleMesh& moving, const TargetSurface& target) {
+Correspondence closest_compatible_points(const TriangleMesh& moving, const TargetSurface& target,
+                                         const LaplacianAdditions& additions) {
   const auto count = static_cast<std::size_t>(moving.vertices.cols());
   const Points normals = vertex_normals(moving);
-  const MatchLimits limits{0, std::numeric_limits<double>::infinity()};
+  const MatchLimits limits{0, std::numeric_limits<double>::infinity(), 0, !additions.refuse_boundary};
   Correspondence result{moving.vertices, std::vector<char>(count, 0), 0};
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -189,91 +107,119 @@ double root_mean_square(const Points& columns) {
   return columns.cols() == 0 ? 0 : columns.norm() / std::sqrt(static_cast<double>(columns.cols()));
 }
 
-/// Matched vertices on their counterparts, exact anchors on theirs. A vertex whose snap would turn a face
-/// over stays where the smooth displacements brought it.
-Points snapped(const Correspondence& found, const SurfaceAnchors& anchors, const TriangleMesh& smooth) {
-  TriangleMesh result = smooth;
-  for (Eigen::Index i = 0; i < found.points.cols(); ++i)
-    if (found.matched[static_cast<std::size_t>(i)]) result.vertices.col(i) = found.points.col(i);
+struct Snapped {
+  TriangleMesh mesh;
+  std::vector<char> at_anchor;  // n; 1 for a vertex at an exact anchor
+};
+
+/// Matched vertices on their counterparts, exact anchors on theirs.
+Snapped snap(const Correspondence& found, const SurfaceAnchors& anchors, const TriangleMesh& smooth) {
   constexpr double at_vertex = 1 - 1e-6;
-  std::vector<char> anchored(static_cast<std::size_t>(found.points.cols()), 0);
+  Snapped result{smooth, std::vector<char>(found.matched.size(), 0)};
+  for (Eigen::Index i = 0; i < found.points.cols(); ++i)
+    if (found.matched[static_cast<std::size_t>(i)]) result.mesh.vertices.col(i) = found.points.col(i);
   for (std::size_t k = 0; k < anchors.places.size(); ++k) {
     const DisplacementAnchor& place = anchors.places[k];
     for (int corner = 0; corner < 3; ++corner) {
       const int vertex = place.vertices[corner];
       if (!anchors.exact[k] || !(place.barycentric[corner] > at_vertex)) continue;
-      result.vertices.col(vertex) = anchors.targets.col(static_cast<Eigen::Index>(k));
-      anchored[static_cast<std::size_t>(vertex)] = 1;
+      result.mesh.vertices.col(vertex) = anchors.targets.col(static_cast<Eigen::Index>(k));
+      result.at_anchor[static_cast<std::size_t>(vertex)] = 1;
     }
   }
+  return result;
+}
+
+/// Puts vertices whose snap turned a face over back to where the smooth displacements brought them.
+void undo_turning_snaps(const TriangleMesh& smooth, Snapped& snapped) {
   // Taking a vertex back can turn a neighbouring face that was fine; few rounds settle that.
   constexpr int most_rounds = 20;
   const Points smooth_normals = face_normals(smooth);
-  for (int round = 0; round < most_rounds; ++round) {
-    const Points normals = face_normals(result);
-    bool taken_back = false;
+  Points& vertices = snapped.mesh.vertices;
+  bool taken_back = true;
+  for (int round = 0; round < most_rounds && taken_back; ++round) {
+    const Points normals = face_normals(snapped.mesh);
+    taken_back = false;
     for (Eigen::Index face = 0; face < normals.cols(); ++face) {
       if (normals.col(face).dot(smooth_normals.col(face)) > 0) continue;
-      for (int corner = 0; corner < 3; ++corner) {
-        const int vertex = smooth.faces(corner, face);
-        if (anchored[static_cast<std::size_t>(vertex)] ||
-            result.vertices.col(vertex) == smooth.vertices.col(vertex))
+      for (const int vertex : smooth.faces.col(face)) {
+        if (snapped.at_anchor[static_cast<std::size_t>(vertex)] ||
+            vertices.col(vertex) == smooth.vertices.col(vertex))
           continue;
-        result.vertices.col(vertex) = smooth.vertices.col(vertex);
+        vertices.col(vertex) = smooth.vertices.col(vertex);
         taken_back = true;
       }
     }
-    if (!taken_back) break;
   }
-  return std::move(result.vertices);
 }
+
+/// Whether ‖T⁰‖ has stopped falling. Real scans never come closer than their noise and their missing parts
+/// let them.
+class Stagnation {
+ public:
+  bool after(double distance) {
+    constexpr double worthwhile = 0.99;
+    constexpr int patience = 3;
+    since_best_ = distance < worthwhile * best_ ? 0 : since_best_ + 1;
+    if (since_best_ == 0) best_ = distance;
+    return since_best_ >= patience;
+  }
+
+ private:
+  double best_ = std::numeric_limits<double>::infinity();
+  int since_best_ = 0;
+};
 
 }  // namespace
 
 SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                                  const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
-  const double source_diagonal = diagonal(input.source.vertices);
-  const double stiffness = options.stiffness.value_or(default_stiffness(input.source.vertices.cols()));
-  const TargetSurface target(input.target);
-  const SurfaceAnchors anchors = anchors_on_surfaces(input, stiffness);
-  const DisplacementSmoother smoother(input.source, anchors.places, stiffness);
-
-  TriangleMesh moving{input.warped_vertices, input.source.faces};
+  const Stopwatch watch;
+  const LaplacianAdditions& additions = options.laplacian;
+  const double epsilon = options.epsilon * diagonal(input.source.vertices);
   SurfaceFit fit;
   SurfaceFitSummary& summary = fit.summary;
+  summary.stiffness = stiffness_of(options, input.source.vertices.cols());
+  const TargetSurface target(input.target);
+  const SurfaceAnchors anchors =
+      additions.hold_anchors ? anchors_on_surfaces(input, summary.stiffness) : SurfaceAnchors{};
+  const DisplacementSmoother smoother(input.source, anchors.places, summary.stiffness);
+  const std::vector<char> all_matched(static_cast<std::size_t>(input.source.vertices.cols()), 1);
+
+  TriangleMesh moving{input.warped_vertices, input.source.faces};
   summary.before = distances(target, moving.vertices);
-  double best_distance = std::numeric_limits<double>::infinity();
-  int since_best = 0;
+  summary.stop_reason = additions.stop_at_rest ? StopReason::iteration_cap : StopReason::unprinted_cap;
+  Stagnation stagnation;
   for (summary.iterations = 0; summary.iterations < options.max_iterations; ++summary.iterations) {
     progress.step("surface-fit", static_cast<std::size_t>(summary.iterations),
                   static_cast<std::size_t>(options.max_iterations));
-    const Correspondence found = closest_compatible_points(moving, target);
-    const Points wished = found.points - moving.vertices;
+    const Correspondence found = closest_compatible_points(moving, target, additions);
+    const Points wished = found.points - moving.vertices;  // T⁰; zero where nothing was found
     const double distance = root_mean_square(wished);
-    // Real scans never come closer than their noise and their missing parts let them.
-    constexpr double worthwhile = 0.99;
-    constexpr int patience = 3;
-    since_best = distance < worthwhile * best_distance ? 0 : since_best + 1;
-    if (since_best == 0) best_distance = distance;
-    if (since_best >= patience) {
+    if (!additions.stop_at_rest && distance <= epsilon) {
+      summary.stop_reason = StopReason::converged;
+      break;
+    }
+    if (additions.stop_at_rest && stagnation.after(distance)) {
       summary.stop_reason = StopReason::stagnated;
       break;
     }
-    const Points step = smoother.solve(wished, found.matched, anchor_wishes(anchors, moving.vertices));
+    const Points step = smoother.solve(wished, additions.free_unmatched ? found.matched : all_matched,
+                                       anchor_wishes(anchors, moving.vertices));
     moving.vertices += step;
-    if (root_mean_square(step) <= options.epsilon * source_diagonal) {
+    if (additions.stop_at_rest && root_mean_square(step) <= epsilon) {
       summary.stop_reason = StopReason::converged;
       break;
     }
   }
-  const Correspondence found = closest_compatible_points(moving, target);
-  moving.vertices = snapped(found, anchors, moving);
+  const Correspondence found = closest_compatible_points(moving, target, additions);
+  Snapped snapped = snap(found, anchors, moving);
+  if (additions.undo_turning_snaps) undo_turning_snaps(moving, snapped);
+  fit.vertices = std::move(snapped.mesh.vertices);
   fit.confidence.assign(found.matched.begin(), found.matched.end());
   summary.unmatched_vertices = found.unmatched;
-  summary.after = distances(target, moving.vertices);
-  fit.vertices = std::move(moving.vertices);
-  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  summary.after = distances(target, fit.vertices);
+  summary.seconds = watch.seconds();
   return fit;
 }
 

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "bespoke/progress.h"
-#include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
+#include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke {
 
@@ -10,7 +11,7 @@ namespace bespoke {
 struct NodeFitInput {
   const TriangleMesh& rest;  ///< the source, aligned with the target
   const TargetSurface& target;
-  const Points& anchor_sources;  ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_sources;  ///< 3×k, aligned like `rest`, on it or near it
   const Points& anchor_targets;  ///< 3×k
   /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
   const Eigen::VectorXd& anchor_weights;
@@ -29,10 +30,10 @@ struct NodeFit {
 /// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
 /// that (compatible points both ways, nearest in place and normal, symmetric point to plane, weighted by
 /// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
-/// (deviation from local similarities) is least, with a smoothing length ℓ that falls from half to a
-/// hundredth of the diagonal. Second differences are taken along the surface as it lies now, so that it is
-/// the way back from the target that bends least. Where the target has nothing to offer, the last two
-/// extrapolate. Throws SolverError.
-NodeFit fit_nodes(const NodeFitInput& input, const Progress& progress);
+/// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
+/// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
+/// from the target that bends least. Where the target has nothing to offer, the last two extrapolate. Throws
+/// SolverError.
+NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
 
 }  // namespace bespoke

@@ -11,12 +11,6 @@
 namespace bespoke {
 namespace {
 
-constexpr int max_iterations = 12;
-constexpr int trial_iterations = 3;    // after them a hopeless fit is given up
-constexpr double hopeless = 8;         // tolerances
-constexpr double max_distance = 0.05;  // of the diagonal: farther points are no counterparts
-constexpr double min_cosine = 0.5;
-constexpr std::size_t max_samples = 16000;
 constexpr std::size_t grain = 256;
 
 struct PlaneResidual {
@@ -24,16 +18,18 @@ struct PlaneResidual {
   double distance = 0, weight = 0;  // weight 0: no counterpart
 };
 
-std::vector<PlaneResidual> plane_residuals(const Points& vertices, const Points& normals,
-                                           const Eigen::VectorXd& areas, const TargetSurface& target,
-                                           double within) {
+std::vector<PlaneResidual> plane_residuals(const TriangleMesh& moved, const Eigen::VectorXd& areas,
+                                           const TargetSurface& target, const MatchLimits& limits,
+                                           std::size_t max_samples) {
+  const Points& vertices = moved.vertices;
+  const Points normals = vertex_normals(moved);
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
   const std::size_t stride = (count + max_samples - 1) / max_samples;
   std::vector<PlaneResidual> residuals((count + stride - 1) / stride);
   parallel_for(residuals.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
-      const auto found = target.match(vertices.col(i), normals.col(i), {min_cosine, within});
+      const auto found = target.match(vertices.col(i), normals.col(i), limits);
       if (!found) continue;
       residuals[k] = {vertices.col(i), found->normal, found->normal.dot(found->point - vertices.col(i)),
                       areas[i]};
@@ -43,7 +39,9 @@ std::vector<PlaneResidual> plane_residuals(const Points& vertices, const Points&
   return residuals;
 }
 
-double percentile(const std::vector<PlaneResidual>& residuals, double fraction) {
+constexpr double median = 0.5;
+
+double quantile(const std::vector<PlaneResidual>& residuals, double fraction) {
   std::vector<double> distances;
   for (const PlaneResidual& r : residuals) distances.push_back(std::abs(r.distance));
   const auto nth = distances.begin() + static_cast<std::ptrdiff_t>(fraction * double(distances.size() - 1));
@@ -80,20 +78,25 @@ Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale
 }  // namespace
 
 SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& target, const Similarity& start,
-                             double tolerance) {
+                             const SimilaritySettings& settings) {
   const Eigen::VectorXd areas = vertex_areas(source);
-  const double within = max_distance * start.scale * diagonal(source.vertices);
+  const double source_diagonal = diagonal(source.vertices);
+  const double tolerance = settings.tolerance * start.scale * source_diagonal;
+  const double within = settings.max_distance * start.scale * source_diagonal;
+  const MatchLimits limits{settings.min_cosine, within};
   SimilarityFit fit;
   fit.target_from_source = start;
   TriangleMesh moved = source;
   for (int iteration = 0;; ++iteration) {
     moved.vertices = fit.target_from_source * source.vertices;
-    const auto residuals = plane_residuals(moved.vertices, vertex_normals(moved), areas, target, within);
+    const auto residuals = plane_residuals(moved, areas, target, limits, settings.max_samples);
     if (residuals.empty()) return {start, within, false};
-    fit.residual = percentile(residuals, 0.9);
-    const bool give_up = iteration >= trial_iterations && !(fit.residual <= hopeless * tolerance);
-    if (iteration == max_iterations || give_up) break;
-    const double robust_scale = 2 * percentile(residuals, 0.5) + 1e-12 * within;
+    fit.residual = quantile(residuals, settings.quantile);
+    const bool give_up =
+        iteration >= settings.trial_iterations && !(fit.residual <= settings.hopeless * tolerance);
+    if (iteration == settings.max_iterations || give_up) break;
+    const double robust_scale =
+        settings.outlier_medians * quantile(residuals, median) + settings.outlier_floor * within;
     fit.target_from_source = step(residuals, robust_scale) * fit.target_from_source;
   }
   fit.suffices = fit.residual <= tolerance;

@@ -17,10 +17,9 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
-const double least_cosine = std::cos(most_degrees_turned * std::numbers::pi / 180);
-
 /// Faces whose normals are farther apart; a face without area has not turned.
-std::vector<Eigen::Index> turned_faces(const Points& before_normals, const TriangleMesh& after) {
+std::vector<Eigen::Index> turned_faces(const Points& before_normals, const TriangleMesh& after,
+                                       double least_cosine) {
   const Points normals = face_normals(after);
   std::vector<Eigen::Index> turned;
   for (Eigen::Index face = 0; face < normals.cols(); ++face)
@@ -33,10 +32,10 @@ std::vector<Eigen::Index> turned_faces(const Points& before_normals, const Trian
 /// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
 /// weighted by inverse length, so that displacements change as fast across short edges as across long ones.
 Points spread_harmonically(const Points& places, const VertexAdjacency& adjacency,
-                           const std::vector<int>& free, Points displacements) {
+                           const std::vector<int>& free, Points displacements,
+                           const MendingSettings& settings) {
   constexpr int fixed = -1;
-  constexpr double shortest = 1e-6;  // of the diagonal: edges of no length weigh no more
-  const double least_length = shortest * diagonal(places);
+  const double least_length = settings.shortest * diagonal(places);
   std::vector<int> row_of(static_cast<std::size_t>(displacements.cols()), fixed);
   for (std::size_t k = 0; k < free.size(); ++k) row_of[free[k]] = static_cast<int>(k);
   const auto count = static_cast<int>(free.size());
@@ -55,7 +54,7 @@ Points spread_harmonically(const Points& places, const VertexAdjacency& adjacenc
       else
         entries.emplace_back(row, row_of[other], -weight);
     }
-    const double keep = 1e-9 * total;  // decides where a component is free as a whole
+    const double keep = settings.keep * total;
     right.row(row) += keep * displacements.col(vertex).transpose();
     entries.emplace_back(row, row, total + keep);
   }
@@ -89,27 +88,27 @@ std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacen
 
 }  // namespace
 
-MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after) {
-  constexpr int most_rings = 8;
-  // Where anchors contradict each other everything turns; mending all of it would undo the fit.
-  constexpr std::size_t most_free_divisor = 20, most_free_at_least = 100;
+MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
+                                const MendingSettings& settings) {
+  const double least_cosine = std::cos(settings.most_degrees * std::numbers::pi / 180);
   const Points before_normals = face_normals(before);
   const VertexAdjacency adjacency = vertex_adjacency(before);
   TriangleMesh mended{after, before.faces};
-  std::vector<Eigen::Index> turned = turned_faces(before_normals, mended);
+  std::vector<Eigen::Index> turned = turned_faces(before_normals, mended, least_cosine);
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
-  const auto most_free = std::max<std::size_t>(most_free_at_least, is_free.size() / most_free_divisor);
-  for (int rings = 0; rings < most_rings && !turned.empty(); ++rings) {
+  const auto most_free = std::max(settings.released_at_least,
+                                  static_cast<std::size_t>(settings.most_released * double(is_free.size())));
+  for (int rings = 0; rings < settings.most_rings && !turned.empty(); ++rings) {
     std::vector<int> released;
     for (const int vertex : around(before, adjacency, turned, rings))
       if (!is_free[vertex]) released.push_back(vertex);
     if (free.size() + released.size() > most_free) break;
     for (const int vertex : released) is_free[vertex] = 1;
     free.insert(free.end(), released.begin(), released.end());
-    mended.vertices =
-        before.vertices + spread_harmonically(before.vertices, adjacency, free, after - before.vertices);
-    turned = turned_faces(before_normals, mended);
+    mended.vertices = before.vertices + spread_harmonically(before.vertices, adjacency, free,
+                                                            after - before.vertices, settings);
+    turned = turned_faces(before_normals, mended, least_cosine);
   }
   return {std::move(mended.vertices), free.size(), turned.size()};
 }

@@ -3,12 +3,9 @@
 #include <cstddef>
 
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 
 namespace bespoke {
-
-/// A face that has turned farther than this against the smooth deformation around it was drawn to the wrong
-/// side of a fold.
-inline constexpr double most_degrees_turned = 55;
 
 /// A surface whose turned faces were taken back.
 struct MendedSurface {
@@ -18,10 +15,11 @@ struct MendedSurface {
 };
 
 /// `before`: a surface that a smooth deformation has brought here; `after` (3×n, mesh units): where its
-/// vertices were drawn then. Where a face turned by more than `most_degrees_turned`, its vertices give up
+/// vertices were drawn then. Where a face turned by more than the limit of the settings, its vertices give up
 /// their displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings
-/// around the face as it takes, up to eight, and as long as that is at most 5 % of the vertices (or 100):
+/// around the face as it takes and the settings allow, and as long as that is a small part of the vertices:
 /// where more has turned, mending would undo the fit. Throws SolverError.
-MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after);
+MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
+                                const MendingSettings& settings = {});
 
 }  // namespace bespoke

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/multiscale_fit.h"
+#include "bespoke/surface_fit/detail/deformation_graph_fit.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -48,11 +48,11 @@ Scene bent_scene() {
   return scene;
 }
 
-TEST(FitSurfaceMultiscale, IsTheDefault) {
-  EXPECT_EQ(SurfaceFitOptions{}.method, SurfaceFitMethod::multiscale);
+TEST(FitSurfaceDeformationGraph, IsTheDefault) {
+  EXPECT_EQ(SurfaceFitOptions{}.method, SurfaceFitMethod::deformation_graph);
 }
 
-TEST(FitSurfaceMultiscale, RecoversASimilarity) {
+TEST(FitSurfaceDeformationGraph, RecoversASimilarity) {
   const AffineMap truth{1.1 * Eigen::AngleAxisd(0.06, Vector3(1, 2, 2) / 3).toRotationMatrix(),
                         Vector3(0.02, 0.01, -0.03)};
   // The finer copy's own vertices lie on the potato, not on the coarser facets: compare the same surface.
@@ -63,7 +63,7 @@ TEST(FitSurfaceMultiscale, RecoversASimilarity) {
             1e-9 * diagonal(scene.source.vertices));
 }
 
-TEST(FitSurfaceMultiscale, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
+TEST(FitSurfaceDeformationGraph, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
   const Scene scene = bent_scene();
   const SurfaceFit fit = scene.fit();
   EXPECT_FALSE(fit.summary.similarity_suffices);
@@ -90,7 +90,7 @@ TriangleMesh cut_at(TriangleMesh mesh, double height) {
   return {mesh.vertices, mesh.faces(Eigen::all, kept)};
 }
 
-TEST(FitSurfaceMultiscale, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo) {
+TEST(FitSurfaceDeformationGraph, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo) {
   // The source goes on below the height at which the target ends.
   constexpr double source_end = -0.5, target_end = -0.35;
   Scene scene{cut_at(potato(4), source_end), cut_at(potato(5), target_end)};
@@ -119,7 +119,7 @@ TEST(FitSurfaceMultiscale, ASourceCutFartherOutMeetsTheTargetsCutOnlyWhenRuledSo
   EXPECT_NEAR(lowest(BoundaryRule::automatic), target_rim, near);
 }
 
-TEST(FitSurfaceMultiscale, TheEndOfTheTargetDoesNotAttract) {
+TEST(FitSurfaceDeformationGraph, TheEndOfTheTargetDoesNotAttract) {
   // Half of the potato has no counterpart; it follows the other half instead of crowding at the cut.
   constexpr double cut = 0.4;
   Scene scene = bent_scene();
@@ -146,7 +146,7 @@ TEST(FitSurfaceMultiscale, TheEndOfTheTargetDoesNotAttract) {
   EXPECT_LT(beyond, (true_reach - cut) / 2);
 }
 
-TEST(FitSurfaceMultiscale, GivesTheSameBytesAtAnyThreadCount) {
+TEST(FitSurfaceDeformationGraph, GivesTheSameBytesAtAnyThreadCount) {
   const Scene scene = bent_scene();
   Points first;
   for (const std::size_t threads : {1, 2, 8}) {
@@ -157,7 +157,7 @@ TEST(FitSurfaceMultiscale, GivesTheSameBytesAtAnyThreadCount) {
   }
 }
 
-TEST(FitSurfaceMultiscale, WorksOnPiecesSingleTrianglesAndLooseVertices) {
+TEST(FitSurfaceDeformationGraph, WorksOnPiecesSingleTrianglesAndLooseVertices) {
   TriangleMesh pieces = shapes::joined(
       potato(3), shapes::moved(shapes::icosphere(1), {0.1 * Matrix3::Identity(), Vector3(2, 0, 0)}));
   pieces.vertices.conservativeResize(3, pieces.vertices.cols() + 1);
@@ -172,7 +172,7 @@ TEST(FitSurfaceMultiscale, WorksOnPiecesSingleTrianglesAndLooseVertices) {
   EXPECT_TRUE(single.vertices.isApprox(shapes::triangle().vertices, 1e-6));
 }
 
-TEST(FitSurfaceMultiscale, RejectsWhatItCannotFit) {
+TEST(FitSurfaceDeformationGraph, RejectsWhatItCannotFit) {
   Scene scene = bent_scene();
   scene.warped(0, 0) = std::nan("");
   EXPECT_THROW(scene.fit(), InvalidInput);
@@ -187,7 +187,7 @@ TEST(FitSurfaceMultiscale, RejectsWhatItCannotFit) {
   EXPECT_THROW(scene.fit(), InvalidInput);
 }
 
-TEST(FitSurfaceMultiscale, StopsWhenAsked) {
+TEST(FitSurfaceDeformationGraph, StopsWhenAsked) {
   const Scene scene = bent_scene();
   Progress progress;
   progress.cancelled = [] { return true; };

@@ -1,0 +1,193 @@
+#include "bespoke/surface_fit/detail/deformation_graph_fit.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/parallel.h"
+#include "bespoke/stopwatch.h"
+#include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "bespoke/surface_fit/detail/detail_layers.h"
+#include "bespoke/surface_fit/detail/node_fit.h"
+#include "bespoke/surface_fit/detail/similarity_fit.h"
+#include "bespoke/surface_fit/detail/turned_faces.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t grain = 256;
+
+/// Anchors that lie on the surface or near it.
+struct SurfaceAnchors {
+  Points sources, targets;  // 3×k
+  Eigen::VectorXd weights;
+  std::vector<Eigen::Index> exact;  // columns of those with infinite weight
+
+  Points exact_sources() const { return sources(Eigen::all, exact); }
+  Points exact_targets() const { return targets(Eigen::all, exact); }
+};
+
+SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& settings) {
+  const std::vector<Eigen::Index> near = anchors_near(input.source, input.anchor_sources, settings);
+  SurfaceAnchors anchors{input.anchor_sources(Eigen::all, near),
+                         input.anchor_targets(Eigen::all, near),
+                         input.anchor_weights(near),
+                         {}};
+  for (Eigen::Index k = 0; k < anchors.weights.size(); ++k)
+    if (std::isinf(anchors.weights[k])) anchors.exact.push_back(k);
+  return anchors;
+}
+
+/// The source with halved long edges.
+TriangleMesh refined_source(const TriangleMesh& source, double edges_per_area) {
+  const double area = vertex_areas(source).sum();
+  if (!(area > 0)) throw InvalidInput("the source of the surface fitting has no area");
+  return refine_long_edges(source, std::sqrt(area / edges_per_area)).mesh;
+}
+
+/// 1 where a vertex has a counterpart at its place that faces the same way, 0 where it has none.
+std::vector<double> confidences(const TriangleMesh& fitted, const TargetSurface& target, double diagonal,
+                                const ConfidenceSettings& settings) {
+  const MatchLimits limits{0, settings.reach * diagonal};
+  std::vector<double> all(static_cast<std::size_t>(fitted.vertices.cols()), 0.0);
+  const Points normals = vertex_normals(fitted);
+  parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      const auto found = target.match(fitted.vertices.col(i), normals.col(i), limits);
+      if (!found) continue;
+      const double offset = (found->point - fitted.vertices.col(i)).norm() / (settings.near * diagonal);
+      all[k] = found->agreement * std::exp(-offset * offset);
+    }
+  });
+  return all;
+}
+
+/// Moves points (3×k) on or near the surface as the surface moves under them.
+void carry_along(const TriangleMesh& surface, const Points& moved_vertices, Points& points) {
+  const ClosestPointTree tree(surface);
+  for (auto&& point : points.colwise()) {
+    const SurfacePoint foot = *tree.closest(point);
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = surface.faces(k, foot.face);
+      point += foot.barycentric[k] * (moved_vertices.col(vertex) - surface.vertices.col(vertex));
+    }
+  }
+}
+
+double largest_distance(const Points& a, const Points& b) {
+  return a.cols() == 0 ? 0 : std::sqrt((a - b).colwise().squaredNorm().maxCoeff());
+}
+
+/// Where one similarity brings the source, and whether that is all.
+struct Alignment {
+  Similarity target_from_source;
+  bool suffices = false;
+};
+
+/// The similarity nearest to the warp, refined on the surfaces where that explains the target.
+Alignment align(const SurfaceFitInput& input, const TriangleMesh& surface, const TargetSurface& target,
+                const SurfaceAnchors& anchors, const SimilaritySettings& settings) {
+  const Similarity of_warp = align_similarly(input.source.vertices, input.warped_vertices,
+                                             Eigen::VectorXd::Ones(input.source.vertices.cols()));
+  const SimilarityFit refined = fit_similarity(surface, target, of_warp, settings);
+  const double anchors_off =
+      largest_distance(refined.target_from_source * anchors.exact_sources(), anchors.exact_targets());
+  const bool suffices = refined.suffices && anchors_off <= settings.anchor_tolerance * settings.tolerance *
+                                                               of_warp.scale *
+                                                               diagonal(input.source.vertices);
+  return {suffices ? refined.target_from_source : of_warp, suffices};
+}
+
+/// What is deformed, all aligned with the target, mesh units.
+struct Scene {
+  TriangleMesh surface;
+  const TargetSurface& target;
+  const SurfaceAnchors& anchors;
+  Points exact_sources;  // 3×k, carried with the surface
+  Points exact_targets;  // 3×k
+  double diagonal;
+
+  DetailInput details() const { return {surface, target, exact_sources, exact_targets, diagonal}; }
+};
+
+/// Nodes, layers of space, mending. Returns what the summary says of them.
+SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
+                         const DeformationGraphSettings& settings, const Progress& progress) {
+  const NodeFit nodes = fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets,
+                                   scene.anchors.weights, scene.diagonal, options.boundaries},
+                                  settings.nodes, progress);
+  scene.surface.vertices = nodes.vertices;
+  scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
+  const DetailFit details = fit_details(scene.details(), settings.details, progress);
+  const MendedSurface mended =
+      mend_turned_faces({nodes.coarse_vertices, scene.surface.faces}, details.vertices, settings.mending);
+  scene.exact_sources = details.anchor_sources;
+  if (mended.mended_vertices > 0)
+    carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
+  scene.surface.vertices = mended.vertices;
+
+  SurfaceFitSummary summary;
+  summary.mended_vertices = mended.mended_vertices;
+  summary.iterations = nodes.iterations + details.layers;
+  summary.matched_boundaries = nodes.matched_boundaries;
+  summary.stop_reason = details.last_step <= options.epsilon * scene.diagonal ? StopReason::converged
+                                                                              : StopReason::iteration_cap;
+  return summary;
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> anchors_near(const TriangleMesh& surface, const Points& anchors,
+                                       const NodeFitSettings& settings) {
+  ClosestPointQuery query;
+  query.max_distance =
+      node_spacing(vertex_areas(surface).sum(), settings.levels.back().nodes, settings.nodes);
+  const ClosestPointTree tree(surface);
+  std::vector<Eigen::Index> near;
+  for (Eigen::Index k = 0; k < anchors.cols(); ++k)
+    if (tree.closest(anchors.col(k), query)) near.push_back(k);
+  return near;
+}
+
+SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const SurfaceFitOptions& options,
+                                         const Progress& progress) {
+  progress.check();
+  const Stopwatch watch;
+  const DeformationGraphSettings settings;
+  TriangleMesh surface = refined_source(input.source, settings.edges_per_area);
+  const TargetSurface target(input.target);
+  const SurfaceAnchors anchors = anchors_of(input, settings.nodes);
+  const auto [aligned, suffices] = align(input, surface, target, anchors, settings.similarity);
+  surface.vertices = aligned * surface.vertices;
+  Scene scene{std::move(surface),
+              target,
+              anchors,
+              aligned * anchors.exact_sources(),
+              anchors.exact_targets(),
+              aligned.scale * diagonal(input.source.vertices)};
+
+  SurfaceFit fit;
+  if (suffices)
+    fit.summary.stop_reason = StopReason::converged;
+  else
+    fit.summary = deform(scene, aligned * anchors.sources, options, settings, progress);
+  fit.vertices =
+      meet_anchors(scene.details(), settings.details).vertices.leftCols(input.source.vertices.cols());
+  fit.confidence =
+      confidences({fit.vertices, input.source.faces}, target, scene.diagonal, settings.confidence);
+
+  fit.summary.similarity_suffices = suffices;
+  fit.summary.off_surface_anchors =
+      static_cast<std::size_t>(input.anchor_sources.cols() - anchors.sources.cols());
+  fit.summary.before = distances(target, input.warped_vertices);
+  fit.summary.after = distances(target, fit.vertices);
+  for (const double confidence : fit.confidence) fit.summary.unmatched_vertices += confidence > 0 ? 0 : 1;
+  fit.summary.seconds = watch.seconds();
+  return fit;
+}
+
+}  // namespace bespoke

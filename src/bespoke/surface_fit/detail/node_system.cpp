@@ -1,0 +1,201 @@
+#include "bespoke/surface_fit/detail/node_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bespoke/parallel.h"
+#include "bespoke/rigid/nearest_rotation.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t grain = 128;
+
+/// Appends `ids` to the rows of all of them.
+void couple(const std::vector<int>& ids, std::vector<std::vector<int>>& rows) {
+  for (const int id : ids) rows[id].insert(rows[id].end(), ids.begin(), ids.end());
+}
+
+void sort_and_unite(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+NodeSystem::NodeSystem(const NodeSurface& surface, DeformationNodes nodes,
+                       const std::vector<NodeAnchor>& anchors, const NodeFitSettings& settings)
+    : surface_(surface),
+      settings_(settings),
+      nodes_(std::move(nodes)),
+      anchors_([&] {
+        std::vector<Anchor> combined;
+        for (const NodeAnchor& anchor : anchors)
+          combined.push_back(
+              {nodes_.at_point(anchor.foot, surface.rest.faces), anchor.displacement, anchor.weight});
+        return combined;
+      }()),
+      system_(adjacency()),
+      displacements_(Points::Zero(3, nodes_.size())) {}
+
+std::vector<std::vector<int>> NodeSystem::adjacency() const {
+  std::vector<std::vector<int>> rows(static_cast<std::size_t>(nodes_.size()));
+  for (int node = 0; node < nodes_.size(); ++node) {
+    std::vector<int> stencil = nodes_.neighbours[node];
+    stencil.push_back(node);
+    couple(stencil, rows);
+  }
+  for (const Anchor& anchor : anchors_) {
+    std::vector<int> ids;
+    for (const NodeWeight& entry : anchor.foot) ids.push_back(entry.node);
+    couple(ids, rows);
+  }
+  // Thousands of vertices repeat the same nodes: lists are tidied when they have doubled.
+  constexpr std::size_t first_limit = 4096;
+  std::vector<std::size_t> limit(rows.size(), first_limit);
+  for (int vertex = 0; vertex < static_cast<int>(nodes_.vertex_nodes.cols()); ++vertex) {
+    const VertexNodes followed = nodes_.at_vertex(vertex);
+    for (const NodeWeight& a : followed) {
+      for (const NodeWeight& b : followed) rows[a.node].push_back(b.node);
+      if (rows[a.node].size() < limit[a.node]) continue;
+      sort_and_unite(rows[a.node]);
+      limit[a.node] = std::max(first_limit, 2 * rows[a.node].size());
+    }
+  }
+  return rows;
+}
+
+void NodeSystem::start_from(const Points& vertices) {
+  constexpr double tiny = 1e-300;  // a node that no vertex has first stays where it is
+  Points sum = Points::Zero(3, nodes_.size());
+  Eigen::VectorXd total = Eigen::VectorXd::Constant(nodes_.size(), tiny);
+  for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
+    const int nearest = nodes_.vertex_nodes(0, i);
+    const double weight = nodes_.vertex_weights(0, i);
+    sum.col(nearest) += weight * (vertices.col(i) - surface_.rest.vertices.col(i));
+    total[nearest] += weight;
+  }
+  displacements_ = sum * total.cwiseInverse().asDiagonal();
+}
+
+Points NodeSystem::solve(const NodeGoals& goals) {
+  system_.set_zero();
+  add_planes(goals);
+  add_boundary(goals.boundary);
+  add_anchors(goals.exact_anchor_weight);
+  add_bending(std::pow(goals.smoothing / nodes_.spacing, 4));
+  add_local_similarity(std::pow(settings_.shape_share * goals.smoothing / nodes_.spacing, 2));
+  displacements_ = system_.solve();
+  return moved_vertices();
+}
+
+Points NodeSystem::moved_vertices() const {
+  Points moved = surface_.rest.vertices;
+  parallel_for(static_cast<std::size_t>(moved.cols()), grain, [&](std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
+      moved.col(i) += nodes_.displacement(displacements_, i);
+  });
+  return moved;
+}
+
+/// |form^(1/2) (rest + displacement − goal)|² at a combination of nodes.
+template <class Nodes>
+void NodeSystem::add_quadratic(const Nodes& combination, const Matrix3& form,
+                               const Vector3& goal_displacement) {
+  const Vector3 pull = form * goal_displacement;
+  for (const NodeWeight& a : combination) {
+    system_.add_right_side(a.node, a.weight * pull);
+    for (const NodeWeight& b : combination)
+      if (a.node >= b.node) system_.add(a.node, b.node, (a.weight * b.weight) * form);
+  }
+}
+
+void NodeSystem::add_planes(const NodeGoals& goals) {
+  if (goals.planes.empty()) return;
+  std::vector<double> distances;
+  for (const PlanePair& plane : goals.planes)
+    distances.push_back((plane.point - goals.vertices.col(plane.vertex)).norm());
+  const double scale =
+      settings_.outlier_medians * median(distances) + settings_.outlier_floor * surface_.diagonal;
+  for (std::size_t k = 0; k < goals.planes.size(); ++k) {
+    const PlanePair& plane = goals.planes[k];
+    const double outlier = distances[k] / scale;
+    const double weight = plane.weight / surface_.area / (1 + outlier * outlier);
+    add_quadratic(nodes_.at_vertex(plane.vertex), weight * plane.normal * plane.normal.transpose(),
+                  plane.point - surface_.rest.vertices.col(plane.vertex));
+  }
+}
+
+void NodeSystem::add_boundary(const std::vector<BoundaryMatch>& boundary) {
+  for (const BoundaryMatch& match : boundary) {
+    // Like a strip of surface, one node spacing wide; free to slide along the cut.
+    const double weight = match.length * nodes_.spacing / surface_.area;
+    add_quadratic(nodes_.at_vertex(match.vertex),
+                  weight * (Matrix3::Identity() - match.tangent * match.tangent.transpose()),
+                  match.point - surface_.rest.vertices.col(match.vertex));
+  }
+}
+
+void NodeSystem::add_anchors(double exact_weight) {
+  for (const Anchor& anchor : anchors_) {
+    const double weight = std::isinf(anchor.weight) ? exact_weight / double(anchors_.size())
+                                                    : anchor.weight / settings_.whole_surface_weight;
+    add_quadratic(anchor.foot, weight * Matrix3::Identity(), anchor.displacement);
+  }
+}
+
+void NodeSystem::add_bending(double weight) {
+  const std::vector<BendingStencil> stencils =
+      bending_stencils(nodes_, nodes_.rest + displacements_, settings_.bending);
+  for (int node = 0; node < nodes_.size(); ++node) {
+    const BendingStencil& stencil = stencils[node];
+    const double share = weight * nodes_.areas[node];
+    for (std::size_t a = 0; a < stencil.ids.size(); ++a)
+      for (std::size_t b = 0; b < stencil.ids.size(); ++b)
+        system_.add(stencil.ids[a], stencil.ids[b],
+                    share * stencil.quadratic(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) *
+                        Matrix3::Identity());
+    system_.add(node, node, settings_.free_floating * Matrix3::Identity());
+  }
+}
+
+/// The least-squares similarity from the node's edges at rest to those now, without its translation.
+Matrix3 NodeSystem::local_similarity(int node) const {
+  Matrix3 covariance = Matrix3::Zero();
+  double spread = 0;
+  for (const int other : nodes_.neighbours[node]) {
+    const Vector3 edge = nodes_.rest.col(other) - nodes_.rest.col(node);
+    const Vector3 now = edge + displacements_.col(other) - displacements_.col(node);
+    covariance += now * edge.transpose();
+    spread += edge.squaredNorm();
+  }
+  if (!(spread > 0)) return Matrix3::Zero();
+  const Matrix3 rotation = nearest_rotation(covariance).rotation;
+  return ((rotation.transpose() * covariance).trace() / spread) * rotation;
+}
+
+void NodeSystem::add_local_similarity(double weight) {
+  for (int node = 0; node < nodes_.size(); ++node) {
+    const Matrix3 similarity = local_similarity(node);
+    const double share = weight * nodes_.areas[node] / double(nodes_.neighbours[node].size());
+    const Matrix3 form = share * Matrix3::Identity();
+    for (const int other : nodes_.neighbours[node]) {
+      const Vector3 edge = nodes_.rest.col(other) - nodes_.rest.col(node);
+      const Vector3 pull = share * (similarity * edge - edge);
+      system_.add(node, node, form);
+      system_.add(other, other, form);
+      system_.add(std::max(node, other), std::min(node, other), -form);
+      system_.add_right_side(other, pull);
+      system_.add_right_side(node, -pull);
+    }
+  }
+}
+
+}  // namespace bespoke

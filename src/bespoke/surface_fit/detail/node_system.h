@@ -1,0 +1,81 @@
+#pragma once
+
+#include <vector>
+
+#include "bespoke/surface_fit/detail/block_system.h"
+#include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "bespoke/surface_fit/detail/plane_pairs.h"
+
+namespace bespoke {
+
+/// An anchor as the nodes see it.
+struct NodeAnchor {
+  SurfacePoint foot;     ///< the nearest point of the rest surface, which the anchor moves
+  Vector3 displacement;  ///< from the anchor to its target, mesh units
+  double weight = 0;     ///< infinite, or the percentage of the surface's area that a soft anchor counts like
+};
+
+/// What the nodes are to be solved for. Lengths in mesh units.
+struct NodeGoals {
+  const Points& vertices;  ///< 3×n, where the pairs were found
+  const std::vector<PlanePair>& planes;
+  const std::vector<BoundaryMatch>& boundary;
+  double smoothing = 0;            ///< ℓ
+  double exact_anchor_weight = 0;  ///< of all exact anchors together; the surface has 1
+};
+
+/// The surface that the nodes deform.
+struct NodeSurface {
+  const TriangleMesh& rest;  ///< must outlive the system
+  double area = 0;           ///< mesh units squared
+  double diagonal = 0;       ///< mesh units
+};
+
+/// The normal equations of the displacements of the nodes of one level. Not thread-safe.
+class NodeSystem {
+ public:
+  /// The settings must outlive the system.
+  NodeSystem(const NodeSurface& surface, DeformationNodes nodes, const std::vector<NodeAnchor>& anchors,
+             const NodeFitSettings& settings);
+
+  /// Displacements that put the vertices (3×n) where a coarser level left them, weighted means around each
+  /// node.
+  void start_from(const Points& vertices);
+
+  /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
+  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / scale)²)     robust point to plane
+  ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
+  ///   + ℓ⁴ Σ_nodes (second differences along the surface as it lies now)²
+  ///   + (share ℓ)² Σ_nodes (deviation of the edges from those turned and scaled as around the node now)².
+  /// Returns where the vertices go, 3×n. Throws SolverError.
+  Points solve(const NodeGoals& goals);
+
+ private:
+  /// An anchor's foot as a combination of nodes.
+  struct Anchor {
+    std::vector<NodeWeight> foot;
+    Vector3 displacement;
+    double weight;
+  };
+
+  std::vector<std::vector<int>> adjacency() const;
+  template <class Nodes>
+  void add_quadratic(const Nodes& combination, const Matrix3& form, const Vector3& goal_displacement);
+  void add_planes(const NodeGoals& goals);
+  void add_boundary(const std::vector<BoundaryMatch>& boundary);
+  void add_anchors(double exact_weight);
+  void add_bending(double weight);
+  void add_local_similarity(double weight);
+  Matrix3 local_similarity(int node) const;
+  Points moved_vertices() const;
+
+  NodeSurface surface_;
+  const NodeFitSettings& settings_;
+  DeformationNodes nodes_;
+  std::vector<Anchor> anchors_;
+  BlockSystem system_;
+  Points displacements_;
+};
+
+}  // namespace bespoke

@@ -1,0 +1,70 @@
+#include "bespoke/surface_fit/detail/plane_pairs.h"
+
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t grain = 128;
+
+/// The surface whose vertices ask, with what they speak for, and the one that answers.
+struct Search {
+  const TargetSurface& asking;
+  const TargetSurface& answering;
+  const Eigen::VectorXd& areas;
+  MatchLimits limits;
+  std::size_t samples;
+  double share;
+};
+
+/// Appends the pairs of every so many vertices; make_pair(i, match) says which vertex shall go where.
+template <class MakePair>
+void append_pairs(const Search& search, const MakePair& make_pair, std::vector<PlanePair>& pairs) {
+  const Points& points = search.asking.mesh().vertices;
+  const std::size_t count = static_cast<std::size_t>(points.cols());
+  const std::size_t stride = (count + search.samples - 1) / search.samples;
+  std::vector<PlanePair> found((count + stride - 1) / stride);
+  parallel_for(found.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Eigen::Index>(k * stride);
+      const auto match = search.answering.match(points.col(i), search.asking.normals().col(i), search.limits);
+      if (!match) continue;
+      found[k] = make_pair(i, *match);
+      found[k].normal = match->halfway;
+      found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement * match->agreement;
+    }
+  });
+  for (const PlanePair& pair : found)
+    if (pair.weight > 0) pairs.push_back(pair);
+}
+
+}  // namespace
+
+std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const NodeLevel& level,
+                                        const NodeFitSettings& settings) {
+  const MatchLimits limits{settings.min_cosine, settings.max_distance * surfaces.diagonal,
+                           settings.normal_length * surfaces.diagonal};
+  std::vector<PlanePair> pairs;
+  append_pairs(
+      {surfaces.source, surfaces.target, surfaces.source_areas, limits, level.samples, 1},
+      [](Eigen::Index vertex, const SurfaceMatch& match) {
+        return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
+      },
+      pairs);
+  const TriangleMesh& source = surfaces.source.mesh();
+  append_pairs(
+      {surfaces.target, surfaces.source, surfaces.target_areas, limits, level.back_samples,
+       settings.back_share},
+      [&](Eigen::Index i, const SurfaceMatch& match) {
+        int corner = 0;
+        match.barycentric.maxCoeff(&corner);
+        const int vertex = source.faces(corner, match.face);
+        return PlanePair{vertex,
+                         surfaces.target.mesh().vertices.col(i) + source.vertices.col(vertex) - match.point,
+                         Vector3::Zero(), 0};
+      },
+      pairs);
+  return pairs;
+}
+
+}  // namespace bespoke

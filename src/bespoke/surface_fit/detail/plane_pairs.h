@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/target_surface.h"
+
+namespace bespoke {
+
+/// A vertex of the source should lie in a plane.
+struct PlanePair {
+  int vertex = 0;
+  Vector3 point;      ///< of the plane, mesh units
+  Vector3 normal;     ///< unit, halfway between both surfaces' (symmetric point to plane)
+  double weight = 0;  ///< mesh units squared: the area that the pair speaks for, times the squared agreement
+                      ///< of the normals, times its direction's share
+};
+
+/// Where pairs are looked for.
+struct PairSurfaces {
+  const TargetSurface& source;  ///< where the source is now
+  const TargetSurface& target;
+  const Eigen::VectorXd& source_areas;  ///< n: what each vertex speaks for (informative_areas.h)
+  const Eigen::VectorXd& target_areas;
+  double diagonal = 0;  ///< of the aligned source, mesh units
+};
+
+/// Closest compatible points of evenly chosen vertices, from the source to the target first, then back. A
+/// target vertex pulls on the nearest corner of the face that it finds. Vertices that find nothing give no
+/// pair.
+std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const NodeLevel& level,
+                                        const NodeFitSettings& settings);
+
+}  // namespace bespoke

@@ -1,0 +1,81 @@
+#include "bespoke/surface_fit/detail/node_system.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+class NodeSystemTest : public testing::Test {
+ protected:
+  NodeSystem system(const std::vector<NodeAnchor>& anchors) const {
+    return {{sphere_, vertex_areas(sphere_).sum(), diagonal(sphere_.vertices)},
+            make_deformation_nodes(sphere_, 0.3),
+            anchors,
+            settings_};
+  }
+  NodeAnchor anchor(int vertex, const Vector3& displacement, double weight = infinity) const {
+    return {*ClosestPointTree(sphere_).closest(sphere_.vertices.col(vertex)), displacement, weight};
+  }
+  Points solve(NodeSystem system, const std::vector<PlanePair>& planes = {}, double smoothing = 1) const {
+    return system.solve({sphere_.vertices, planes, {}, smoothing, 1});
+  }
+
+  TriangleMesh sphere_ = shapes::icosphere(4);
+  NodeFitSettings settings_;
+};
+
+TEST_F(NodeSystemTest, CarriesAllAlongWithAnchorsThatMoveAlike) {
+  const Vector3 shift(0.3, -0.2, 0.5);
+  const Points moved = solve(system({anchor(0, shift), anchor(40, shift), anchor(90, shift, 3)}));
+  EXPECT_LT((moved.colwise() - shift - sphere_.vertices).colwise().norm().maxCoeff(), 1e-6);
+}
+
+TEST_F(NodeSystemTest, LeavesASurfaceInItsOwnPlanes) {
+  std::vector<PlanePair> planes;
+  const Points normals = vertex_normals(sphere_);
+  for (int i = 0; i < sphere_.vertices.cols(); ++i)
+    planes.push_back({i, sphere_.vertices.col(i), normals.col(i), 1e-3});
+  EXPECT_LT((solve(system({}), planes) - sphere_.vertices).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST_F(NodeSystemTest, MovesOntoShiftedPlanesWhateverAFewFarOnesSay) {
+  const Vector3 shift(0.02, 0.01, -0.03);
+  std::vector<PlanePair> planes;
+  const Points normals = vertex_normals(sphere_);
+  const double area = vertex_areas(sphere_).sum() / static_cast<double>(sphere_.vertices.cols());
+  for (int i = 0; i < sphere_.vertices.cols(); ++i)
+    planes.push_back({i, sphere_.vertices.col(i) + shift, normals.col(i), area});
+  for (int i = 0; i < 50; ++i) planes[static_cast<std::size_t>(10 * i)].point += Vector3(5, 0, 0);
+  const Points moved = solve(system({}), planes);
+  EXPECT_LT((moved.colwise() - shift - sphere_.vertices).colwise().norm().maxCoeff(), 0.1 * shift.norm());
+}
+
+TEST_F(NodeSystemTest, BendsLessTheMoreItSmooths) {
+  const std::vector<NodeAnchor> anchors{anchor(0, Vector3(0.2, 0, 0)), anchor(1, Vector3::Zero()),
+                                        anchor(2, Vector3::Zero()), anchor(3, Vector3::Zero())};
+  double last = 0;
+  for (const double smoothing : {3.0, 1.0, 0.3}) {
+    const Points moved = solve(system(anchors), {}, smoothing);
+    const double reached = (moved.col(0) - sphere_.vertices.col(0)).x();
+    EXPECT_GT(reached, last);
+    last = reached;
+  }
+  EXPECT_LE(last, 0.2 + 1e-9);
+}
+
+TEST_F(NodeSystemTest, KeepsTheSizeThatACoarserLevelFound) {
+  // One anchor holds the place; shapes alone then decide the size, those of where the system started.
+  const Points grown = 1.3 * sphere_.vertices;
+  NodeSystem system = this->system({anchor(0, 0.3 * sphere_.vertices.col(0))});
+  system.start_from(grown);
+  EXPECT_LT((solve(std::move(system)) - grown).colwise().norm().maxCoeff(), 0.02);
+}
+
+}  // namespace
+}  // namespace bespoke

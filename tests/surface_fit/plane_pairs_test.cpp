@@ -1,0 +1,62 @@
+#include "bespoke/surface_fit/detail/plane_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+constexpr NodeLevel every_vertex{1, 1, 100000, 100000};
+
+/// Pairs between two surfaces whose vertices all speak for their areas.
+std::vector<PlanePair> pairs_between(const TriangleMesh& source, const TriangleMesh& target,
+                                     const NodeLevel& level = every_vertex) {
+  const TargetSurface from(source), to(target);
+  return find_plane_pairs({from, to, from.areas(), to.areas(), diagonal(source.vertices)}, level, {});
+}
+
+double total_weight(const std::vector<PlanePair>& pairs) {
+  double sum = 0;
+  for (const PlanePair& pair : pairs) sum += pair.weight;
+  return sum;
+}
+
+TEST(PlanePairs, OfASurfaceWithItselfAreItsOwnPlaces) {
+  const TriangleMesh sphere = shapes::icosphere(3);
+  const auto pairs = pairs_between(sphere, sphere);
+  EXPECT_EQ(pairs.size(), 2 * static_cast<std::size_t>(sphere.vertices.cols()));
+  for (const PlanePair& pair : pairs) {
+    EXPECT_TRUE(pair.point.isApprox(sphere.vertices.col(pair.vertex), 1e-12));
+    EXPECT_TRUE(pair.normal.isApprox(vertex_normals(sphere).col(pair.vertex), 1e-12));
+  }
+  const double area = vertex_areas(sphere).sum();
+  EXPECT_NEAR(total_weight(pairs), (1 + NodeFitSettings{}.back_share) * area, 1e-9 * area);
+}
+
+TEST(PlanePairs, OfAMovedPlaneAskForTheMoveBothWays) {
+  const TriangleMesh square = shapes::square_grid(6);
+  const TriangleMesh lifted = shapes::moved(square, {Matrix3::Identity(), Vector3(0, 0, 0.05)});
+  std::size_t back = 0;
+  for (const PlanePair& pair : pairs_between(square, lifted)) {
+    const Vector3 asked = pair.point - square.vertices.col(pair.vertex);
+    EXPECT_NEAR(asked.dot(pair.normal), 0.05, 1e-12);
+    back += std::abs(pair.weight / TargetSurface(square).areas()[pair.vertex] - 0.5) < 1e-9 ? 1 : 0;
+  }
+  EXPECT_EQ(back, 25u);  // the inner vertices; those on the rim find the other's boundary
+}
+
+TEST(PlanePairs, OfAFewSamplesSpeakForAsMuchAsThoseOfAll) {
+  const TriangleMesh sphere = shapes::icosphere(4);
+  const auto all = pairs_between(sphere, sphere), few = pairs_between(sphere, sphere, {1, 1, 400, 200});
+  EXPECT_LE(few.size(), 600u);
+  EXPECT_NEAR(total_weight(few), total_weight(all), 0.05 * total_weight(all));
+}
+
+TEST(PlanePairs, AreNoneWhereNothingIsNear) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  EXPECT_TRUE(pairs_between(sphere, shapes::moved(sphere, {Matrix3::Identity(), Vector3(9, 0, 0)})).empty());
+}
+
+}  // namespace
+}  // namespace bespoke
