@@ -86,6 +86,11 @@ TEST_F(FitCommand, PaperIsThePrintedMethod) {
   EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
   EXPECT_EQ(info("map.vdb")["elastic"], "csrbf");
   EXPECT_EQ(info("map.vdb")["path"], "euler");
+  const json printed = info("map.vdb")["options"]["laplacian"];
+  EXPECT_EQ(printed.size(), 6u);
+  for (const json& added : printed) EXPECT_EQ(added, false);
+  ASSERT_EQ(pair_.fit("own.vdb", {"--surface-fit", "laplacian"}).exit_code, 0);
+  for (const json& added : info("own.vdb")["options"]["laplacian"]) EXPECT_EQ(added, true);
   EXPECT_EQ(pair_.fit("map.vdb", {"--paper", "--elastic", "pffd"}).exit_code, 1);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "support/fitting_scene.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
@@ -155,6 +156,58 @@ TEST(FitSurfaceDeformationGraph, GivesTheSameBytesAtAnyThreadCount) {
     if (first.cols() == 0) first = fit.vertices;
     EXPECT_EQ(fit.vertices, first);
   }
+}
+
+/// Eight pairs at the corners of a box around the scene, far off the surface, with targets of their own.
+void add_corners(Scene& scene, double half_edge, const Vector3& shift) {
+  const Eigen::Index count = scene.anchor_sources.cols();
+  scene.anchor_sources.conservativeResize(3, count + 8);
+  scene.anchor_targets.conservativeResize(3, count + 8);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 at = half_edge * Vector3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+    scene.anchor_sources.col(count + corner) = at;
+    scene.anchor_targets.col(count + corner) = at + shift;
+  }
+  scene.anchor_weights = Eigen::VectorXd::Constant(count + 8, infinity);
+}
+
+TEST(FitSurfaceDeformationGraph, AnchorsFarOffTheSurfaceDoNotDragIt) {
+  Scene scene = bent_scene();
+  const SurfaceFit without = scene.fit();
+  EXPECT_EQ(without.summary.off_surface_anchors, 0u);
+  add_corners(scene, 2, Vector3(0.5, -0.3, 0.4));
+  const SurfaceFit with = scene.fit();
+  EXPECT_EQ(with.summary.off_surface_anchors, 8u);
+  EXPECT_EQ(with.vertices, without.vertices);  // the warp, which knows them, is an input and is the same
+}
+
+TEST(FitSurfaceDeformationGraph, AnchorsWithinANodeSpacingMoveTheirFoot) {
+  Scene scene = bent_scene();
+  const double spacing =
+      node_spacing(vertex_areas(scene.source).sum(), NodeFitSettings{}.levels.back().nodes);
+  const Points normals = vertex_normals(scene.source);
+  for (const double height : {0.9, 1.1}) {
+    Points lifted = scene.anchor_sources;
+    for (int k = 0; k < 12; ++k) lifted.col(k) += height * spacing * normals.col(k);
+    EXPECT_EQ(anchors_near(scene.source, lifted).size(), height < 1 ? 12u : 0u);
+  }
+  // Lifted a little on both sides, an anchor says what it said on the surface.
+  for (int k = 0; k < 12; ++k) {
+    scene.anchor_sources.col(k) += 0.1 * spacing * normals.col(k);
+    scene.anchor_targets.col(k) += 0.1 * spacing * normals.col(k);
+  }
+  const SurfaceFit fit = scene.fit();
+  EXPECT_EQ(fit.summary.off_surface_anchors, 0u);
+  for (int k = 0; k < 12; ++k)
+    EXPECT_LT((fit.vertices.col(k) - bend(scene.source.vertices.col(k))).norm(), 0.1 * spacing);
+}
+
+TEST(FitSurfaceDeformationGraph, FitsWhenAllAnchorsLieOffTheSurface) {
+  Scene scene = bent_scene();
+  Scene bare{scene.source, scene.target};
+  Scene cornered = bare;
+  add_corners(cornered, 2, Vector3::Zero());
+  EXPECT_EQ(cornered.fit().vertices, bare.fit().vertices);
 }
 
 TEST(FitSurfaceDeformationGraph, WorksOnPiecesSingleTrianglesAndLooseVertices) {

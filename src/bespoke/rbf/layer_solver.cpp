@@ -4,9 +4,11 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/rbf/conjugate_gradients.h"
 #include "bespoke/rbf/elimination_tree.h"
 #include "bespoke/rbf/kernels.h"
 
@@ -15,10 +17,12 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 
-/// The kernel matrix without its unit diagonal.
-class KernelMatrix {
+/// The kernel matrix of a layer; the diagonal entries are among those of the graph.
+class KernelSystem {
  public:
-  KernelMatrix(const Points& centers, double lambda) : graph_(radius_graph(centers, lambda)) {
+  /// tolerance: largest residual, in the unit of the values.
+  KernelSystem(const Points& centers, double lambda, double tolerance)
+      : graph_(radius_graph(centers, lambda)), tolerance_(tolerance) {
     values_.resize(graph_.distances.size());
     parallel_for(values_.size(), 16 * grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t entry = begin; entry < end; ++entry)
@@ -26,7 +30,7 @@ class KernelMatrix {
     });
   }
 
-  Points operator*(const Points& x) const {
+  Points multiply(const Points& x) const {
     Points result(3, x.cols());
     parallel_for(std::size_t(x.cols()), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
@@ -39,53 +43,44 @@ class KernelMatrix {
     return result;
   }
 
+  const Points& precondition(const Points& residual) const { return residual; }
+
+  Vector3 products(const Points& a, const Points& b) const {
+    const auto partial = [&](std::size_t begin, std::size_t end) -> Vector3 {
+      Vector3 sum = Vector3::Zero();
+      for (auto i = Eigen::Index(begin); i < Eigen::Index(end); ++i) sum += a.col(i).cwiseProduct(b.col(i));
+      return sum;
+    };
+    return parallel_reduce(std::size_t(a.cols()), grain, Vector3(Vector3::Zero()), partial,
+                           [](const Vector3& x, const Vector3& y) -> Vector3 { return x + y; });
+  }
+
+  bool solved(const Points& residual, const Vector3&, int steps) const {
+    // Far more than spacing λ/4 needs; a system that wants more is not the one promised.
+    constexpr int most_steps = 1000;
+    const double left = residual.colwise().norm().maxCoeff();
+    if (left <= tolerance_) return true;
+    if (steps < most_steps && std::isfinite(left)) return false;
+    throw SolverError("radial layer of " + std::to_string(residual.cols()) + " centres: residual " +
+                      std::to_string(left) + " after " + std::to_string(steps) +
+                      " conjugate gradient iterations");
+  }
+
  private:
   RadiusGraph graph_;
+  double tolerance_;
   std::vector<double> values_;
 };
-
-/// One scalar product for each coordinate.
-Eigen::Array3d products(const Points& a, const Points& b) {
-  const auto partial = [&](std::size_t begin, std::size_t end) -> Eigen::Array3d {
-    Eigen::Array3d sum = Eigen::Array3d::Zero();
-    for (auto i = Eigen::Index(begin); i < Eigen::Index(end); ++i) sum += a.col(i).array() * b.col(i).array();
-    return sum;
-  };
-  return parallel_reduce(
-      std::size_t(a.cols()), grain, Eigen::Array3d(Eigen::Array3d::Zero()), partial,
-      [](const Eigen::Array3d& x, const Eigen::Array3d& y) -> Eigen::Array3d { return x + y; });
-}
 
 }  // namespace
 
 RbfLayer solve_layer(const Points& centers, const Points& values, double lambda, double tolerance) {
-  const KernelMatrix matrix(centers, lambda);
+  constexpr double relative_tolerance = 1e-3;  // of the largest value
   const double largest = values.colwise().norm().maxCoeff();
-  const double stop = std::max(tolerance, 1e-3 * largest);
+  const KernelSystem system(centers, lambda, std::max(tolerance, relative_tolerance * largest));
   Points coefficients = Points::Zero(3, centers.cols());
-  Points residual = values;
-  Points direction = residual;
-  Eigen::Array3d squared = products(residual, residual);
-  // Far more than spacing λ/4 needs; a system that wants more is not the one promised.
-  constexpr int most_iterations = 1000;
-  for (int iteration = 0;; ++iteration) {
-    const double left = residual.colwise().norm().maxCoeff();
-    if (left <= stop) return {lambda, centers, std::move(coefficients)};
-    if (!(iteration < most_iterations) || !std::isfinite(left))
-      throw SolverError("radial layer of " + std::to_string(centers.cols()) + " centres: residual " +
-                        std::to_string(left) + " after " + std::to_string(iteration) +
-                        " conjugate gradient iterations");
-    const Points image = matrix * direction;
-    const auto ratio = [](const Eigen::Array3d& a, const Eigen::Array3d& b) -> Vector3 {
-      return (b > 0).select(a / b, 0).matrix();
-    };
-    const Vector3 step = ratio(squared, products(direction, image));
-    coefficients += step.asDiagonal() * direction;
-    residual -= step.asDiagonal() * image;
-    const Eigen::Array3d next = products(residual, residual);
-    direction = residual + ratio(next, squared).asDiagonal() * direction;
-    squared = next;
-  }
+  conjugate_gradients(system, coefficients, values);
+  return {lambda, centers, std::move(coefficients)};
 }
 
 }  // namespace bespoke
