@@ -170,7 +170,7 @@ TEST(FitSurfaceLaplacian, AsPrintedStopsWhenTheDisplacementsAreWithinEpsilonAndN
   EXPECT_EQ(there.summary.stop_reason, StopReason::converged);
   EXPECT_EQ(there.summary.iterations, 0);
 
-  // Beside the end of an open target there is no compatible point nearer than the boundary: ‖T⁰‖ stays.
+  // A step of Eq. 13 takes back no more than a thirteenth of what is rough at valence six.
   TriangleMesh half = shapes::square_grid(6);
   half.vertices.row(0) /= 2;
   const SurfaceFit never = fit_as_printed(Scene{shapes::square_grid(6), half}, 30);

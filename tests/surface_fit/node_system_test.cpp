@@ -22,7 +22,7 @@ class NodeSystemTest : public testing::Test {
   NodeAnchor anchor(int vertex, const Vector3& displacement, double weight = infinity) const {
     return {*ClosestPointTree(sphere_).closest(sphere_.vertices.col(vertex)), displacement, weight};
   }
-  Points solve(NodeSystem system, const std::vector<PlanePair>& planes = {}, double smoothing = 1) const {
+  Points solve(NodeSystem&& system, const std::vector<PlanePair>& planes = {}, double smoothing = 1) const {
     return system.solve({sphere_.vertices, planes, {}, smoothing, 1});
   }
 
