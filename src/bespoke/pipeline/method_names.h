@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string_view>
@@ -43,9 +44,10 @@ inline constexpr std::array mapping_orders{Named<MappingOrder>{"elastic-first", 
 
 template <class Value, std::size_t size>
 constexpr std::string_view name_of(const std::array<Named<Value>, size>& names, Value value) {
-  for (const Named<Value>& named : names)
-    if (named.value == value) return named.name;
-  throw InvalidInput("a value has no name in its table");
+  const auto named = std::find_if(names.begin(), names.end(),
+                                  [&](const Named<Value>& entry) { return entry.value == value; });
+  if (named == names.end()) throw InvalidInput("a value has no name in its table");
+  return named->name;
 }
 
 template <class Value, std::size_t size>
