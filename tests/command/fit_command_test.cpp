@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "bespoke/mesh/mesh_io.h"
 #include "command/example_pair.h"
+#include "support/shapes.h"
 
 namespace bespoke::test {
 namespace {
@@ -327,10 +329,16 @@ TEST_F(FitCommand, PrintsPlainProgressWithoutATerminal) {
   EXPECT_THAT(fit.err, Not(HasSubstr("\r")));
 }
 
-TEST_F(FitCommand, NeedsAnchorsOrAFittedSource) {
+TEST_F(FitCommand, RefusesWhatItCannotAlignWithoutAnchors) {
+  write_triangle_mesh(pair_.file("ball.obj"), shapes::icosphere(3));
+  write_triangle_mesh(pair_.file("other_ball.obj"), shapes::icosphere(2));
   expect_refusal(
-      bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o", pair_.file("map.vdb")}), 1,
-      "--anchors");
+      bespoke({"fit", pair_.file("ball.obj"), pair_.file("other_ball.obj"), "-o", pair_.file("map.vdb")}), 3,
+      "at least 4 anchors");
+  EXPECT_FALSE(std::filesystem::exists(pair_.file("map.vdb")));
+}
+
+TEST_F(FitCommand, AddsCornersToAnchorsOnly) {
   expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
                           pair_.file("map.vdb"), "--fitted", pair_.file("source.obj"), "--add-corners"}),
                  1, "--add-corners");

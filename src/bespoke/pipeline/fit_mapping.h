@@ -33,7 +33,7 @@ struct FitOptions {
 
 /// What a stage of the fit did, as lines for a person and as JSON for a program.
 struct StageReport {
-  std::string name;  ///< "rigid", "coarse", "surface-fit", "elastic"
+  std::string name;  ///< "alignment", "rigid", "coarse", "surface-fit", "elastic"
   std::string line;  ///< one line
   std::string json;  ///< an object; without times, so that it may enter an asset
   double seconds = 0;
@@ -52,8 +52,9 @@ struct FittedMapping {
   std::vector<StageReport> stages;
 };
 
-/// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map.
-/// Throws InvalidInput, SolverError, MemoryLimitError.
+/// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Without anchors the
+/// surfaces alone are aligned (align_models.h), for models in similar pose: the stage "alignment" says how
+/// sure that is. Throws InvalidInput, SolverError (also when the alignment is not certain), MemoryLimitError.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 
