@@ -33,12 +33,6 @@ Bodies load() {
   return {dress.source, dress.targets.back().mesh, {"cm", dress.targets.back().anchors}};
 }
 
-double seconds_of(const FittedMapping& fit, const std::string& stage) {
-  for (const StageReport& report : fit.stages)
-    if (report.name == stage) return report.seconds;
-  return 0;
-}
-
 void fit_bodies(benchmark::State& state) {
   Bodies bodies = load();
   for (int level = 0; level < state.range(0); ++level) bodies.source = shapes::subdivided(bodies.source);
@@ -49,7 +43,7 @@ void fit_bodies(benchmark::State& state) {
   for (auto _ : state) fit = fit_mapping(bodies.source, bodies.target, bodies.anchors, options);
   state.counters["source"] = double(bodies.source.vertices.cols());
   state.counters["target"] = double(bodies.target.vertices.cols());
-  const double surface_fit = seconds_of(fit, "surface-fit"), elastic = seconds_of(fit, "elastic");
+  const double surface_fit = fit.summary.surface->seconds, elastic = fit.summary.elastic.seconds;
   state.counters["surface_fit_s"] = surface_fit;
   state.counters["elastic_s"] = elastic;
   state.counters["peak_GiB"] = double(peak_memory()) / (1 << 30);

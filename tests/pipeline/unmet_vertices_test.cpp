@@ -28,12 +28,12 @@ void expect_complete(const FittedMapping& fit, const TriangleMesh& source) {
   std::size_t listed = 0;
   for (Eigen::Index i = 0; i < offset.cols(); ++i) {
     if (!(offset.col(i).norm() > tolerance)) continue;
-    ASSERT_LT(listed, fit.unmet.size());
-    EXPECT_EQ(fit.unmet[listed].vertex, i);
-    EXPECT_NEAR(fit.unmet[listed].residual, offset.col(i).norm(), 1e-12);
+    ASSERT_LT(listed, fit.summary.elastic.unmet.size());
+    EXPECT_EQ(fit.summary.elastic.unmet[listed].vertex, i);
+    EXPECT_NEAR(fit.summary.elastic.unmet[listed].residual, offset.col(i).norm(), 1e-12);
     ++listed;
   }
-  EXPECT_EQ(listed, fit.unmet.size());
+  EXPECT_EQ(listed, fit.summary.elastic.unmet.size());
 }
 
 TEST(UnmetVertices, AreNoneWhereTheMapMeetsTheFit) {
@@ -41,8 +41,8 @@ TEST(UnmetVertices, AreNoneWhereTheMapMeetsTheFit) {
   Points fitted = source.vertices;
   fitted.row(0) += (0.1 * (3 * fitted.row(1).array()).sin()).matrix();
   const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
-  EXPECT_THAT(fit.unmet, IsEmpty());
-  EXPECT_EQ(to_string(fit.unmet), "");
+  EXPECT_THAT(fit.summary.elastic.unmet, IsEmpty());
+  EXPECT_EQ(to_string(fit.summary.elastic.unmet), "");
   expect_complete(fit, source);
 }
 
@@ -57,14 +57,14 @@ TEST(UnmetVertices, AreFoldedWhereTheFittedFacesAre) {
   const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
   expect_complete(fit, source);
   int folded = 0;
-  for (const UnmetVertex& unmet : fit.unmet) {
+  for (const UnmetVertex& unmet : fit.summary.elastic.unmet) {
     if (distance(unmet.vertex) > radius + 0.1) {
       EXPECT_NE(unmet.reason, UnmetReason::folded);
     }
     if (unmet.reason == UnmetReason::folded) ++folded;
   }
   EXPECT_GT(folded, 20);
-  EXPECT_THAT(fit.stages.back().line, HasSubstr("fitted faces folded"));
+  EXPECT_THAT(to_string(fit.summary.elastic), HasSubstr("fitted faces folded"));
 }
 
 TEST(UnmetVertices, ShareAPlaceThatIsTornApart) {
@@ -74,8 +74,8 @@ TEST(UnmetVertices, ShareAPlaceThatIsTornApart) {
   fitted.rightCols(once.vertices.cols()).row(2).array() += 0.1;
   const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
   expect_complete(fit, source);
-  EXPECT_EQ(fit.unmet.size(), std::size_t(source.vertices.cols()));
-  for (const UnmetVertex& unmet : fit.unmet) {
+  EXPECT_EQ(fit.summary.elastic.unmet.size(), std::size_t(source.vertices.cols()));
+  for (const UnmetVertex& unmet : fit.summary.elastic.unmet) {
     EXPECT_EQ(unmet.reason, UnmetReason::shared_place);
     EXPECT_NEAR(unmet.residual, 0.05, 1e-9);
   }
@@ -89,8 +89,8 @@ TEST(UnmetVertices, AreSteepWhereSheetsPartThatAlmostTouch) {
   fitted.rightCols(once.vertices.cols()).row(2).array() += 0.1;
   const FittedMapping fit = carried_to(source, fitted, ElasticMethod::diffeomorphic);
   expect_complete(fit, source);
-  EXPECT_FALSE(fit.unmet.empty());
-  for (const UnmetVertex& unmet : fit.unmet) EXPECT_EQ(unmet.reason, UnmetReason::steep);
+  EXPECT_FALSE(fit.summary.elastic.unmet.empty());
+  for (const UnmetVertex& unmet : fit.summary.elastic.unmet) EXPECT_EQ(unmet.reason, UnmetReason::steep);
 }
 
 TEST(UnmetVertices, LeaveOutVerticesOfNoFace) {

@@ -102,13 +102,12 @@ TriangleMesh read_model(const std::string& role, const std::string& path, bool q
   return mesh;
 }
 
-void print_stages(const MadeMap& made) {
-  for (const StageReport& stage : made.fit.stages)
+void print_stages(const MadeMap& made, const Anchors& anchors) {
+  for (const StageLine& stage : stage_lines(made.fit.summary, anchors))
     std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
-  std::printf("%-12s %s\n", "bake", to_string(made.bake).c_str());
   std::printf("%-12s %s\n", "certificate", to_string(made.asset.certificate).c_str());
-  std::printf("%-12s %s\n", "anchors", to_string(made.fit.anchor_residuals).c_str());
-  std::printf("%-12s %s\n", "vertices", to_string(made.fit.vertex_residuals).c_str());
+  std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
+  std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
 }
 
 void warn_of_far_anchors(const std::string& role, const TriangleMesh& model, const Points& anchors,
@@ -135,10 +134,10 @@ std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeS
 
 void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
                               const MadeMap& made) {
-  if (made.bake.tolerance_met) return;
+  const BakeSummary& bake = *made.fit.summary.bake;
+  if (bake.tolerance_met) return;
   std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
-               made.bake.error.max, options.bake.tolerance,
-               cause_of_missed_tolerance(arguments, made.bake).c_str());
+               bake.error.max, options.bake.tolerance, cause_of_missed_tolerance(arguments, bake).c_str());
 }
 
 void run(const FitArguments& arguments, const Progress& progress) {
@@ -177,7 +176,7 @@ void run(const FitArguments& arguments, const Progress& progress) {
 
   warn_of_missed_tolerance(arguments, options, made);
   if (quiet) return;
-  print_stages(made);
+  print_stages(made, anchors);
   std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
 }
 
@@ -187,9 +186,9 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
     return text + " (default: " + std::string(value) + ")";
   };
   CLI::Option* surface_fit =
-      add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fit_methods,
+      add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fits,
                       with_default("How the source is laid onto the target",
-                                   name_of(surface_fit_methods, defaults.fit.surface_fit.method)));
+                                   name_of(surface_fits, defaults.fit.surface_fit.method)));
   add_name_option(
       fit, "--boundaries", arguments.boundaries, boundary_rules,
       with_default(

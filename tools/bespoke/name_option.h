@@ -1,22 +1,21 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bespoke/pipeline/method_names.h"
+#include "bespoke/named.h"
 
 namespace bespoke::command {
 
-/// Adds an option whose value is one of the names of an enumeration.
-template <class Value, std::size_t size>
+/// Adds an option whose value is one of the names of an enumeration (named.h).
+template <class Value, class Table>
 CLI::Option* add_name_option(CLI::App& app, const std::string& name, std::optional<Value>& value,
-                             const std::array<Named<Value>, size>& names, const std::string& description) {
+                             const Table& names, const std::string& description) {
   std::vector<std::string> known;
   std::string choices;
-  for (const Named<Value>& named : names) {
+  for (const auto& named : names) {
     known.emplace_back(named.name);
     choices += (choices.empty() ? "" : "|") + known.back();
   }

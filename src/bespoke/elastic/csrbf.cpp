@@ -1,195 +1,32 @@
 #include "bespoke/elastic/csrbf.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <chrono>
 #include <cstdio>
-#include <string>
 #include <utility>
 
-#include "bespoke/error.h"
-#include "bespoke/parallel.h"
-#include "bespoke/rbf/front_cholesky.h"
-#include "bespoke/rbf/kernels.h"
+#include "bespoke/elastic/detail/exact_map_bytes.h"
 #include "bespoke/rbf/layer_stack.h"
 
 namespace bespoke {
-namespace {
-
-void require_pairs(const Points& sources, const Points& targets) {
-  if (sources.cols() != targets.cols())
-    throw InvalidInput("csrbf: " + std::to_string(sources.cols()) + " sources and " +
-                       std::to_string(targets.cols()) + " targets; the numbers must be equal");
-  if (!targets.allFinite()) throw InvalidInput("csrbf: a target has a coordinate that is not finite");
-}
-
-std::string advice(const CsrbfEstimate& estimate) {
-  char text[160];
-  if (!(estimate.advised_lambda > 0))
-    return "no effective distance fits: use fewer centres, or the elastic method multiscale";
-  std::snprintf(text, sizeof text,
-                "use an effective distance of at most %.3g, or the elastic method multiscale",
-                estimate.advised_lambda);
-  return text;
-}
-
-void require_within_limits(const CsrbfEstimate& estimate, const CsrbfOptions& options) {
-  if (estimate.within_limits) return;
-  char text[240];
-  if (!(estimate.condition <= options.max_condition)) {
-    std::snprintf(
-        text, sizeof text,
-        "csrbf: with effective distance %.4g and centres %.4g apart the system's condition is about %.1e, "
-        "beyond %.1e; ",
-        options.lambda, estimate.median_spacing, estimate.condition, options.max_condition);
-    throw SolverError(text + advice(estimate));
-  }
-  constexpr double megabyte = 1 << 20;
-  std::snprintf(
-      text, sizeof text,
-      "csrbf: effective distance %.4g gives %.0f entries a row and needs at least %.0f MB, more than %.0f "
-      "MB; ",
-      options.lambda, estimate.entries_per_row, double(estimate.bytes) / megabyte,
-      double(options.max_memory) / megabyte);
-  throw MemoryLimitError(text + advice(estimate));
-}
-
-/// Orthonormal columns that span the affine functions on the sources.
-Eigen::MatrixXd affine_basis(const Points& sources) {
-  const Vector3 centre = sources.rowwise().mean();
-  const Points centred = sources.colwise() - centre;
-  // Squared widths of the sources; below this ratio the smallest is made of rounding errors.
-  constexpr double smallest_ratio = 1e-14;
-  const Eigen::SelfAdjointEigenSolver<Matrix3> widths(centred * centred.transpose());
-  if (!(widths.eigenvalues()[0] > smallest_ratio * widths.eigenvalues()[2])) {
-    const Vector3 missing = widths.eigenvectors().col(0);
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "csrbf: the sources are coplanar: none leaves their plane along (%.4g, %.4g, %.4g); add sources off "
-        "that plane",
-        missing.x(), missing.y(), missing.z());
-    throw InvalidInput(text);
-  }
-  Eigen::MatrixXd tail(sources.cols(), 4);
-  tail << Eigen::VectorXd::Ones(sources.cols()), centred.transpose() / centred.norm();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(tail);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(sources.cols(), 4);
-}
-
-struct Solution {
-  Eigen::MatrixXd coefficients;  // n×3
-  Eigen::MatrixXd affine;        // 4×3, in the orthonormal basis
-};
-
-/// [Φ Q; Qᵀ 0] [c; a] = [f; g] by the Schur complement Qᵀ Φ⁻¹ Q.
-class TailedSystem {
- public:
-  TailedSystem(const RadiusGraph& graph, const std::vector<double>& values, const FrontCholesky& factor,
-               const Eigen::MatrixXd& basis)
-      : graph_(graph), values_(values), factor_(factor), basis_(basis), solved_basis_(factor.solve(basis)) {
-    schur_.compute(basis.transpose() * solved_basis_);
-    if (schur_.info() != Eigen::Success) throw SolverError("csrbf: the affine part cannot be separated");
-  }
-
-  Solution solve(const Eigen::MatrixXd& f) const {
-    Solution solution = solve_once(f, Eigen::MatrixXd::Zero(4, f.cols()));
-    constexpr int refinements = 3;
-    for (int pass = 0; pass < refinements; ++pass) {
-      const Solution correction =
-          solve_once(residual(solution, f), -basis_.transpose() * solution.coefficients);
-      solution.coefficients += correction.coefficients;
-      solution.affine += correction.affine;
-    }
-    return solution;
-  }
-
-  Eigen::MatrixXd residual(const Solution& solution, const Eigen::MatrixXd& f) const {
-    Eigen::MatrixXd result = f - basis_ * solution.affine;
-    parallel_for(std::size_t(f.rows()), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-        for (std::size_t entry = graph_.start[i]; entry < graph_.start[i + 1]; ++entry)
-          sum += values_[entry] * solution.coefficients.row(graph_.neighbours[entry]);
-        result.row(Eigen::Index(i)) -= sum;
-      }
-    });
-    return result;
-  }
-
- private:
-  Solution solve_once(const Eigen::MatrixXd& f, const Eigen::MatrixXd& g) const {
-    const Eigen::MatrixXd solved = factor_.solve(f);
-    Solution solution;
-    solution.affine = schur_.solve(basis_.transpose() * solved - g);
-    solution.coefficients = solved - solved_basis_ * solution.affine;
-    return solution;
-  }
-
-  const RadiusGraph& graph_;
-  const std::vector<double>& values_;
-  const FrontCholesky& factor_;
-  const Eigen::MatrixXd& basis_;
-  Eigen::MatrixXd solved_basis_;
-  Eigen::LDLT<Eigen::MatrixXd> schur_;
-};
-
-/// The affine function with the given values at the sources.
-AffineMap affine_through(const Points& sources, const Eigen::MatrixXd& values) {
-  const Vector3 centre = sources.rowwise().mean();
-  const Points centred = sources.colwise() - centre;
-  AffineMap map;
-  map.linear = (centred * centred.transpose()).ldlt().solve(centred * values).transpose();
-  map.offset = values.colwise().mean().transpose() - map.linear * centre;
-  return map;
-}
-
-}  // namespace
-
-CsrbfFit fit_csrbf(const Points& sources, const Points& targets, const CsrbfOptions& options,
-                   const Progress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_pairs(sources, targets);
-  CsrbfFit fit;
-  fit.summary.estimate = estimate_csrbf(sources, options);
-  require_within_limits(fit.summary.estimate, options);
-  const Eigen::MatrixXd basis = affine_basis(sources);
-  progress.step("elastic", 0, 2);
-
-  const RadiusGraph graph = radius_graph(sources, options.lambda);
-  std::vector<double> values(graph.distances.size());
-  parallel_for(values.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
-    for (std::size_t entry = first; entry < last; ++entry)
-      values[entry] = WendlandC4::value(graph.distances[entry] / options.lambda);
-  });
-  const EliminationTree tree(sources, graph, options.lambda);
-  const FrontCholesky factor(tree, graph, values, progress);
-  progress.step("elastic", 1, 2);
-  const TailedSystem system(graph, values, factor, basis);
-  const Eigen::MatrixXd displacements = (targets - sources).transpose();
-  const Solution solution = system.solve(displacements);
-  AffineMap affine = affine_through(sources, basis * solution.affine);
-  affine.linear += Matrix3::Identity();
-  fit.map = std::make_shared<CsrbfMap>(sources, solution.coefficients.transpose(), affine, options.lambda);
-  fit.summary.residual = ((*fit.map)(sources)-targets).colwise().norm().maxCoeff();
-  if (!std::isfinite(fit.summary.residual))
-    throw SolverError("csrbf: the residual is not finite; " + advice(fit.summary.estimate));
-  fit.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  progress.step("elastic", 2, 2);
-  return fit;
-}
 
 std::string to_string(const CsrbfSummary& summary) {
   char text[240];
   std::snprintf(
       text, sizeof text,
-      "csrbf: %zu centres, %.0f entries a row, factor %.3g M entries, condition about %.1e, residual %.3g, "
+      "%zu centres, %.0f entries a row, factor %.3g M entries, condition about %.1e, residual %.3g, "
       "%.2f s",
       summary.estimate.centers, summary.estimate.entries_per_row,
       double(summary.estimate.factor_entries) / 1e6, summary.estimate.condition, summary.residual,
       summary.seconds);
   return text;
+}
+
+std::vector<Figure> figures(const CsrbfSummary& summary) {
+  const CsrbfEstimate& estimate = summary.estimate;
+  return {{"centers", estimate.centers},
+          {"entries_per_row", estimate.entries_per_row},
+          {"factor_entries", estimate.factor_entries},
+          {"condition_estimate", estimate.condition},
+          {"center_residual_max", summary.residual}};
 }
 
 CsrbfMap::CsrbfMap(Points centers, Points coefficients, AffineMap affine, double lambda)
@@ -206,5 +43,22 @@ Points CsrbfMap::displacement(const Points& x) const { return stack_->displaceme
 Points CsrbfMap::displacement_gradient(const Points& x) const { return stack_->gradient(x); }
 
 Support CsrbfMap::support() const { return {{}, {{centers_, lambda_}}}; }
+
+void write_exact(const CsrbfMap& map, ExactMapWriter& writer) {
+  writer.affine(map.affine());
+  writer.number(map.lambda());
+  writer.points(map.centers());
+  writer.points(map.coefficients());
+}
+
+std::shared_ptr<const CsrbfMap> read_csrbf(ExactMapReader& reader) {
+  const AffineMap affine = reader.affine();
+  const double lambda = reader.positive("lambda");
+  Points centers = reader.points("centres");
+  Points coefficients = reader.points("coefficients");
+  reader.end();
+  if (centers.cols() != coefficients.cols()) reject_exact_map("as many coefficients as centres are needed");
+  return std::make_shared<CsrbfMap>(std::move(centers), std::move(coefficients), affine, lambda);
+}
 
 }  // namespace bespoke

@@ -3,12 +3,16 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "bespoke/elastic/elastic_fit.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
 
 namespace bespoke {
 
+class ExactMapReader;
+class ExactMapWriter;
 class LayerStack;
 
 /// What the one-scale system of Eq. 16 would cost; known before anything is factored.
@@ -42,6 +46,7 @@ CsrbfEstimate estimate_csrbf(const Points& sources, const CsrbfOptions& options)
 
 /// One line: centres, entries a row, factor size, condition, residual, seconds.
 std::string to_string(const CsrbfSummary& summary);
+std::vector<Figure> figures(const CsrbfSummary& summary);
 
 /// The paper's elastic map (Eq. 16–17): Σ cᵢ φ(|x − vᵢ|/λ) + a₀ + A x with Wendland's C4 function, the affine
 /// tail by the Schur complement of the sparse Cholesky factor.
@@ -65,6 +70,10 @@ class CsrbfMap : public ElasticMap {
   double lambda_;
   std::shared_ptr<const LayerStack> stack_;
 };
+
+/// Its bytes (exact_map_io.h). Reading throws FormatError.
+void write_exact(const CsrbfMap& map, ExactMapWriter& writer);
+std::shared_ptr<const CsrbfMap> read_csrbf(ExactMapReader& reader);
 
 struct CsrbfFit {
   std::shared_ptr<const CsrbfMap> map;

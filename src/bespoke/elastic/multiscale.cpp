@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "bespoke/elastic/detail/exact_map_bytes.h"
 #include "bespoke/rbf/layer_stack.h"
 
 namespace bespoke {
@@ -70,6 +71,41 @@ std::string to_string(const MultiscaleSummary& summary) {
   }
   std::snprintf(text, sizeof text, ", %.2f s", summary.seconds);
   return line + text;
+}
+
+std::vector<Figure> figures(const MultiscaleSummary& summary) {
+  return {{"lambdas", summary.lambdas},
+          {"centers", summary.centers},
+          {"gradient_bounds", summary.gradient_bounds},
+          {"within_tolerance", summary.within_tolerance}};
+}
+
+void write_exact(const MultiscaleMap& map, ExactMapWriter& writer) {
+  writer.affine(map.affine());
+  writer.integer(std::uint32_t{map.composed()});
+  writer.count(static_cast<Eigen::Index>(map.layers().size()));
+  for (const RbfLayer& layer : map.layers()) {
+    writer.number(layer.lambda);
+    writer.points(layer.centers);
+    writer.points(layer.coefficients);
+  }
+}
+
+std::shared_ptr<const MultiscaleMap> read_multiscale(ExactMapReader& reader) {
+  const AffineMap affine = reader.affine();
+  const auto composed = reader.integer<std::uint32_t>();
+  if (composed > 1) reject_exact_map("neither composed nor summed");
+  constexpr std::size_t smallest_layer = sizeof(double) + 2 * sizeof(std::uint64_t);
+  std::vector<RbfLayer> layers(static_cast<std::size_t>(reader.count(smallest_layer, "layers")));
+  for (RbfLayer& layer : layers) {
+    layer.lambda = reader.positive("lambda");
+    layer.centers = reader.points("centres");
+    layer.coefficients = reader.points("coefficients");
+    if (layer.centers.cols() != layer.coefficients.cols())
+      reject_exact_map("as many coefficients as centres are needed");
+  }
+  reader.end();
+  return std::make_shared<MultiscaleMap>(affine, std::move(layers), composed == 1);
 }
 
 }  // namespace bespoke

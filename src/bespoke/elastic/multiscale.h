@@ -4,12 +4,16 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/elastic/elastic_fit.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
 #include "bespoke/rbf/rbf_layer.h"
 #include "bespoke/statistics.h"
 
 namespace bespoke {
+
+class ExactMapReader;
+class ExactMapWriter;
 
 struct MultiscaleOptions {
   double lambda = 0;     ///< coarsest support radius: the effective distance, > 0, mesh units
@@ -30,6 +34,7 @@ struct MultiscaleSummary {
 
 /// One line.
 std::string to_string(const MultiscaleSummary& summary);
+std::vector<Figure> figures(const MultiscaleSummary& summary);
 
 /// Residual correction over halved scales (Floater–Iske, Wendland), summed: E(x) = affine(x) + Σ u_k(x), or
 /// composed: E = (id + u_n)∘…∘(id + u_1)∘affine, which cannot fold. Layers use Wendland's C2 function.
@@ -53,6 +58,10 @@ class MultiscaleMap : public ElasticMap {
   bool composed_;
   std::unique_ptr<const Evaluators> evaluators_;
 };
+
+/// Its bytes (exact_map_io.h). Reading throws FormatError.
+void write_exact(const MultiscaleMap& map, ExactMapWriter& writer);
+std::shared_ptr<const MultiscaleMap> read_multiscale(ExactMapReader& reader);
 
 struct MultiscaleFit {
   std::shared_ptr<const MultiscaleMap> map;

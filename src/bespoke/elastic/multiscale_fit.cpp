@@ -1,6 +1,5 @@
-#include <Eigen/SVD>
+#include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -11,6 +10,8 @@
 #include "bespoke/rbf/layer_solver.h"
 #include "bespoke/rbf/layer_stack.h"
 #include "bespoke/rbf/point_grid.h"
+#include "bespoke/rigid/affine_alignment.h"
+#include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
@@ -41,25 +42,8 @@ void require_usable(const Points& sources, const Points& targets, const Multisca
                        " levels; there must be one at least");
 }
 
-/// The least-squares affine map of the pairs; the identity along directions in which the sources have no
-/// extent.
-AffineMap least_squares_affine(const Points& sources, const Points& targets) {
-  const Vector3 source_centre = sources.rowwise().mean();
-  const Vector3 target_centre = targets.rowwise().mean();
-  const Points centred = sources.colwise() - source_centre;
-  const Points change = (targets.colwise() - target_centre) - centred;
-  // Squared widths: relative to the largest, what lies below is made of rounding errors.
-  constexpr double smallest_ratio = 1e-12;
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(centred * centred.transpose()),
-                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(smallest_ratio);
-  AffineMap map;
-  map.linear = Matrix3::Identity();
-  if (svd.singularValues()[0] > 0) {
-    const Eigen::MatrixXd right_side = centred * change.transpose();
-    map.linear += Matrix3(svd.solve(right_side)).transpose();
-  }
-  map.offset = target_centre - map.linear * source_centre;
+AffineMap upright_affine(const Points& sources, const Points& targets) {
+  AffineMap map = align_affinely(sources, targets, FlatDirections::of_squared_width_1e_12);
   if (!(map.linear.determinant() > 0))
     throw InvalidInput("multiscale: the affine part of the correspondences has determinant " +
                        std::to_string(map.linear.determinant()) +
@@ -111,7 +95,7 @@ class Fitter {
         targets_(targets),
         options_(options),
         progress_(progress),
-        affine_(least_squares_affine(sources, targets)),
+        affine_(upright_affine(sources, targets)),
         images_(affine_ * sources) {}
 
   MultiscaleFit run() {
@@ -209,10 +193,10 @@ class Fitter {
 
 MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
                              const Progress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   require_usable(sources, targets, options);
   MultiscaleFit fit = Fitter(sources, targets, options, progress).run();
-  fit.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  fit.summary.seconds = watch.seconds();
   return fit;
 }
 

@@ -1,18 +1,34 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "bespoke/elastic/elastic_fit.h"
 #include "bespoke/mapping/elastic_map.h"
-#include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
 
-/// The paper's p-FFD (IV.E, Eq. 18) as a function of position: every source face carries the affine map of
-/// its frame (corner, two edges, normal scaled by the square root of the area ratio) onto the fitted face,
-/// and E(x) blends the faces near x with weights area · (1 − s)³ / s², s = (distance / λ)², that grow without
-/// bound on the face and fall to zero at distance λ; the least-squares affine map of the vertices takes part
-/// with a constant weight, so that E joins it continuously at λ. On the source surface E is the piecewise
-/// linear map onto the fitted one, exactly; there the gradient is the mean of the touching faces'.
+class ExactMapReader;
+class ExactMapWriter;
+
+/// What p-FFD has to say of a fit: it solves nothing. Of both forms.
+struct PffdSummary {
+  std::size_t faces = 0;
+};
+
+/// One line.
+std::string to_string(const PffdSummary& summary);
+std::vector<Figure> figures(const PffdSummary& summary);
+
+/// The paper's p-FFD as printed (IV.E, Eq. 18): E(x) is the mean of the affine maps of the faces whose centre
+/// is nearer to x than 1.5 times the nearest centre, with weights 1/(1e-8 + d³), d the distance of the
+/// centre from x and the constant in mesh units³. A face's map carries its frame (corner, two edges, normal
+/// scaled by the square root of the area ratio) onto the fitted face's.
+///
+/// Farther than λ from the source, where the paper has no product, E is the least-squares affine map of the
+/// vertices. E jumps there and wherever a face enters or leaves the mean; its gradient is that between jumps.
+/// SmoothPffdMap is the form without jumps.
 class PffdMap : public ElasticMap {
  public:
   /// source: reference; fitted: 3×n, its vertices on the target (source frame); lambda > 0, mesh units.
@@ -30,14 +46,16 @@ class PffdMap : public ElasticMap {
   double lambda() const { return lambda_; }         ///< mesh units
 
  private:
-  struct Frames;
-  template <class Take>
-  void for_each_neighbourhood(const Points& x, const Take& take) const;
+  struct Faces;
 
   TriangleMesh source_;
   Points fitted_;
   double lambda_;
-  std::unique_ptr<const Frames> frames_;
+  std::unique_ptr<const Faces> faces_;
 };
+
+/// Its bytes (exact_map_io.h). Reading throws FormatError.
+void write_exact(const PffdMap& map, ExactMapWriter& writer);
+std::shared_ptr<const PffdMap> read_pffd(ExactMapReader& reader);
 
 }  // namespace bespoke

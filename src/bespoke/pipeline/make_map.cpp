@@ -1,11 +1,10 @@
 #include "bespoke/pipeline/make_map.h"
 
-#include <chrono>
 #include <utility>
 
 #include "bespoke/elastic/exact_map_io.h"
-#include "bespoke/pipeline/method_names.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
@@ -20,18 +19,18 @@ Json laplacian_json(const SurfaceFitOptions& options) {
   return json;
 }
 
-std::string options_json(const MakeMapOptions& options, bool given_fitted) {
+std::string recorded_options(const MakeMapOptions& options, bool given_fitted) {
   Json json;
   json["path"] = name_of(rotation_paths, options.path);
   if (!given_fitted) {
-    json["surface_fit"] = name_of(surface_fit_methods, options.fit.surface_fit.method);
+    json["surface_fit"] = name_of(surface_fits, options.fit.surface_fit.method);
     json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
     json["max_iterations"] = options.fit.surface_fit.max_iterations;
     json["epsilon"] = options.fit.surface_fit.epsilon;
     if (options.fit.surface_fit.method == SurfaceFitMethod::laplacian)
       json["laplacian"] = laplacian_json(options.fit.surface_fit);
   }
-  json["elastic"] = name_of(elastic_methods, options.fit.elastic);
+  json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["tolerance"] = options.bake.tolerance;
@@ -40,16 +39,9 @@ std::string options_json(const MakeMapOptions& options, bool given_fitted) {
   return json.dump();
 }
 
-std::string stages_json(const FittedMapping& fit, const BakeSummary& bake) {
+std::string recorded_stages(const FitSummary& summary, const Anchors& anchors) {
   Json stages = Json::array();
-  for (const StageReport& stage : fit.stages) {
-    Json entry = {{"name", stage.name}};
-    entry.update(Json::parse(stage.json));
-    stages.push_back(std::move(entry));
-  }
-  Json entry = {{"name", "bake"}};
-  entry.update(to_json(bake));
-  stages.push_back(std::move(entry));
+  for (StageJson& stage : stages_json(summary, anchors)) stages.push_back(std::move(stage.json));
   return stages.dump();
 }
 
@@ -62,18 +54,16 @@ std::vector<AnchorRecord> anchor_records(const Anchors& anchors, const FittedMap
   return records;
 }
 
-AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit,
-                        const BakeSummary& bake) {
+AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
   AssetRecord record;
   record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
-  record.elastic_method = name_of(elastic_methods, options.fit.elastic);
-  record.surface_fit_method =
-      input.fitted ? "given" : name_of(surface_fit_methods, options.fit.surface_fit.method);
+  record.elastic_method = elastic_method(options.fit.elastic).name;
+  record.surface_fit_method = input.fitted ? "given" : name_of(surface_fits, options.fit.surface_fit.method);
   record.lambda = options.fit.lambda;
   record.tolerance = options.bake.tolerance;
-  record.bake_error = bake.error;
-  record.options_json = options_json(options, input.fitted != nullptr);
-  record.stages_json = stages_json(fit, bake);
+  record.bake_error = fit.summary.bake->error;
+  record.options_json = recorded_options(options, input.fitted != nullptr);
+  record.stages_json = recorded_stages(fit.summary, input.anchors);
   record.anchors = anchor_records(input.anchors, fit);
   record.source = {content_hash(input.source), bounding_box(input.source.vertices)};
   record.target = {content_hash(input.target), bounding_box(input.target.vertices)};
@@ -98,7 +88,7 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   BakeOptions bake_options = options.bake;
   bake_options.surface = &input.source;
   Bake baked = bake(*made.fit.elastic, bake_options, progress);
-  made.bake = baked.summary;
+  made.fit.summary.bake = std::move(baked.summary);
 
   Asset& asset = made.asset;
   asset.target_from_source = made.fit.target_from_source;
@@ -106,13 +96,13 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   asset.affine = made.fit.elastic->affine();
   asset.pyramid = std::move(baked.pyramid);
   asset.certificate = certify(asset.pyramid, asset.affine, 1, progress);
-  asset.record = make_record(input, options, made.fit, made.bake);
+  asset.record = make_record(input, options, made.fit);
   if (options.keep_exact) asset.exact_map = serialize_exact_map(*made.fit.elastic);
 
   progress.check();
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   asset = with_preview(std::move(asset), input.source);
-  made.preview_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  made.preview_seconds = watch.seconds();
   return made;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/bake/bake.h"
 #include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
@@ -31,8 +30,7 @@ struct MakeMapInput {
 
 struct MadeMap {
   Asset asset;
-  FittedMapping fit;
-  BakeSummary bake;
+  FittedMapping fit;  ///< with fit.summary.bake
   double preview_seconds = 0;
 };
 

@@ -1,5 +1,8 @@
 #include "bespoke/pipeline/summary_json.h"
 
+#include <numbers>
+#include <utility>
+
 namespace bespoke {
 
 Json to_json(const Vector3& vector) { return {vector.x(), vector.y(), vector.z()}; }
@@ -61,6 +64,81 @@ Json to_json(const Certificate& certificate) {
           {"least_determinant", certificate.least_determinant},
           {"affine_determinant", certificate.affine_determinant},
           {"places", std::move(places)}};
+}
+
+Json to_json(const RigidSummary& summary) {
+  return {{"pairs_of", summary.by_vertices ? "vertices" : "anchors"},
+          {"pairs", summary.residuals.count},
+          {"rotation_degrees", summary.rotation * 180 / std::numbers::pi},
+          {"residual", to_json(summary.residuals)}};
+}
+
+Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
+  Json suspicious = Json::array();
+  for (const SuspiciousAnchor& anchor : summary.audit.suspicious) {
+    Json entry = {{"index", anchor.index}, {"name", anchor.name}, {"distance", anchor.distance}};
+    if (anchor.swapped_with) entry["swapped_with"] = *anchor.swapped_with;
+    suspicious.push_back(std::move(entry));
+  }
+  Json contradicting = Json::array();
+  for (const ContradictingAnchors& pair : summary.contradicting)
+    contradicting.push_back({{"indices", {pair.first, pair.second}},
+                             {"names", {anchors.pairs[pair.first].name, anchors.pairs[pair.second].name}},
+                             {"apart", pair.apart},
+                             {"asked", pair.asked}});
+  return {{"pairs", summary.residuals.count},
+          {"residual", to_json(summary.residuals)},
+          {"suspicious_anchors", std::move(suspicious)},
+          {"contradicting_anchors", std::move(contradicting)}};
+}
+
+Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
+  return {{"method", entry_of(method).name},
+          {"before", to_json(summary.before)},
+          {"after", to_json(summary.after)},
+          {"iterations", summary.iterations},
+          {"stop_reason", to_string(summary.stop_reason)},
+          {"unmatched_vertices", summary.unmatched_vertices},
+          {"off_surface_anchors", summary.off_surface_anchors},
+          {"stiffness", summary.stiffness},
+          {"similarity_suffices", summary.similarity_suffices},
+          {"matched_boundaries", summary.matched_boundaries},
+          {"mended_vertices", summary.mended_vertices}};
+}
+
+Json to_json(const ElasticSummary& summary) {
+  Json json = {{"method", elastic_method(summary.method).name}};
+  for (const Figure& figure : std::visit([](const auto& found) { return figures(found); }, summary.found))
+    std::visit([&](const auto& value) { json[figure.name] = value; }, figure.value);
+  json["lambda"] = summary.lambda;
+  json["vertex_residual"] = to_json(summary.vertex_residuals);
+  json["unmet_vertices"] = summary.unmet.size();
+  json["anchor_residual"] = to_json(summary.anchor_residuals);
+  json["unreferenced_vertices"] = summary.unreferenced_vertices;
+  json["duplicate_vertices"] = summary.duplicate_vertices;
+  // Only where there are any: the records of all other fits stay as they were.
+  if (summary.anchors_off_surface > 0)
+    json[summary.meets_anchors_off_surface ? "anchors_off_surface" : "anchors_off_surface_left_out"] =
+        summary.anchors_off_surface;
+  return json;
+}
+
+std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anchors) {
+  std::vector<StageJson> stages;
+  const auto add = [&](const char* name, const Json& found, double seconds) {
+    Json json = {{"name", name}};
+    json.update(found);
+    stages.push_back({std::move(json), seconds});
+  };
+  add("rigid", to_json(summary.rigid), summary.rigid.seconds);
+  if (summary.coarse) add("coarse", to_json(*summary.coarse, anchors), summary.coarse->seconds);
+  if (summary.surface)
+    add("surface-fit", to_json(*summary.surface, summary.surface_method), summary.surface->seconds);
+  else
+    add("surface-fit", {{"method", "given"}}, 0);
+  add("elastic", to_json(summary.elastic), summary.elastic.seconds);
+  if (summary.bake) add("bake", to_json(*summary.bake), summary.bake->seconds);
+  return stages;
 }
 
 }  // namespace bespoke

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/types.h"
 
 namespace bespoke {
 

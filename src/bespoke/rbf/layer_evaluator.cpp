@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/rbf/kernels.h"
 
 namespace bespoke {
 namespace {
@@ -17,22 +18,6 @@ constexpr int lanes = LayerEvaluator::lanes;
 
 /// Eight doubles that the compiler keeps in one, two or four registers, by the instruction set.
 using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
-
-/// φ and slope_over_s of kernels.h in terms of s and q = max(0, 1 − s).
-struct C2 {
-  static void value(const Lanes& s, const Lanes& q, Lanes& out) { out = (q * q) * (q * q) * (4 * s + 1); }
-  static void slope_over_s(const Lanes&, const Lanes& q, Lanes& out) { out = -20 * (q * q) * q; }
-};
-struct C4 {
-  static void value(const Lanes& s, const Lanes& q, Lanes& out) {
-    const Lanes q2 = q * q;
-    out = (q2 * q2) * q2 * ((35 * s + 18) * s + 3) * (1.0 / 3.0);
-  }
-  static void slope_over_s(const Lanes& s, const Lanes& q, Lanes& out) {
-    const Lanes q2 = q * q;
-    out = (-56.0 / 3.0) * (q2 * q2) * q * (5 * s + 1);
-  }
-};
 
 /// `centers`: six doubles each, place and coefficient.
 struct Sum {
@@ -110,8 +95,8 @@ AddUp fastest() {
 
 AddUp fastest(Wendland function, Order order) {
   static const AddUp table[2][2] = {
-      {fastest<C2, Order::value>(), fastest<C2, Order::gradient>()},
-      {fastest<C4, Order::value>(), fastest<C4, Order::gradient>()},
+      {fastest<WendlandC2, Order::value>(), fastest<WendlandC2, Order::gradient>()},
+      {fastest<WendlandC4, Order::value>(), fastest<WendlandC4, Order::gradient>()},
   };
   return table[function == Wendland::c4][order == Order::gradient];
 }

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <vector>
 
-#include "bespoke/pipeline/method_names.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -20,7 +19,9 @@ std::string number(double value) {
 }
 
 std::string tuple(const Vector3& v) {
-  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", v.x(), v.y(), v.z());
+  return text;
 }
 
 std::string rows(const Matrix3& matrix) {

@@ -7,9 +7,10 @@
 namespace bespoke {
 namespace {
 
-Json stage(const std::string& name, double seconds, const Json& found) {
-  Json json = {{"name", name}, {"seconds", seconds}};
-  json.update(found);
+/// The seconds after the name.
+Json timed(const Json& stage, double seconds) {
+  Json json = {{"name", stage["name"]}, {"seconds", seconds}};
+  json.update(stage);
   return json;
 }
 
@@ -37,25 +38,26 @@ std::size_t peak_memory() {
 
 std::string fit_report(const MakeMapInput& input, const MadeMap& made, double seconds) {
   Json stages = Json::array();
-  for (const StageReport& found : made.fit.stages)
-    stages.push_back(stage(found.name, found.seconds, Json::parse(found.json)));
+  for (const StageJson& stage : stages_json(made.fit.summary, input.anchors))
+    stages.push_back(timed(stage.json, stage.seconds));
+  const BakeSummary& bake = *made.fit.summary.bake;
+  stages.back()["refine_seconds"] = bake.refine_seconds;
+  stages.back()["measure_seconds"] = bake.measure_seconds;
+  stages.back()["mend_seconds"] = bake.mend_seconds;
   const Certificate& certificate = made.asset.certificate;
-  Json bake = to_json(made.bake);
-  bake["refine_seconds"] = made.bake.refine_seconds;
-  bake["measure_seconds"] = made.bake.measure_seconds;
-  bake["mend_seconds"] = made.bake.mend_seconds;
-  stages.push_back(stage("bake", made.bake.seconds, std::move(bake)));
-  stages.push_back(stage("certificate", certificate.seconds, to_json(certificate)));
-  stages.push_back(stage("preview", made.preview_seconds, Json::object()));
+  Json certified = {{"name", "certificate"}};
+  certified.update(to_json(certificate));
+  stages.push_back(timed(certified, certificate.seconds));
+  stages.push_back(timed({{"name", "preview"}}, made.preview_seconds));
 
   Json json = {{"command", "fit"},
                {"unit", made.asset.record.unit},
                {"source", model(input.source)},
                {"target", model(input.target)},
                {"options", Json::parse(made.asset.record.options_json)},
-               {"anchor_residuals", to_json(made.fit.anchor_residuals)},
-               {"vertex_residuals", to_json(made.fit.vertex_residuals)},
-               {"unmet_vertices", unmet_vertices(made.fit.unmet)},
+               {"anchor_residuals", to_json(made.fit.summary.elastic.anchor_residuals)},
+               {"vertex_residuals", to_json(made.fit.summary.elastic.vertex_residuals)},
+               {"unmet_vertices", unmet_vertices(made.fit.summary.elastic.unmet)},
                {"stages", std::move(stages)},
                {"voxels", made.asset.pyramid.voxel_count()},
                {"seconds", seconds},

@@ -32,6 +32,10 @@ RigidTransform inverse(const RigidTransform& transform) {
   return {transposed, -(transposed * transform.translation)};
 }
 
+double rotation_angle(const RigidTransform& transform) {
+  return Eigen::AngleAxisd(transform.rotation).angle();
+}
+
 Matrix3 rotation_at(const Matrix3& rotation, RotationPath path, double t) {
   if (!std::isfinite(t)) throw InvalidInput("rotation at t = " + std::to_string(t) + ": t must be finite");
   if (t == 0) return Matrix3::Identity();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+
+#include "bespoke/named.h"
 #include "bespoke/types.h"
 
 namespace bespoke {
@@ -19,11 +22,17 @@ struct RigidTransform {
 /// Γ⁻¹: y ↦ Rᵀ (y − T). (The paper writes R(−θ), which with Euler angles is not the inverse.)
 RigidTransform inverse(const RigidTransform& transform);
 
+/// Of the rotation about its one axis, radians, 0 … π.
+double rotation_angle(const RigidTransform& transform);
+
 /// How the rotation grows from the identity at t = 0 to R at t = 1.
 enum class RotationPath {
   geodesic,  ///< exp(t log R): constant angular speed about one axis
   euler,     ///< Eq. 1 as printed: the three Euler angles of R = Rz Ry Rx, each times t
 };
+
+inline constexpr std::array rotation_paths{Named<RotationPath>{"geodesic", RotationPath::geodesic},
+                                           Named<RotationPath>{"euler", RotationPath::euler}};
 
 /// R(t). At t = 0 the identity, at t = 1 `rotation`, exactly.
 Matrix3 rotation_at(const Matrix3& rotation, RotationPath path, double t);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/named.h"
 #include "bespoke/progress.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/surface_fit_methods.h"
@@ -18,6 +20,10 @@ enum class BoundaryRule {
   free,       ///< goes where the surface around it goes: for models that were cut at different places
   matched,    ///< meets the target's boundary
 };
+
+inline constexpr std::array boundary_rules{Named<BoundaryRule>{"auto", BoundaryRule::automatic},
+                                           Named<BoundaryRule>{"free", BoundaryRule::free},
+                                           Named<BoundaryRule>{"matched", BoundaryRule::matched}};
 
 /// What the laplacian fit adds to Eq. 11–15 for real meshes. All false is the printed method.
 struct LaplacianAdditions {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// What an elastic map is fitted to, source frame, mesh units. Methods that interpolate points take `sources`
+/// and `targets`; methods that carry faces take the two meshes.
+struct ElasticInput {
+  const TriangleMesh& source;
+  const Points& fitted;   ///< 3×n: the source's vertices on the target
+  const Points& sources;  ///< 3×k: distinct places
+  const Points& targets;  ///< 3×k: where they go
+};
+
+struct ElasticOptions {
+  double lambda = 0;  ///< effective distance, > 0, mesh units
+  double fit_tolerance =
+      0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
+  std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
+};
+
+/// A number, or a list of them, that a method found, under the name that reports and assets give it.
+struct Figure {
+  std::string name;
+  std::variant<double, std::size_t, std::vector<double>, std::vector<std::size_t>> value;
+};
+
+}  // namespace bespoke

@@ -1,0 +1,60 @@
+#include "bespoke/elastic/elastic_methods.h"
+
+#include <string>
+#include <utility>
+
+namespace bespoke {
+namespace {
+
+template <class Map, std::shared_ptr<const Map> (*read_map)(ExactMapReader&)>
+constexpr StoredMapType stored(std::uint32_t number) {
+  return {number, [](const ElasticMap& map) { return dynamic_cast<const Map*>(&map) != nullptr; },
+          [](const ElasticMap& map, ExactMapWriter& writer) {
+            write_exact(dynamic_cast<const Map&>(map), writer);
+          },
+          [](ExactMapReader& reader) -> std::shared_ptr<const ElasticMap> { return read_map(reader); }};
+}
+
+ElasticFit csrbf(const ElasticInput& input, const ElasticOptions& options, const Progress& progress) {
+  CsrbfOptions csrbf;
+  csrbf.lambda = options.lambda;
+  csrbf.max_memory = options.max_memory;
+  CsrbfFit fit = fit_csrbf(input.sources, input.targets, csrbf, progress);
+  return {std::move(fit.map), std::move(fit.summary)};
+}
+
+template <bool composed>
+ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, const Progress& progress) {
+  MultiscaleOptions multiscale;
+  multiscale.lambda = options.lambda;
+  multiscale.tolerance = options.fit_tolerance;
+  multiscale.composed = composed;
+  MultiscaleFit fit = fit_multiscale(input.sources, input.targets, multiscale, progress);
+  return {std::move(fit.map), std::move(fit.summary)};
+}
+
+template <class Map>
+ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const Progress&) {
+  return {std::make_shared<const Map>(input.source, input.fitted, options.lambda),
+          PffdSummary{static_cast<std::size_t>(input.source.faces.cols())}};
+}
+
+}  // namespace
+
+constinit const std::array<ElasticMethodRow, 5> elastic_methods{
+    {{"csrbf", ElasticMethod::csrbf, csrbf, true, stored<CsrbfMap, read_csrbf>(1)},
+     {"multiscale", ElasticMethod::multiscale, multiscale<false>, true,
+      stored<MultiscaleMap, read_multiscale>(2)},
+     {"diffeomorphic", ElasticMethod::diffeomorphic, multiscale<true>, true,
+      stored<MultiscaleMap, read_multiscale>(2)},
+     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, stored<PffdMap, read_pffd>(4)},
+     {"pffd-smooth", ElasticMethod::pffd_smooth, pffd<SmoothPffdMap>, false,
+      stored<SmoothPffdMap, read_pffd_smooth>(3)}}};
+
+const ElasticMethodRow& elastic_method(ElasticMethod method) {
+  for (const ElasticMethodRow& row : elastic_methods)
+    if (row.value == method) return row;
+  throw InvalidInput("elastic method " + std::to_string(static_cast<int>(method)) + " has no row");
+}
+
+}  // namespace bespoke

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <variant>
+
+#include "bespoke/elastic/csrbf.h"
+#include "bespoke/elastic/elastic_fit.h"
+#include "bespoke/elastic/multiscale.h"
+#include "bespoke/elastic/pffd.h"
+#include "bespoke/elastic/pffd_smooth.h"
+#include "bespoke/named.h"
+
+namespace bespoke {
+
+enum class ElasticMethod {
+  csrbf,          ///< the paper's, one scale (Eq. 16)
+  multiscale,     ///< residual correction over halved scales
+  diffeomorphic,  ///< the same layers composed, each a diffeomorphism
+  pffd,           ///< the paper's p-FFD as printed (Eq. 18), with jumps
+  pffd_smooth,    ///< p-FFD with weights that make it continuous
+};
+
+/// What the method found; each has to_string and figures.
+using ElasticFindings = std::variant<CsrbfSummary, MultiscaleSummary, PffdSummary>;
+
+struct ElasticFit {
+  std::shared_ptr<const ElasticMap> map;
+  ElasticFindings found;
+};
+
+/// How a class of maps is kept (exact_map_io.h).
+struct StoredMapType {
+  std::uint32_t number;  ///< in the bytes; never used again for another class
+  bool (*holds)(const ElasticMap& map);
+  void (*write)(const ElasticMap& map, ExactMapWriter& writer);
+  std::shared_ptr<const ElasticMap> (*read)(ExactMapReader& reader);
+};
+
+/// All that is known of a method elsewhere: the command line, the asset's record and the exact map's bytes
+/// go through this table.
+struct ElasticMethodRow {
+  std::string_view name;
+  ElasticMethod value;
+  ElasticFit (*fit)(const ElasticInput& input, const ElasticOptions& options, const Progress& progress);
+  /// Whether it meets points that are no vertices: ElasticInput::sources may hold any others.
+  bool meets_points;
+  StoredMapType stored;
+};
+
+extern const std::array<ElasticMethodRow, 5> elastic_methods;
+
+/// Throws InvalidInput for a value without a row.
+const ElasticMethodRow& elastic_method(ElasticMethod method);
+
+}  // namespace bespoke

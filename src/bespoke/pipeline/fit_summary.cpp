@@ -1,0 +1,54 @@
+#include "bespoke/pipeline/fit_summary.h"
+
+#include <cstdio>
+#include <numbers>
+
+namespace bespoke {
+
+std::string to_string(const RigidSummary& summary) {
+  char line[300];
+  std::snprintf(line, sizeof line, "%zu %s, turned by %.4g degrees, residual p95 %.4g max %.4g",
+                summary.residuals.count, summary.by_vertices ? "vertices" : "anchors",
+                summary.rotation * 180 / std::numbers::pi, summary.residuals.p95, summary.residuals.max);
+  return line;
+}
+
+std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%zu anchors, residual p95 %.4g max %.4g", summary.residuals.count,
+                summary.residuals.p95, summary.residuals.max);
+  std::string line = text;
+  if (!summary.audit.suspicious.empty()) line += "; suspicious: " + to_string(summary.audit, anchors);
+  return line;
+}
+
+std::string to_string(const ElasticSummary& summary) {
+  std::string line = std::string(elastic_method(summary.method).name) + ": " +
+                     std::visit([](const auto& found) { return to_string(found); }, summary.found);
+  char text[300];
+  std::snprintf(text, sizeof text, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
+                summary.vertex_residuals.p95, summary.vertex_residuals.max, summary.anchor_residuals.max);
+  line += text;
+  if (!summary.unmet.empty()) line += "; " + to_string(summary.unmet);
+  if (summary.unreferenced_vertices > 0)
+    line += "; " + std::to_string(summary.unreferenced_vertices) + " unreferenced vertices left out";
+  if (summary.duplicate_vertices > 0)
+    line += "; " + std::to_string(summary.duplicate_vertices) + " duplicate vertices merged";
+  if (summary.anchors_off_surface > 0)
+    line += "; " + std::to_string(summary.anchors_off_surface) + " anchors off the surface" +
+            (summary.meets_anchors_off_surface ? " met as points" : " left out: p-FFD knows faces only");
+  return line;
+}
+
+std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
+  std::vector<StageLine> lines{{"rigid", to_string(summary.rigid)}};
+  if (summary.coarse) lines.push_back({"coarse", to_string(*summary.coarse, anchors)});
+  lines.push_back({"surface-fit", summary.surface ? std::string(entry_of(summary.surface_method).name) +
+                                                        ": " + to_string(*summary.surface)
+                                                  : "given: the fitted mesh as it is"});
+  lines.push_back({"elastic", to_string(summary.elastic)});
+  if (summary.bake) lines.push_back({"bake", to_string(*summary.bake)});
+  return lines;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/anchors/anchor_audit.h"
+#include "bespoke/anchors/contradicting_anchors.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/pipeline/unmet_vertices.h"
+#include "bespoke/statistics.h"
+#include "bespoke/surface_fit/surface_fit.h"
+
+namespace bespoke {
+
+struct RigidSummary {
+  bool by_vertices = false;  ///< pairs of vertices, for want of anchors
+  double rotation = 0;       ///< radians, 0 … π
+  Statistics residuals;      ///< |Γ(q) − q'|, mesh units
+  double seconds = 0;
+};
+
+struct CoarseSummary {
+  Statistics residuals;  ///< of the anchors after the warp, mesh units
+  AnchorAudit audit;
+  std::vector<ContradictingAnchors> contradicting;
+  double seconds = 0;
+};
+
+struct ElasticSummary {
+  ElasticMethod method = ElasticMethod::diffeomorphic;
+  ElasticFindings found;           ///< what the method says itself
+  double lambda = 0;               ///< effective distance, mesh units
+  Statistics vertex_residuals;     ///< |E(vᵢ) − v'ᵢ|, mesh units
+  Statistics anchor_residuals;     ///< |Γ(E(q)) − q'|, mesh units
+  std::vector<UnmetVertex> unmet;  ///< beyond a fit tolerance above 0; none asked for at 0
+  std::size_t unreferenced_vertices = 0;
+  std::size_t duplicate_vertices = 0;
+  std::size_t anchors_off_surface = 0;    ///< exact ones, beyond the fit tolerance from the source
+  bool meets_anchors_off_surface = true;  ///< p-FFD does not: it knows faces only
+  double seconds = 0;
+};
+
+/// What every stage of a fit found.
+struct FitSummary {
+  RigidSummary rigid;
+  std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given
+  std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
+  SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
+  ElasticSummary elastic;
+  std::optional<BakeSummary> bake;  ///< empty without make_map
+};
+
+/// One line each. Anchors: those of the fit, for their names.
+std::string to_string(const RigidSummary& summary);
+std::string to_string(const CoarseSummary& summary, const Anchors& anchors);
+std::string to_string(const ElasticSummary& summary);
+
+/// A stage that ran.
+struct StageLine {
+  std::string name;  ///< "rigid", "coarse", "surface-fit", "elastic", "bake"
+  std::string line;
+};
+
+/// In their order.
+std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
+
+}  // namespace bespoke
