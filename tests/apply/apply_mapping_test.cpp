@@ -62,6 +62,26 @@ TEST(ApplyMapping, FollowsEquationOneInBetween) {
   EXPECT_LT((apply_mapping(map, some_motion(), x, {t}).frames[0] - expected).norm(), 1e-13);
 }
 
+TEST(ApplyMapping, FollowsEquationNineteenAtTheMovingPoint) {
+  const BumpMap map;
+  const Points x = some_points();
+  const RigidTransform gamma = some_motion();
+  const std::vector<double> times{0, 0.4, 1};
+  const AppliedPoints applied =
+      apply_mapping(map, gamma, x, times, {RotationPath::geodesic, MappingOrder::moving_point});
+  EXPECT_EQ(applied.frames[0], x);
+  EXPECT_LT((applied.frames[2] - gamma * map(x)).norm(), 1e-14);
+  const double t = times[1];
+  const Matrix3 rotation = Eigen::AngleAxisd(0.7 * t, Vector3(1, 1, 0).normalized()).toRotationMatrix();
+  const Points y = (rotation * x).colwise() + t * gamma.translation;
+  const Points expected = (1 - t) * y + t * (gamma * map(inverse(gamma) * y));
+  EXPECT_LT((applied.frames[1] - expected).norm(), 1e-13);
+  // E asked for at the resting points is another motion.
+  const Points at_rest =
+      apply_mapping(map, gamma, x, {t}, {RotationPath::geodesic, MappingOrder::rigid_first}).frames[0];
+  EXPECT_GT((applied.frames[1] - at_rest).norm(), 0.1);
+}
+
 TEST(ApplyMapping, CountsWhoTookTheAffineFallback) {
   const ApplySummary summary = apply_mapping(BumpMap(), some_motion(), some_points(), {1}).summary;
   EXPECT_EQ(summary.points, 4u);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -69,7 +70,7 @@ TEST_F(FitCommand, OtherProgramsReadTheAsset) {
 }
 
 TEST_F(FitCommand, ChoosesTheMethods) {
-  for (const std::string elastic : {"csrbf", "pffd"}) {
+  for (const std::string elastic : {"csrbf", "pffd-smooth"}) {
     ASSERT_EQ(pair_.fit("map.vdb", {"--surface-fit", "laplacian", "--elastic", elastic}).exit_code, 0);
     EXPECT_EQ(info("map.vdb")["elastic"], elastic);
     EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
@@ -82,17 +83,50 @@ TEST_F(FitCommand, NamesTheMethodItDoesNotKnow) {
 }
 
 TEST_F(FitCommand, PaperIsThePrintedMethod) {
-  ASSERT_EQ(pair_.fit("map.vdb", {"--paper"}).exit_code, 0);
-  EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
-  EXPECT_EQ(info("map.vdb")["elastic"], "csrbf");
-  EXPECT_EQ(info("map.vdb")["path"], "euler");
-  const json printed = info("map.vdb")["options"]["laplacian"];
-  EXPECT_EQ(printed.size(), 6u);
-  for (const json& added : printed) EXPECT_EQ(added, false);
+  ASSERT_EQ(
+      pair_.fit("map.vdb", {"--paper", "--keep-exact", "--fitted-out", pair_.file("fitted.obj")}).exit_code,
+      0);
+  const json found = info("map.vdb");
+  // Eq. 11-15 with nothing added: the printed weight 1, the printed stopping rule.
+  EXPECT_EQ(found["surface_fit"], "laplacian");
+  const json& additions = found["options"]["laplacian"];
+  EXPECT_EQ(additions.size(), 6u);
+  for (const auto& [name, on] : additions.items()) EXPECT_EQ(on, false) << name;
   ASSERT_EQ(pair_.fit("own.vdb", {"--surface-fit", "laplacian"}).exit_code, 0);
   const json own = info("own.vdb")["options"]["laplacian"];
   EXPECT_EQ(own.size(), 6u);
   for (const json& added : own) EXPECT_EQ(added, true);
+  EXPECT_EQ(found["stages"][2]["name"], "surface-fit");
+  EXPECT_EQ(found["stages"][2]["stiffness"], 1);
+
+  // Eq. 16-17: E takes every source vertex exactly to its fitted place.
+  const auto carried = [&](const std::vector<std::string>& extra) {
+    std::vector<std::string> arguments{"apply", pair_.file("map.vdb"),   pair_.file("source.obj"),
+                                       "-o",    pair_.file("moved.obj"), "--exact"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    EXPECT_EQ(bespoke(arguments).exit_code, 0);
+    return read_obj_points(pair_.file("moved.obj"));
+  };
+  EXPECT_EQ(found["elastic"], "csrbf");
+  const Points x = read_obj_points(pair_.file("source.obj")), arrived = carried({});
+  const double rounding = 4 * float_rounding(arrived);
+  EXPECT_LE((arrived - read_obj_points(pair_.file("fitted.obj"))).colwise().norm().maxCoeff(), rounding);
+
+  // Eq. 1 half-way, each Euler angle halved.
+  EXPECT_EQ(found["path"], "euler");
+  Matrix3 rotation;
+  for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = found["rotation"][i / 3][i % 3];
+  const json& t = found["translation"];
+  const Vector3 translation(t[0], t[1], t[2]);
+  const Matrix3 half_turned =
+      (Eigen::AngleAxisd(std::atan2(rotation(1, 0), rotation(0, 0)) / 2, Vector3::UnitZ()) *
+       Eigen::AngleAxisd(std::asin(-rotation(2, 0)) / 2, Vector3::UnitY()) *
+       Eigen::AngleAxisd(std::atan2(rotation(2, 1), rotation(2, 2)) / 2, Vector3::UnitX()))
+          .toRotationMatrix();
+  const Points elastic = rotation.transpose() * (arrived.colwise() - translation);
+  const Points expected = (half_turned * (x + elastic) / 2).colwise() + translation / 2;
+  EXPECT_LE((carried({"--t", "0.5"}) - expected).colwise().norm().maxCoeff(), rounding);
+
   EXPECT_EQ(pair_.fit("map.vdb", {"--paper", "--elastic", "pffd"}).exit_code, 1);
 }
 
@@ -214,6 +248,16 @@ TEST_F(FitCommand, AddsTheCornersOfTheBoxes) {
   ASSERT_EQ(pair_.fit("map.vdb", {"--paper", "--add-corners"}).exit_code, 0);
   EXPECT_EQ(info("map.vdb")["anchors"].size(), 22u);
   EXPECT_EQ(info("map.vdb")["anchors"][14]["name"], "corner_000");
+}
+
+// Fig. 5: corners lie far off the surface, and the map meets them.
+TEST_F(FitCommand, MeetsTheCornersOfTheBoxes) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--add-corners", "--keep-exact"}).exit_code, 0);
+  const json found = info("map.vdb");
+  ASSERT_EQ(found["anchors"].size(), 22u);
+  EXPECT_GE(found["stages"][3]["anchors_off_surface"], 8);
+  for (std::size_t i = 14; i < 22; ++i)
+    EXPECT_LE(found["anchors"][i]["residual"], found["options"]["fit_tolerance"]) << found["anchors"][i];
 }
 
 // The target is turned: corners of its box as it stands would tear the map apart.
@@ -379,7 +423,8 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
     for (const char* side : {"a", "b"})
       for (json& coordinate : anchor[side]) coordinate = 10 * coordinate.get<double>();
   write_text(pair_.file("anchors.json"), anchors.dump());
-  const ProgramResult fit = pair_.fit("map.vdb", {"--quiet", "--elastic", "pffd", "--voxel-size", "20%"});
+  const ProgramResult fit =
+      pair_.fit("map.vdb", {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));
@@ -394,7 +439,7 @@ TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {
   twin["b"][1] = twin["b"][1].get<double>() + 0.5;
   anchors["pairs"].push_back(twin);
   write_text(pair_.file("anchors.json"), anchors.dump());
-  const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd", "--voxel-size", "20%"};
+  const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
   ProgramResult fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("and \"twin\" ("));
@@ -453,14 +498,16 @@ TEST_F(FitCommand, AdvisesALambdaThatWorksWhenTheSystemIsTooIllConditioned) {
 }
 
 TEST_F(FitCommand, AdvisesAVoxelSizeAndAToleranceThatFitTheMemory) {
-  std::vector<std::string> options{"--elastic", "pffd", "--max-memory", "40MB", "--voxel-size", "0.1%"};
+  std::vector<std::string> options{"--elastic", "pffd-smooth",  "--max-memory",
+                                   "40MB",      "--voxel-size", "0.1%"};
   const ProgramResult refused = pair_.fit("map.vdb", options);
   expect_refusal(refused, 4, "the limit is ");
   options.back() = std::to_string(number_after(refused.err, "; voxels of "));
   EXPECT_EQ(pair_.fit("map.vdb", options).exit_code, 0) << refused.err;
-  expect_refusal((std::filesystem::remove(pair_.file("map.vdb")),
-                  pair_.fit("map.vdb", {"--elastic", "pffd", "--max-memory", "1MB", "--voxel-size", "1%"})),
-                 4, "no voxel size fits, allow at least");
+  expect_refusal(
+      (std::filesystem::remove(pair_.file("map.vdb")),
+       pair_.fit("map.vdb", {"--elastic", "pffd-smooth", "--max-memory", "1MB", "--voxel-size", "1%"})),
+      4, "no voxel size fits, allow at least");
 }
 
 TEST_F(FitCommand, AdvisesAToleranceThatFitsTheMemory) {

@@ -319,7 +319,7 @@ TEST_F(BadPairs, ASourceWithoutArea) {
                  "the source of the surface fitting has no area");
   expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
                           pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "-q", "--surface-fit",
-                          "laplacian", "--elastic", "pffd"}),
+                          "laplacian", "--elastic", "pffd-smooth"}),
                  2, "no face of the source has any area");
 }
 

@@ -75,7 +75,7 @@ TEST_F(EverySubcommand, GivesTheSameBytesOnAnyNumberOfThreads) {
   };
   for (const Job& job :
        {Job{fit("p.vdb", {"--paper", "--keep-exact"}), "p.vdb"},
-        Job{fit("f.vdb", {"--elastic", "pffd", "--keep-exact"}), "f.vdb"},
+        Job{fit("f.vdb", {"--elastic", "pffd-smooth", "--keep-exact"}), "f.vdb"},
         Job{fit("m.vdb", {"--elastic", "multiscale", "--fitted-out", file("m.ply")}), "m.ply"},
         Job{apply("a.obj"), "a.obj"}, Job{invert("i.vdb"), "i.vdb"}, Job{compose("c.vdb"), "c.vdb"},
         Job{check(), ""}, Job{measure(), ""}, Job{samples("s"), "s/shoe/source.obj"}}) {
@@ -123,7 +123,7 @@ TEST_F(EverySubcommand, LeavesNothingWhenMemoryRunsOut) {
   const Arguments before = pair_.files();
   // Some 24 million voxels, which --max-memory allows, in 400 MB.
   Arguments all{"sh", "-c", R"(ulimit -v 400000; exec "$0" "$@")", BESPOKE_COMMAND};
-  for (const std::string& argument : fit("x.vdb", {"--elastic", "pffd", "--voxel-size", "0.2%", "-q"}))
+  for (const std::string& argument : fit("x.vdb", {"--elastic", "pffd-smooth", "--voxel-size", "0.2%", "-q"}))
     all.push_back(argument);
   const ProgramResult result = run_program(all);
   EXPECT_EQ(result.exit_code, 4);

@@ -167,7 +167,7 @@ void add_apply_command(CLI::App& app) {
   add_name_option(*apply, "--path", arguments->path, rotation_paths,
                   "How the rotation grows with t (default: as stored in the asset)");
   add_name_option(*apply, "--order", arguments->order, mapping_orders,
-                  "In which order the rigid and the elastic part act; the last two are for comparison "
+                  "In which order the rigid and the elastic part act; all but the first are for comparison "
                   "(default: elastic-first)");
   CLI::Option* exact = apply->add_flag("--exact", arguments->exact,
                                        "Evaluate the exact map that --keep-exact stored, not the grids");

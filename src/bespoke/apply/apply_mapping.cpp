@@ -1,12 +1,12 @@
 #include "bespoke/apply/apply_mapping.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
@@ -22,6 +22,11 @@ void require_finite(const Points& x, const std::vector<double>& times) {
   for (std::size_t i = 0; i < times.size(); ++i)
     if (!std::isfinite(times[i]))
       throw InvalidInput("time " + std::to_string(i) + " is not finite: " + std::to_string(times[i]));
+}
+
+/// Whether elastic_argument answers x itself.
+bool is_asked_at_rest(double t, const MotionOptions& motion) {
+  return motion.order != MappingOrder::moving_point || t == 0 || t == 1;
 }
 
 std::size_t count_nonzero(const Points& u) {
@@ -43,9 +48,9 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
                             const Points& x, const std::vector<double>& times, const MotionOptions& motion) {
   require_finite(x, times);
   AppliedPoints applied;
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   const Points u = elastic.displacement(x);
-  applied.summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  applied.summary.seconds = watch.lap();
 
   applied.frames.assign(times.size(), Points(3, x.cols()));
   const AffineMap affine = elastic.affine();
@@ -59,9 +64,19 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
     const Points image = affine * chunk + u_chunk;
     in_band[begin / points_per_chunk] = count_nonzero(u_chunk);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
-      applied.frames[frame].middleCols(first, size) =
-          move_points(chunk, image, target_from_source, times[frame], motion);
+      if (is_asked_at_rest(times[frame], motion))
+        applied.frames[frame].middleCols(first, size) =
+            move_points(chunk, image, target_from_source, times[frame], motion);
   });
+  // Every t has a lookup of its own where E is asked for at points that move.
+  for (std::size_t frame = 0; frame < times.size(); ++frame) {
+    if (is_asked_at_rest(times[frame], motion)) continue;
+    const Points argument = elastic_argument(x, target_from_source, times[frame], motion);
+    watch.lap();
+    const Points image = elastic(argument);
+    applied.summary.seconds += watch.lap();
+    applied.frames[frame] = move_points(x, image, target_from_source, times[frame], motion);
+  }
   applied.summary.points = count;
   applied.summary.in_band = std::accumulate(in_band.begin(), in_band.end(), std::size_t{0});
   applied.summary.affine_only = count - applied.summary.in_band;

@@ -10,9 +10,9 @@ namespace bespoke {
 
 struct ApplySummary {
   std::size_t points = 0;
-  std::size_t in_band = 0;      ///< u ≠ 0
-  std::size_t affine_only = 0;  ///< u = 0: the affine fallback
-  double seconds = 0;           ///< of the lookup
+  std::size_t in_band = 0;      ///< u(x) ≠ 0
+  std::size_t affine_only = 0;  ///< u(x) = 0: the affine fallback
+  double seconds = 0;           ///< of the lookups
 };
 
 /// One line.
@@ -23,8 +23,9 @@ struct AppliedPoints {
   ApplySummary summary;
 };
 
-/// Ψ(t) of the columns of x (3×n, source frame, mesh units) for every t, from one lookup of E. The result is
-/// in the target frame at t = 1. Throws InvalidInput for non-finite points or times, naming the first.
+/// Ψ(t) of the columns of x (3×n, source frame, mesh units) for every t, from one lookup of E (and one more
+/// for every t between in the order of the moving point). The result is in the target frame at t = 1. Throws
+/// InvalidInput for non-finite points or times, naming the first.
 AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& target_from_source,
                             const Points& x, const std::vector<double>& times,
                             const MotionOptions& motion = {});
