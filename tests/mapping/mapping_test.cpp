@@ -113,7 +113,7 @@ TEST(MovingPoint, PartsFromThePapersOwnOrderByAKnownVector) {
   const Vector3 translation(3, -1, 2);
   const RigidTransform gamma{Matrix3::Identity(), translation};
   constexpr double s = 1.4;
-  const auto scaling = [](const Points& points) -> Points { return s * points; };
+  const auto scaling = [s](const Points& points) -> Points { return s * points; };
   for (const double t : {0.25, 0.5, 0.75}) {
     const Points difference = psi(scaling, x, gamma, t, MappingOrder::moving_point) -
                               psi(scaling, x, gamma, t, MappingOrder::elastic_first);

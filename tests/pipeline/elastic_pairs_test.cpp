@@ -70,7 +70,8 @@ struct Scene {
   Scene() {
     const Vector3 radii(1.1, 1, 0.9);
     fitted.vertices = radii.asDiagonal() * source.vertices;
-    for (const auto& corner : shapes::icosphere(0).vertices.colwise())
+    const TriangleMesh icosahedron = shapes::icosphere(0);
+    for (const auto& corner : icosahedron.vertices.colwise())
       anchors.pairs.push_back({"", corner, radii.asDiagonal() * Vector3(corner)});
     options.lambda = 0.5;
     options.fit_tolerance = tolerance;
