@@ -56,7 +56,9 @@ void table_one(benchmark::State& state) {
 }
 
 BENCHMARK(table_one)
-    ->ArgsProduct({benchmark::CreateDenseRange(0, 4, 1), {0, 1}, benchmark::CreateDenseRange(0, std::int64_t(elastic_methods.size()) - 1, 1)})
+    ->ArgsProduct({benchmark::CreateDenseRange(0, 4, 1),
+                   {0, 1},
+                   benchmark::CreateDenseRange(0, std::int64_t(elastic_methods.size()) - 1, 1)})
     ->Iterations(1)
     ->Unit(benchmark::kSecond);
 
