@@ -6,6 +6,7 @@
 #include <map>
 
 #include "bespoke/mesh/closest_point.h"
+#include "support/instruction_sets.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -64,6 +65,21 @@ TEST(FaceDistances, IsZeroOnTheFacesUpToRounding) {
     EXPECT_GE(near.size(), 5u);
     for (const FaceDistances::Near& at : near) EXPECT_LT(at.squared_distance, 1e-30);
   }
+}
+
+TEST(FaceDistances, GivesTheSameBitsWithEveryInstructionSet) {
+  const FaceDistances distances(triangles(shapes::icosphere(3)), 0.4);
+  const Points x = 1.5 * test::random_points(200, 5);
+  test::expect_same_bits_with_every_instruction_set([&] {
+    FaceDistances::Scratch scratch;
+    std::vector<double> numbers;
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      for (const FaceDistances::Near& near : distances.find(x.col(i), scratch)) {
+        numbers.push_back(near.place);
+        numbers.push_back(near.squared_distance);
+      }
+    return numbers;
+  });
 }
 
 TEST(FaceDistances, FindsNothingFarAway) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "bespoke/error.h"
 #include "bespoke/rbf/kernels.h"
 #include "support/finite_differences.h"
 #include "support/random_points.h"
@@ -126,15 +125,6 @@ TEST(LayerStack, OfNothingIsZero) {
   const Layer empty{Points(3, 0), Points(3, 0), 1};
   EXPECT_EQ(stack_of({empty}, Stacking::summed).displacement(x), Points::Zero(3, 5));
   EXPECT_EQ(stack_of({random_layer(5, 1, 33)}, Stacking::summed).displacement(Points(3, 0)).cols(), 0);
-}
-
-TEST(LayerEvaluator, RefusesUnusableLayers) {
-  const Layer layer = random_layer(4, 1, 35);
-  EXPECT_THROW(LayerEvaluator(layer.centers, layer.coefficients.leftCols(3), 1, Wendland::c2), InvalidInput);
-  EXPECT_THROW(LayerEvaluator(layer.centers, layer.coefficients, 0, Wendland::c2), InvalidInput);
-  Points broken = layer.coefficients;
-  broken(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(LayerEvaluator(layer.centers, broken, 1, Wendland::c2), InvalidInput);
 }
 
 }  // namespace

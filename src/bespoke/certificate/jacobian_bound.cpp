@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "bespoke/instruction_set.h"
+
 namespace bespoke {
 namespace {
 
@@ -112,54 +114,33 @@ double largest_component(const NodeBlock& sum, const Matrix3& linear, double sca
   return linear.cwiseAbs().maxCoeff() + 2 * std::abs(scale) * largest;
 }
 
-[[gnu::always_inline]] inline void bound_rows(const NodeBlock& sum, const Matrix3& linear, double scale,
-                                              JacobianBlock& block) {
-  RowCoefficients row;
-  for (int i = 0; i < leaf_edge; ++i)
-    for (int j = 0; j < leaf_edge; ++j) {
-      row.compute(sum, node_of_row(i, j), linear, scale);
-      double* bound = &block.lower_bound[static_cast<std::size_t>(number_of_place({i, j, 0}))];
-      for (int n = 0; n < lanes; ++n) bound[n] = row.values[0][n];
-      for (int coefficient = 1; coefficient < 27; ++coefficient)
-        for (int n = 0; n < lanes; ++n) {
-          const double value = row.values[coefficient][n];
-          // Written so that NaN stays: a cell that is not a number is not certified.
-          bound[n] = value >= bound[n] ? bound[n] : value;
-        }
-      for (int n = 0; n < lanes; ++n) bound[n] -= block.margin;
-    }
-}
-
-using BoundRows = void (*)(const NodeBlock&, const Matrix3&, double, JacobianBlock&);
-
-// Chosen by a pointer rather than by target_clones, whose resolvers run before the sanitizers are ready. All
-// give the same bits: no contraction, and no sum is reordered.
-void bound_rows_anywhere(const NodeBlock& sum, const Matrix3& linear, double scale, JacobianBlock& block) {
-  bound_rows(sum, linear, scale, block);
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void bound_rows_avx2(const NodeBlock& sum, const Matrix3& linear,
-                                                     double scale, JacobianBlock& block) {
-  bound_rows(sum, linear, scale, block);
-}
-#endif
-
-BoundRows fastest_bound_rows() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return bound_rows_avx2;
-#endif
-  return bound_rows_anywhere;
-}
+struct BoundRows {
+  [[gnu::always_inline]] static void run(const NodeBlock& sum, const Matrix3& linear, double scale,
+                                         JacobianBlock& block) {
+    RowCoefficients row;
+    for (int i = 0; i < leaf_edge; ++i)
+      for (int j = 0; j < leaf_edge; ++j) {
+        row.compute(sum, node_of_row(i, j), linear, scale);
+        double* bound = &block.lower_bound[static_cast<std::size_t>(number_of_place({i, j, 0}))];
+        for (int n = 0; n < lanes; ++n) bound[n] = row.values[0][n];
+        for (int coefficient = 1; coefficient < 27; ++coefficient)
+          for (int n = 0; n < lanes; ++n) {
+            const double value = row.values[coefficient][n];
+            // Written so that NaN stays: a cell that is not a number is not certified.
+            bound[n] = value >= bound[n] ? bound[n] : value;
+          }
+        for (int n = 0; n < lanes; ++n) bound[n] -= block.margin;
+      }
+  }
+};
 
 }  // namespace
 
 void bound_block(const NodeBlock& sum, const Matrix3& linear, double scale, double scaled_error,
                  JacobianBlock& block) {
-  static const BoundRows fastest = fastest_bound_rows();
   const double largest = largest_component(sum, linear, scale);
   block.margin = rounding_margin(largest, 2 * scaled_error + 8 * unit_roundoff * largest);
-  fastest(sum, linear, scale, block);
+  run_dispatched<BoundRows>(sum, linear, scale, block);
 }
 
 BezierDeterminant bezier_coefficients(const NodeBlock& sum, int cell, const Matrix3& linear, double scale) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/instruction_set.h"
 #include "bespoke/rbf/kernels.h"
 
 namespace bespoke {
@@ -28,77 +29,49 @@ struct Sum {
 };
 
 template <class Function, Order order>
-[[gnu::always_inline]] inline void add_up(const Sum& sum, Block& block) {
-  Lanes x[3];
-  Lanes value[3] = {};
-  Lanes gradient[9] = {};
-  for (int axis = 0; axis < 3; ++axis)
-    for (int lane = 0; lane < lanes; ++lane) x[axis][lane] = block.x[axis][lane];
-  const double squared_inverse = sum.inverse_lambda * sum.inverse_lambda;
-  for (int k = 0; k < sum.count; ++k) {
-    const double* center = sum.centers + 6 * std::ptrdiff_t(sum.nearby[k]);
-    const Lanes dx = x[0] - center[0];
-    const Lanes dy = x[1] - center[1];
-    const Lanes dz = x[2] - center[2];
-    const Lanes squared = (dx * dx + dy * dy + dz * dz) * squared_inverse;
-    Lanes s;
-    for (int lane = 0; lane < lanes; ++lane) s[lane] = __builtin_sqrt(squared[lane]);
-    const Lanes q = s < 1 ? 1 - s : Lanes{};
-    Lanes weight;
-    if constexpr (order == Order::value) {
-      Function::value(s, q, weight);
-      for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
-    } else {
-      Function::value(s, q, weight);
-      for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
-      Function::slope_over_s(s, q, weight);
-      weight *= squared_inverse;
-      const Lanes direction[3] = {dx * weight, dy * weight, dz * weight};
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) gradient[3 * i + j] += center[3 + i] * direction[j];
+struct AddUp {
+  [[gnu::always_inline]] static void run(const Sum& sum, Block& block) {
+    Lanes x[3];
+    Lanes value[3] = {};
+    Lanes gradient[9] = {};
+    for (int axis = 0; axis < 3; ++axis)
+      for (int lane = 0; lane < lanes; ++lane) x[axis][lane] = block.x[axis][lane];
+    const double squared_inverse = sum.inverse_lambda * sum.inverse_lambda;
+    for (int k = 0; k < sum.count; ++k) {
+      const double* center = sum.centers + 6 * std::ptrdiff_t(sum.nearby[k]);
+      const Lanes dx = x[0] - center[0];
+      const Lanes dy = x[1] - center[1];
+      const Lanes dz = x[2] - center[2];
+      const Lanes squared = (dx * dx + dy * dy + dz * dz) * squared_inverse;
+      Lanes s;
+      for (int lane = 0; lane < lanes; ++lane) s[lane] = __builtin_sqrt(squared[lane]);
+      const Lanes q = s < 1 ? 1 - s : Lanes{};
+      Lanes weight;
+      if constexpr (order == Order::value) {
+        Function::value(s, q, weight);
+        for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
+      } else {
+        Function::value(s, q, weight);
+        for (int i = 0; i < 3; ++i) value[i] += weight * center[3 + i];
+        Function::slope_over_s(s, q, weight);
+        weight *= squared_inverse;
+        const Lanes direction[3] = {dx * weight, dy * weight, dz * weight};
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) gradient[3 * i + j] += center[3 + i] * direction[j];
+      }
+    }
+    for (int lane = 0; lane < lanes; ++lane) {
+      for (int i = 0; i < 3; ++i) block.value[i][lane] = value[i][lane];
+      if constexpr (order == Order::gradient)
+        for (int i = 0; i < 9; ++i) block.gradient[i][lane] = gradient[i][lane];
     }
   }
-  for (int lane = 0; lane < lanes; ++lane) {
-    for (int i = 0; i < 3; ++i) block.value[i][lane] = value[i][lane];
-    if constexpr (order == Order::gradient)
-      for (int i = 0; i < 9; ++i) block.gradient[i][lane] = gradient[i][lane];
-  }
-}
+};
 
-using AddUp = void (*)(const Sum&, Block&);
-
-// Chosen by a pointer rather than by target_clones, whose resolvers run before the sanitizers are ready.
-template <class Function, Order order>
-void add_up_anywhere(const Sum& sum, Block& block) {
-  add_up<Function, order>(sum, block);
-}
-
-#if defined(__x86_64__)
-template <class Function, Order order>
-__attribute__((target("avx2"))) void add_up_avx2(const Sum& sum, Block& block) {
-  add_up<Function, order>(sum, block);
-}
-template <class Function, Order order>
-__attribute__((target("avx512f,prefer-vector-width=512"))) void add_up_avx512(const Sum& sum, Block& block) {
-  add_up<Function, order>(sum, block);
-}
-#endif
-
-template <class Function, Order order>
-AddUp fastest() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return add_up_avx512<Function, order>;
-  if (__builtin_cpu_supports("avx2")) return add_up_avx2<Function, order>;
-#endif
-  return add_up_anywhere<Function, order>;
-}
-
-AddUp fastest(Wendland function, Order order) {
-  static const AddUp table[2][2] = {
-      {fastest<WendlandC2, Order::value>(), fastest<WendlandC2, Order::gradient>()},
-      {fastest<WendlandC4, Order::value>(), fastest<WendlandC4, Order::gradient>()},
-  };
-  return table[function == Wendland::c4][order == Order::gradient];
+template <class Function>
+void add_up(const Sum& sum, Block& block, Order order) {
+  if (order == Order::value) return run_dispatched<AddUp<Function, Order::value>>(sum, block);
+  run_dispatched<AddUp<Function, Order::gradient>>(sum, block);
 }
 
 using Bounds = LayerEvaluator::Bounds;
@@ -233,8 +206,9 @@ void LayerEvaluator::narrow(const Bounds& bounds, const std::vector<int>& candid
 
 void LayerEvaluator::sum(Block& block, Order order, const int* nearby, int count) const {
   block.reached = count > 0;
-  fastest(function_, order)({sorted_.empty() ? nullptr : sorted_.front().z, nearby, count, 1 / lambda_},
-                            block);
+  const Sum sum{sorted_.empty() ? nullptr : sorted_.front().z, nearby, count, 1 / lambda_};
+  if (function_ == Wendland::c4) return add_up<WendlandC4>(sum, block, order);
+  add_up<WendlandC2>(sum, block, order);
 }
 
 void LayerEvaluator::Block::update_bounds() {

@@ -4,88 +4,64 @@
 #include <cmath>
 #include <numeric>
 
+#include "bespoke/instruction_set.h"
+
 namespace bespoke {
 namespace {
 
 /// Squared distances of x from the triangles begin … end − 1. Without branches, so that several triangles are
 /// asked at once: the point of the plane where it is inside, else the nearest point of the three edges.
-[[gnu::always_inline]] inline void measure(const FaceDistances::Columns& t, int begin, int end,
-                                           const Vector3& x, double* result) {
-  const double* const ax = t.corner[0].data();
-  const double* const ay = t.corner[1].data();
-  const double* const az = t.corner[2].data();
-  const double* const bx = t.first[0].data();
-  const double* const by = t.first[1].data();
-  const double* const bz = t.first[2].data();
-  const double* const cx = t.second[0].data();
-  const double* const cy = t.second[1].data();
-  const double* const cz = t.second[2].data();
-  const double* const bb = t.bb.data();
-  const double* const bc = t.bc.data();
-  const double* const cc = t.cc.data();
-  const double* const inverse_det = t.inverse_det.data();
-  const double* const inverse_bb = t.inverse_bb.data();
-  const double* const inverse_cc = t.inverse_cc.data();
-  const double* const inverse_ee = t.inverse_ee.data();
-  const double x0 = x[0], x1 = x[1], x2 = x[2];
-  const auto squared = [](double u, double v, double w) { return u * u + v * v + w * w; };
-  const auto clamped = [](double share) {
-    share = share > 0 ? share : 0;
-    return share < 1 ? share : 1;
-  };
+struct Measure {
+  [[gnu::always_inline]] static void run(const FaceDistances::Columns& t, int begin, int end,
+                                         const Vector3& x, double* result) {
+    const double* const ax = t.corner[0].data();
+    const double* const ay = t.corner[1].data();
+    const double* const az = t.corner[2].data();
+    const double* const bx = t.first[0].data();
+    const double* const by = t.first[1].data();
+    const double* const bz = t.first[2].data();
+    const double* const cx = t.second[0].data();
+    const double* const cy = t.second[1].data();
+    const double* const cz = t.second[2].data();
+    const double* const bb = t.bb.data();
+    const double* const bc = t.bc.data();
+    const double* const cc = t.cc.data();
+    const double* const inverse_det = t.inverse_det.data();
+    const double* const inverse_bb = t.inverse_bb.data();
+    const double* const inverse_cc = t.inverse_cc.data();
+    const double* const inverse_ee = t.inverse_ee.data();
+    const double x0 = x[0], x1 = x[1], x2 = x[2];
+    const auto squared = [](double u, double v, double w) { return u * u + v * v + w * w; };
+    const auto clamped = [](double share) {
+      share = share > 0 ? share : 0;
+      return share < 1 ? share : 1;
+    };
 #pragma GCC ivdep
-  for (int i = begin; i < end; ++i) {
-    const double px = x0 - ax[i], py = x1 - ay[i], pz = x2 - az[i];
-    const double pb = px * bx[i] + py * by[i] + pz * bz[i];
-    const double pc = px * cx[i] + py * cy[i] + pz * cz[i];
-    const double b = (cc[i] * pb - bc[i] * pc) * inverse_det[i];
-    const double c = (bb[i] * pc - bc[i] * pb) * inverse_det[i];
-    const double inside =
-        squared(px - b * bx[i] - c * cx[i], py - b * by[i] - c * cy[i], pz - b * bz[i] - c * cz[i]);
-    const double on_b = clamped(pb * inverse_bb[i]);
-    const double at_b = squared(px - on_b * bx[i], py - on_b * by[i], pz - on_b * bz[i]);
-    const double on_c = clamped(pc * inverse_cc[i]);
-    const double at_c = squared(px - on_c * cx[i], py - on_c * cy[i], pz - on_c * cz[i]);
-    const double ex = cx[i] - bx[i], ey = cy[i] - by[i], ez = cz[i] - bz[i];
-    const double qx = px - bx[i], qy = py - by[i], qz = pz - bz[i];
-    const double on_e = clamped((qx * ex + qy * ey + qz * ez) * inverse_ee[i]);
-    const double at_e = squared(qx - on_e * ex, qy - on_e * ey, qz - on_e * ez);
-    const double at_bc = at_b < at_c ? at_b : at_c;
-    const double at_edge = at_bc < at_e ? at_bc : at_e;
-    const double least = b < c ? b : c;
-    const double rest = 1 - b - c;
-    const double smallest_weight = least < rest ? least : rest;
-    result[i - begin] = smallest_weight >= 0 ? inside : at_edge;
+    for (int i = begin; i < end; ++i) {
+      const double px = x0 - ax[i], py = x1 - ay[i], pz = x2 - az[i];
+      const double pb = px * bx[i] + py * by[i] + pz * bz[i];
+      const double pc = px * cx[i] + py * cy[i] + pz * cz[i];
+      const double b = (cc[i] * pb - bc[i] * pc) * inverse_det[i];
+      const double c = (bb[i] * pc - bc[i] * pb) * inverse_det[i];
+      const double inside =
+          squared(px - b * bx[i] - c * cx[i], py - b * by[i] - c * cy[i], pz - b * bz[i] - c * cz[i]);
+      const double on_b = clamped(pb * inverse_bb[i]);
+      const double at_b = squared(px - on_b * bx[i], py - on_b * by[i], pz - on_b * bz[i]);
+      const double on_c = clamped(pc * inverse_cc[i]);
+      const double at_c = squared(px - on_c * cx[i], py - on_c * cy[i], pz - on_c * cz[i]);
+      const double ex = cx[i] - bx[i], ey = cy[i] - by[i], ez = cz[i] - bz[i];
+      const double qx = px - bx[i], qy = py - by[i], qz = pz - bz[i];
+      const double on_e = clamped((qx * ex + qy * ey + qz * ez) * inverse_ee[i]);
+      const double at_e = squared(qx - on_e * ex, qy - on_e * ey, qz - on_e * ez);
+      const double at_bc = at_b < at_c ? at_b : at_c;
+      const double at_edge = at_bc < at_e ? at_bc : at_e;
+      const double least = b < c ? b : c;
+      const double rest = 1 - b - c;
+      const double smallest_weight = least < rest ? least : rest;
+      result[i - begin] = smallest_weight >= 0 ? inside : at_edge;
+    }
   }
-}
-
-using Measure = void (*)(const FaceDistances::Columns&, int, int, const Vector3&, double*);
-
-// Chosen by a pointer rather than by target_clones, whose resolvers run before the sanitizers are ready. All
-// give the same bits: no contraction, and no sum is reordered.
-void measure_anywhere(const FaceDistances::Columns& t, int begin, int end, const Vector3& x, double* result) {
-  measure(t, begin, end, x, result);
-}
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void measure_avx2(const FaceDistances::Columns& t, int begin, int end,
-                                                  const Vector3& x, double* result) {
-  measure(t, begin, end, x, result);
-}
-
-__attribute__((target("avx512f,prefer-vector-width=512"))) void measure_avx512(
-    const FaceDistances::Columns& t, int begin, int end, const Vector3& x, double* result) {
-  measure(t, begin, end, x, result);
-}
-#endif
-
-Measure fastest_measure() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return measure_avx512;
-  if (__builtin_cpu_supports("avx2")) return measure_avx2;
-#endif
-  return measure_anywhere;
-}
+};
 
 void append(FaceDistances::Columns& columns, const Matrix3& corners) {
   const Vector3 b = corners.col(1) - corners.col(0), c = corners.col(2) - corners.col(0);
@@ -148,7 +124,6 @@ int FaceDistances::cell_along(int axis, double coordinate) const {
 }
 
 const std::vector<FaceDistances::Near>& FaceDistances::find(const Vector3& x, Scratch& scratch) const {
-  static const Measure fastest = fastest_measure();
   scratch.near.clear();
   if (!x.allFinite()) return scratch.near;
   const double squared_radius = radius_ * radius_;
@@ -167,7 +142,7 @@ const std::vector<FaceDistances::Near>& FaceDistances::find(const Vector3& x, Sc
       const int end = cell_start_[static_cast<std::size_t>(row + cell_along(0, x.x() + half)) + 1];
       if (begin == end) continue;
       scratch.distances.resize(std::max(scratch.distances.size(), static_cast<std::size_t>(end - begin)));
-      fastest(columns_, begin, end, x, scratch.distances.data());
+      run_dispatched<Measure>(columns_, begin, end, x, scratch.distances.data());
       for (int i = begin; i < end; ++i) {
         const double squared_distance = scratch.distances[static_cast<std::size_t>(i - begin)];
         if (squared_distance < squared_radius) scratch.near.push_back({i, squared_distance});
