@@ -8,6 +8,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_transform.h"
+#include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 
@@ -25,12 +26,7 @@ class ReadAnchors : public ::testing::Test {
   }
 
   std::string message_for(const std::string& name, const std::string& text) {
-    try {
-      read_anchors(write(name, text));
-    } catch (const FormatError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::error_message<FormatError>([&] { read_anchors(write(name, text)); });
   }
 
   /// A file of one good and one given pair.

@@ -14,12 +14,7 @@
 namespace bespoke {
 namespace {
 
-using test::expect_gradient_is_the_limit_of_differences;
-using test::expect_support_holds;
-using test::near_and_far;
-using test::some_affine;
-using test::some_rigid;
-using test::strong_bumps;
+using namespace test;
 
 BakedMap baked(const ElasticMap& map, double tolerance) {
   BakeOptions options;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "support/error_message.h"
 #include "support/finite_differences.h"
 #include "support/random_points.h"
 
@@ -25,12 +26,7 @@ CsrbfOptions with_lambda(double lambda) {
 
 template <class ExpectedError>
 std::string refusal(const Points& sources, const Points& targets, const CsrbfOptions& options) {
-  try {
-    fit_csrbf(sources, targets, options);
-  } catch (const ExpectedError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_message<ExpectedError>([&] { fit_csrbf(sources, targets, options); });
 }
 
 Points bent(const Points& x) { return x + 0.1 * (3 * x.array()).sin().matrix().colwise().reverse(); }

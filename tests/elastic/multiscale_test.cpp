@@ -13,6 +13,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_alignment.h"
+#include "support/error_message.h"
 #include "support/finite_differences.h"
 #include "support/random_points.h"
 
@@ -50,12 +51,7 @@ Points band_points(const Points& sources, int count, double reach, unsigned seed
 }
 
 std::string refusal(const Points& sources, const Points& targets, const MultiscaleOptions& options) {
-  try {
-    fit_multiscale(sources, targets, options);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_message<InvalidInput>([&] { fit_multiscale(sources, targets, options); });
 }
 
 class FitMultiscale : public testing::TestWithParam<bool> {};

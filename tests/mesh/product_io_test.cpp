@@ -12,6 +12,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_io.h"
+#include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 #include "support/shapes.h"
@@ -32,12 +33,7 @@ class MeshFiles : public ::testing::Test {
     return directory_ / name;
   }
   static std::string complaint(const fs::path& path) {
-    try {
-      read_product(path);
-    } catch (const FormatError& error) {
-      return error.what();
-    }
-    return "none";
+    return test::error_message<FormatError>([&] { read_product(path); });
   }
   std::string complaint(const std::string& name, const std::string& content) const {
     return complaint(file(name, content));
@@ -151,10 +147,10 @@ TEST_F(ReadProduct, NeedsAFileWithVertices) {
   EXPECT_THROW(read_product("/dev/null"), InvalidInput);
   for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
     EXPECT_THAT(complaint(name, ""), HasSubstr("the file is empty"));
-    EXPECT_NE(complaint(name, "\n"), "none");
-    EXPECT_NE(complaint(name, "# nothing\n"), "none");
-    EXPECT_NE(complaint(name, std::string(1000, '\0')), "none");
-    EXPECT_NE(complaint(name, std::string(1000, '\xff')), "none");
+    EXPECT_NE(complaint(name, "\n"), "accepted");
+    EXPECT_NE(complaint(name, "# nothing\n"), "accepted");
+    EXPECT_NE(complaint(name, std::string(1000, '\0')), "accepted");
+    EXPECT_NE(complaint(name, std::string(1000, '\xff')), "accepted");
   }
   EXPECT_THAT(complaint("a.obj", "# nothing\n"), HasSubstr("the file has no vertices"));
 }
@@ -210,7 +206,7 @@ TEST_F(ReadProduct, UnderstandsPlyOfEitherEndianness) {
     EXPECT_THAT(product.corners, ElementsAre(3, 2, 1, 0));
     // Every shorter file is refused, whereever it ends.
     for (std::size_t size = 0; size < whole.size(); ++size)
-      EXPECT_NE(complaint("short.ply", whole.substr(0, size)), "none") << size;
+      EXPECT_NE(complaint("short.ply", whole.substr(0, size)), "accepted") << size;
   }
 }
 
@@ -232,7 +228,7 @@ TEST_F(ReadProduct, UnderstandsAsciiPlyWithTextureAndOtherElements) {
 
 TEST_F(ReadProduct, NamesThePlaceOfABadPly) {
   const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-  EXPECT_EQ(complaint("a.ply", ply("ascii", points + "4 0 1 2 3\n")), "none");
+  EXPECT_EQ(complaint("a.ply", ply("ascii", points + "4 0 1 2 3\n")), "accepted");
   EXPECT_THAT(complaint("a.ply", ply("ascii", points + "4 0 1 2 4\n")),
               HasSubstr("a.ply:16: a face names vertex 4, outside 0 … 3"));
   EXPECT_THAT(complaint("a.ply", ply("ascii", points + "4 0 1 2\n")), HasSubstr("a.ply:16: missing corner"));
@@ -283,7 +279,7 @@ TEST_F(ReadProduct, JoinsTheCornersOfStl) {
     EXPECT_THAT(product.corners, ElementsAre(0, 1, 2, 1, 3, 2));
   }
   for (std::size_t size = 0; size < binary.size(); ++size)
-    EXPECT_NE(complaint("short.stl", binary.substr(0, size)), "none") << size;
+    EXPECT_NE(complaint("short.stl", binary.substr(0, size)), "accepted") << size;
 }
 
 TEST_F(ReadProduct, NamesThePlaceOfABadStl) {

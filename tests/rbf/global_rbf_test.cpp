@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "support/error_message.h"
 #include "support/random_points.h"
 
 namespace bespoke {
@@ -23,12 +24,7 @@ double extent(const Points& points) {
 }
 
 std::string refusal(const Points& sources, const Points& targets, const Eigen::VectorXd& weights) {
-  try {
-    GlobalRbf(sources, targets, weights);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_message<InvalidInput>([&] { GlobalRbf(sources, targets, weights); });
 }
 
 TEST(GlobalRbf, InterpolatesTheAnchors) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "support/error_message.h"
 #include "support/random_points.h"
 
 namespace bespoke {
@@ -19,12 +20,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 Eigen::VectorXd equal_weights(Eigen::Index count) { return Eigen::VectorXd::Constant(count, infinity); }
 
 std::string refusal(const Points& source, const Points& target, const Eigen::VectorXd& weights) {
-  try {
-    align_rigidly(source, target, weights);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "accepted";
+  return test::error_message<InvalidInput>([&] { align_rigidly(source, target, weights); });
 }
 
 void expect_rotation(const Matrix3& rotation) {
