@@ -66,7 +66,7 @@ TEST(BandLeaves, RefuseWhatHasNoLattice) {
   EXPECT_THROW(band_leaves(support, {Vector3::Zero(), 0.1}), InvalidInput);
 }
 
-TEST(BoundingBox, OfABallIsTight) {
+TEST(SupportBox, OfABallIsTight) {
   Support support;
   support.frame.linear = Vector3(2, 1, 1).asDiagonal();
   support.clouds.push_back({Vector3(2, 0, 0), 1.0});

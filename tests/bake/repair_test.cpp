@@ -68,7 +68,7 @@ TEST(RepairFolds, CannotMendTheAffinePart) {
 
 // det ∇E = 1 + ∂u₀/∂x at its least is 1 − 1.71 · amplitude / radius on the axis: the first map keeps its
 // orientation, the second does not.
-TEST(Bake, OfAMapThatFoldsIsRepairedAtACost) {
+TEST(BakeWithFolds, IsRepairedAtACost) {
   BakeOptions options;
   options.tolerance = 1e-2;
   options.error_points = 20000;

@@ -27,14 +27,14 @@ void expect_refused(const Pyramid& pyramid, const std::string& why) {
   }
 }
 
-TEST(RequireValid, AcceptsNestedLevelsAndNoLevel) {
+TEST(RequireValidPyramid, AcceptsNestedLevelsAndNoLevel) {
   EXPECT_NO_THROW(require_valid(two_levels()));
   EXPECT_NO_THROW(require_valid(Pyramid{}));
   EXPECT_EQ(two_levels().voxel_count(), 4u * leaf_nodes);
   EXPECT_EQ(two_levels().byte_count(), 4u * (leaf_nodes * 12 + 12));
 }
 
-TEST(RequireValid, NamesWhatIsWrong) {
+TEST(RequireValidPyramid, NamesWhatIsWrong) {
   Pyramid pyramid = two_levels();
   pyramid.levels[1].voxel_size = 0.3;
   expect_refused(pyramid, "level 1: voxel size 0.3");

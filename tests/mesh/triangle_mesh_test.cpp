@@ -87,12 +87,12 @@ TEST(InspectMesh, DescribesBrokenMeshesToo) {
   EXPECT_THROW(inspect_mesh(mesh), InvalidInput);
 }
 
-TEST(RequireValid, AcceptsWhatCanBeUsed) {
+TEST(RequireValidMesh, AcceptsWhatCanBeUsed) {
   EXPECT_EQ(complaint(shapes::triangle()), "accepted");
   EXPECT_EQ(complaint(shapes::cube()), "accepted");
 }
 
-TEST(RequireValid, NamesWhatIsWrong) {
+TEST(RequireValidMesh, NamesWhatIsWrong) {
   EXPECT_THAT(complaint({}), HasSubstr("source a.obj has no faces"));
   TriangleMesh mesh = shapes::cube();
   mesh.vertices(1, 6) = nan;
