@@ -157,6 +157,66 @@ ClosestPointTree::~ClosestPointTree() = default;
 ClosestPointTree::ClosestPointTree(ClosestPointTree&&) noexcept = default;
 ClosestPointTree& ClosestPointTree::operator=(ClosestPointTree&&) noexcept = default;
 
+namespace {
+
+/// Squared distances, at most the true ones, of a point between `low` and `high` from a node's boxes.
+void measure_boxes(const BoxTree::Node& node, const float (&low)[3], const float (&high)[3],
+                   float (&squared)[BoxTree::width]) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < BoxTree::width; ++i) {
+      const float outside =
+          std::max(std::max(node.low[axis][i] - high[axis], low[axis] - node.high[axis][i]), 0.0f);
+      squared[i] += outside * outside;
+    }
+}
+
+/// The best answer among the triangles asked so far.
+class Nearest {
+ public:
+  Nearest(const Vector3& x, const ClosestPointQuery& query) : x_(x), query_(query) {
+    best_.squared_distance = query.max_distance * query.max_distance;
+    reach_ = round_up(best_.squared_distance * slack);
+  }
+
+  /// Nodes farther than this (squared) hold no better answer.
+  float reach() const { return reach_; }
+
+  void offer(const Triangle& triangle, const Vector3& normal) {
+    if (query_.normal && !(normal.dot(*query_.normal) > query_.min_cosine)) return;
+    Hit hit = closest_on(triangle, x_);
+    if (query_.normal)
+      hit.squared_distance +=
+          query_.normal_length * query_.normal_length * (normal - *query_.normal).squaredNorm();
+    const bool better = hit.squared_distance < best_.squared_distance;
+    const bool tie =
+        hit.squared_distance == best_.squared_distance && (!triangle_ || triangle.face < triangle_->face);
+    if (!better && !tie) return;
+    best_ = hit;
+    triangle_ = &triangle;
+    reach_ = round_up(best_.squared_distance * slack);
+  }
+
+  std::optional<SurfacePoint> answer() const {
+    if (!triangle_) return std::nullopt;
+    SurfacePoint result;
+    result.point = best_.point;
+    result.face = triangle_->face;
+    result.squared_distance = best_.squared_distance;
+    for (std::size_t k = 0; k < 3; ++k)
+      result.barycentric(triangle_->corner[k]) = best_.weights(static_cast<Eigen::Index>(k));
+    return result;
+  }
+
+ private:
+  const Vector3& x_;
+  const ClosestPointQuery& query_;
+  Hit best_;
+  float reach_;
+  const Triangle* triangle_ = nullptr;
+};
+
+}  // namespace
+
 std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
                                                       const ClosestPointQuery& query) const {
   if (!x.allFinite()) throw InvalidInput("closest point to a point that is not finite");
@@ -173,44 +233,21 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
     low[axis] = round_down(x(axis));
     high[axis] = round_up(x(axis));
   }
-  Hit best;
-  best.squared_distance = query.max_distance * query.max_distance;
-  float reach = round_up(best.squared_distance * slack);
-  const Triangle* nearest = nullptr;
-  const auto ask = [&](int first, int count) {
-    for (int i = first; i < first + count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (query.normal && !(tree_->normals[k].dot(*query.normal) > query.min_cosine)) continue;
-      Hit hit = closest_on(tree_->triangles[k], x);
-      if (query.normal)
-        hit.squared_distance +=
-            query.normal_length * query.normal_length * (tree_->normals[k] - *query.normal).squaredNorm();
-      const bool better = hit.squared_distance < best.squared_distance;
-      const bool tie = hit.squared_distance == best.squared_distance &&
-                       (!nearest || tree_->triangles[k].face < nearest->face);
-      if (!better && !tie) continue;
-      best = hit;
-      nearest = &tree_->triangles[k];
-      reach = round_up(best.squared_distance * slack);
-    }
-  };
+  Nearest nearest(x, query);
   while (top > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--top)];
-    if (entry.squared_distance > reach) continue;
+    if (entry.squared_distance > nearest.reach()) continue;
     const BoxTree::Node& node = tree_->boxes.nodes[static_cast<std::size_t>(entry.node)];
     float squared[BoxTree::width] = {};
-    for (int axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < BoxTree::width; ++i) {
-        const float outside =
-            std::max(std::max(node.low[axis][i] - high[axis], low[axis] - node.high[axis][i]), 0.0f);
-        squared[i] += outside * outside;
-      }
+    measure_boxes(node, low, high, squared);
     // Leaves at once, since they shorten the reach; nodes onto the stack, the nearest on top.
     const int base = top;
     for (int i = 0; i < BoxTree::width; ++i) {
-      if (node.count[i] < 0 || squared[i] > reach) continue;
+      if (node.count[i] < 0 || squared[i] > nearest.reach()) continue;
       if (node.count[i] > 0) {
-        ask(node.child[i], node.count[i]);
+        const auto first = static_cast<std::size_t>(node.child[i]);
+        for (std::size_t k = first; k < first + static_cast<std::size_t>(node.count[i]); ++k)
+          nearest.offer(tree_->triangles[k], tree_->normals[k]);
         continue;
       }
       int at = top++;
@@ -219,14 +256,7 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
       stack[static_cast<std::size_t>(at)] = {squared[i], node.child[i]};
     }
   }
-  if (!nearest) return std::nullopt;
-  SurfacePoint result;
-  result.point = best.point;
-  result.face = nearest->face;
-  result.squared_distance = best.squared_distance;
-  for (std::size_t k = 0; k < 3; ++k)
-    result.barycentric(nearest->corner[k]) = best.weights(static_cast<Eigen::Index>(k));
-  return result;
+  return nearest.answer();
 }
 
 }  // namespace bespoke
