@@ -73,6 +73,48 @@ TEST_F(ReadAnchors, CsvSaysTheSameAsJson) {
   }
 }
 
+TEST_F(ReadAnchors, ReadsAccuracies) {
+  const Anchors json = read_anchors(write("anchors.json", R"({"pairs": [
+    {"a": [0,0,0], "b": [1,1,1], "sigma": 0}, {"a": [0,0,0], "b": [1,1,1], "sigma": 0.25},
+    {"a": [0,0,0], "b": [1,1,1]}]})"));
+  const Anchors csv =
+      read_anchors(write("anchors.csv", ",0,0,0,1,1,1,,0\n,0,0,0,1,1,1,,0.25\n,0,0,0,1,1,1\n"));
+  const Anchors named = read_anchors(write("named.csv",
+                                           "name,ax,ay,az,bx,by,bz,sigma\n,0,0,0,1,1,1,0\n"
+                                           ",0,0,0,1,1,1,0.25\n,0,0,0,1,1,1,\n"));
+  for (const Anchors& anchors : {json, csv, named}) {
+    ASSERT_EQ(anchors.pairs.size(), 3u);
+    EXPECT_EQ(anchors.pairs[0].sigma, 0.0);
+    EXPECT_EQ(anchors.pairs[1].sigma, 0.25);
+    EXPECT_EQ(anchors.pairs[2].sigma, std::nullopt);
+    EXPECT_TRUE(is_exact(anchors.pairs[0]));
+    EXPECT_FALSE(is_exact(anchors.pairs[1]));
+    EXPECT_EQ(sigmas(anchors), Vector3(0, 0.25, 0));
+  }
+}
+
+TEST_F(ReadAnchors, RefusesAccuraciesThatAreNoLengths) {
+  EXPECT_THAT(message_for_pair(R"({"a": [0,0,0], "b": [0,0,0], "sigma": -1})"),
+              AllOf(HasSubstr("\"sigma\" is -1"), HasSubstr(">= 0")));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,0,0], "b": [0,0,0], "sigma": "small"})"),
+              HasSubstr("\"sigma\" is string"));
+  EXPECT_THAT(message_for_pair(R"({"a": [0,0,0], "b": [0,0,0], "sigma": 1, "weight": 2})"),
+              HasSubstr("both a weight and a sigma"));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6,,-1\n"), HasSubstr("sigma is -1"));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6,2,1\n"), HasSubstr("both a weight and a sigma"));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6,2,1,0\n"), HasSubstr("10 columns"));
+}
+
+TEST(SplineWeights, FallWithTheSquareOfSigma) {
+  Anchors anchors;
+  for (const double sigma : {0.0, 0.01, 0.02})
+    anchors.pairs.push_back({"", Vector3(sigma, 0, 1), Vector3(100 * sigma, 1, 0), 7, sigma});
+  const Eigen::VectorXd found = spline_weights(anchors);
+  EXPECT_EQ(found[0], 7);
+  EXPECT_NEAR(found[1], std::pow(0.1 * 2 / 0.01, 2), 1e-9);
+  EXPECT_NEAR(found[1] / found[2], 4, 1e-12);
+}
+
 TEST_F(ReadAnchors, NamesThePairAndTheKeyAtFault) {
   EXPECT_THAT(
       message_for_pair(R"({"name": "chin", "a": [0,0,0]})"),

@@ -12,9 +12,11 @@ struct FittingScene {
   Points anchor_sources = Points(3, 0);
   Points anchor_targets = Points(3, 0);
   Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
+  Eigen::VectorXd anchor_sigmas = Eigen::VectorXd(0);
 
   SurfaceFit fit(const SurfaceFitOptions& options = {}) const {
-    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights}, options);
+    return fit_surface(
+        {source, warped, target, anchor_sources, anchor_targets, anchor_weights, anchor_sigmas}, options);
   }
 };
 

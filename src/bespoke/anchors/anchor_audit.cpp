@@ -1,10 +1,10 @@
 #include "bespoke/anchors/anchor_audit.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
 
+#include "bespoke/anchors/detail/biharmonic_warp.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
@@ -14,47 +14,6 @@ namespace {
 constexpr std::size_t min_pairs = 8;
 constexpr double typical_factor = 4;
 constexpr double least_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
-
-/// −|x − y| is the biharmonic spline's kernel in space; the affine tail makes the system solvable.
-class Warp {
- public:
-  Warp(const Points& sources, const Points& targets) : sources_(sources) {
-    const Eigen::Index count = sources.cols();
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(count + 4, count + 4);
-    Eigen::MatrixXd right_side = Eigen::MatrixXd::Zero(count + 4, 3);
-    // A little smoothing, relative to the kernel's size, so that near duplicates do not dominate.
-    const double smoothing = 1e-3 * diagonal(sources);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      system.row(i).head(count) = -(sources.colwise() - sources.col(i)).colwise().norm();
-      system(i, i) = smoothing;
-      system(i, count) = system(count, i) = 1;
-      system.row(i).tail<3>() = sources.col(i).transpose();
-      system.col(i).tail<3>() = sources.col(i);
-      right_side.row(i) = targets.col(i).transpose();
-    }
-    // Coplanar sources leave slopes undetermined; the pseudo-inverse takes the least.
-    inverse_ = system.completeOrthogonalDecomposition().pseudoInverse();
-    coefficients_ = inverse_ * right_side;
-  }
-
-  Vector3 operator()(const Vector3& x) const {
-    const Eigen::Index count = sources_.cols();
-    Eigen::RowVectorXd row(count + 4);
-    row.head(count) = -(sources_.colwise() - x).colwise().norm();
-    row[count] = 1;
-    row.tail<3>() = x.transpose();
-    return (row * coefficients_).transpose();
-  }
-
-  /// Distance of pair i from where the others would put it, without solving again.
-  double left_out(Eigen::Index i) const {
-    return coefficients_.row(i).norm() / std::max(std::abs(inverse_(i, i)), 1e-300);
-  }
-
- private:
-  Points sources_;
-  Eigen::MatrixXd inverse_, coefficients_;
-};
 
 double median(std::vector<double> values) {
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
@@ -77,7 +36,7 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
   const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_pairs - 2);
   std::vector<Eigen::Index> doubted;
   for (;;) {
-    const Warp warp(sources(Eigen::all, trusted), targets(Eigen::all, trusted));
+    const BiharmonicWarp warp(sources(Eigen::all, trusted), targets(Eigen::all, trusted));
     std::vector<double> distances;
     for (std::size_t k = 0; k < trusted.size(); ++k)
       distances.push_back(warp.left_out(static_cast<Eigen::Index>(k)));

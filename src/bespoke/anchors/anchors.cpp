@@ -51,6 +51,12 @@ void require_distinct_names(const Anchors& anchors, const std::string& file) {
       throw FormatError(file + ": two pairs are named \"" + pair.name + "\"; names must differ or be empty");
 }
 
+/// Which of the two should hold cannot be known.
+void require_one_accuracy(const AnchorPair& pair, const std::string& where) {
+  if (pair.sigma && std::isfinite(pair.weight))
+    throw FormatError(where + ": has both a weight and a sigma; give one of them");
+}
+
 // ---- JSON
 
 double json_number(const Json& value, const std::string& where) {
@@ -89,6 +95,12 @@ AnchorPair json_pair(const Json& value, const std::string& position) {
     if (!(pair.weight > 0))
       throw FormatError(where + ": \"weight\" is " + weight->dump() + ", but must be > 0");
   }
+  if (const auto sigma = value.find("sigma"); sigma != value.end()) {
+    pair.sigma = json_number(*sigma, where + ": \"sigma\"");
+    if (!(*pair.sigma >= 0))
+      throw FormatError(where + ": \"sigma\" is " + sigma->dump() + ", but must be >= 0");
+  }
+  require_one_accuracy(pair, where);
   return pair;
 }
 
@@ -139,11 +151,19 @@ std::vector<std::string> csv_fields(std::string_view row) {
   return fields;
 }
 
-constexpr std::array<const char*, 8> csv_columns = {"name", "ax", "ay", "az", "bx", "by", "bz", "weight"};
+constexpr std::array<const char*, 7> csv_columns = {"name", "ax", "ay", "az", "bx", "by", "bz"};
+constexpr std::array<const char*, 2> csv_accuracy_columns = {"weight", "sigma"};
 
 bool is_csv_header(const std::vector<std::string>& fields) {
-  return fields.size() >= 7 && fields.size() <= csv_columns.size() &&
-         std::equal(fields.begin(), fields.end(), csv_columns.begin());
+  const auto is_accuracy = [](const std::string& field) {
+    return std::find(csv_accuracy_columns.begin(), csv_accuracy_columns.end(), field) !=
+           csv_accuracy_columns.end();
+  };
+  return fields.size() >= csv_columns.size() &&
+         fields.size() <= csv_columns.size() + csv_accuracy_columns.size() &&
+         std::equal(csv_columns.begin(), csv_columns.end(), fields.begin()) &&
+         std::all_of(fields.begin() + csv_columns.size(), fields.end(), is_accuracy) &&
+         (fields.size() < csv_columns.size() + 2 || fields[csv_columns.size()] != fields.back());
 }
 
 double csv_number(const std::string& field, const char* column, const std::string& where) {
@@ -155,10 +175,12 @@ double csv_number(const std::string& field, const char* column, const std::strin
   return number;
 }
 
-AnchorPair csv_pair(const std::vector<std::string>& fields, const std::string& where) {
-  if (fields.size() != 7 && fields.size() != 8)
+/// accuracy_columns: what stands after the seventh column.
+AnchorPair csv_pair(const std::vector<std::string>& fields, const std::vector<std::string>& accuracy_columns,
+                    const std::string& where) {
+  if (fields.size() < csv_columns.size() || fields.size() > csv_columns.size() + accuracy_columns.size())
     throw FormatError(where + ": " + std::to_string(fields.size()) +
-                      " columns, but a row is name,ax,ay,az,bx,by,bz[,weight]");
+                      " columns, but a row is name,ax,ay,az,bx,by,bz[,weight[,sigma]]");
   AnchorPair pair;
   pair.name = fields[0];
   require_printable(pair.name, where);
@@ -167,10 +189,20 @@ AnchorPair csv_pair(const std::vector<std::string>& fields, const std::string& w
     pair.a[axis] = csv_number(fields[1 + column], csv_columns[1 + column], where);
     pair.b[axis] = csv_number(fields[4 + column], csv_columns[4 + column], where);
   }
-  if (fields.size() == 8 && !fields[7].empty()) {
-    pair.weight = csv_number(fields[7], csv_columns[7], where);
-    if (!(pair.weight > 0)) throw FormatError(where + ": weight is " + fields[7] + ", but must be > 0");
+  for (std::size_t k = csv_columns.size(); k < fields.size(); ++k) {
+    const std::string& column = accuracy_columns[k - csv_columns.size()];
+    if (fields[k].empty()) continue;
+    const double number = csv_number(fields[k], column.c_str(), where);
+    const bool is_weight = column == csv_accuracy_columns.front();
+    if (!(is_weight ? number > 0 : number >= 0))
+      throw FormatError(where + ": " + column + " is " + fields[k] + ", but must be " +
+                        (is_weight ? "> 0" : ">= 0"));
+    if (is_weight)
+      pair.weight = number;
+    else
+      pair.sigma = number;
   }
+  require_one_accuracy(pair, where);
   return pair;
 }
 
@@ -178,12 +210,15 @@ Anchors parse_csv(const std::string& text, const std::string& file) {
   Anchors anchors;
   std::istringstream rows(text);
   std::string row;
+  std::vector<std::string> accuracy_columns(csv_accuracy_columns.begin(), csv_accuracy_columns.end());
   bool first = true;
   for (int line = 1; std::getline(rows, row); ++line) {
     const std::vector<std::string> fields = csv_fields(row);
     if (fields.size() == 1 && fields[0].empty()) continue;
-    if (!std::exchange(first, false) || !is_csv_header(fields))
-      anchors.pairs.push_back(csv_pair(fields, file + ": line " + std::to_string(line)));
+    if (std::exchange(first, false) && is_csv_header(fields))
+      accuracy_columns.assign(fields.begin() + csv_columns.size(), fields.end());
+    else
+      anchors.pairs.push_back(csv_pair(fields, accuracy_columns, file + ": line " + std::to_string(line)));
   }
   if (first) throw FormatError(file + ": no rows");
   return anchors;
@@ -214,12 +249,14 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
   constexpr std::size_t pairs_that_fix_a_turn = 3;
   RigidTransform target_from_source;
   if (anchors.pairs.size() >= pairs_that_fix_a_turn)
-    target_from_source = align_rigidly(source_points(anchors), target_points(anchors), weights(anchors));
+    target_from_source =
+        align_rigidly(source_points(anchors), target_points(anchors), spline_weights(anchors));
   const Box source_box = bounding_box(source_vertices);
   const Box target_box = bounding_box(inverse(target_from_source) * target_vertices);
   for (int corner = 0; corner < 8; ++corner) {
     const int bits[3] = {corner >> 2 & 1, corner >> 1 & 1, corner & 1};
     AnchorPair pair;
+    pair.sigma = 0;
     pair.name = "corner_";
     for (int axis = 0; axis < 3; ++axis) {
       pair.name += static_cast<char>('0' + bits[axis]);
@@ -235,6 +272,8 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
   }
 }
 
+bool is_exact(const AnchorPair& pair) { return std::isinf(pair.weight) && !(pair.sigma.value_or(0) > 0); }
+
 Points source_points(const Anchors& anchors) { return points(anchors, &AnchorPair::a); }
 
 Points target_points(const Anchors& anchors) { return points(anchors, &AnchorPair::b); }
@@ -243,6 +282,25 @@ Eigen::VectorXd weights(const Anchors& anchors) {
   Eigen::VectorXd result(static_cast<Eigen::Index>(anchors.pairs.size()));
   for (Eigen::Index i = 0; i < result.size(); ++i)
     result[i] = anchors.pairs[static_cast<std::size_t>(i)].weight;
+  return result;
+}
+
+Eigen::VectorXd sigmas(const Anchors& anchors) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(anchors.pairs.size()));
+  for (Eigen::Index i = 0; i < result.size(); ++i)
+    result[i] = anchors.pairs[static_cast<std::size_t>(i)].sigma.value_or(0);
+  return result;
+}
+
+Eigen::VectorXd spline_weights(const Anchors& anchors) {
+  constexpr double typical_difference = 0.1;  // of the targets' diagonal
+  Eigen::VectorXd result = weights(anchors);
+  if (anchors.pairs.empty()) return result;
+  const double difference = typical_difference * diagonal(target_points(anchors));
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    const double sigma = anchors.pairs[static_cast<std::size_t>(i)].sigma.value_or(0);
+    if (sigma > 0) result[i] = difference * difference / (sigma * sigma);
+  }
   return result;
 }
 

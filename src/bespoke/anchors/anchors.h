@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,10 @@ struct AnchorPair {
   std::string name;                                         ///< may be empty
   Vector3 a;                                                ///< source frame, mesh units
   Vector3 b;                                                ///< target frame, mesh units
-  double weight = std::numeric_limits<double>::infinity();  ///< > 0, no unit; infinite = met exactly
+  double weight = std::numeric_limits<double>::infinity();  ///< > 0, no unit; infinite = none given
+  /// Accuracy: the standard deviation of each coordinate of the pair, ≥ 0, mesh units; 0 is met exactly.
+  /// Empty: what the weight says, and without a weight it is estimated (anchor_accuracy.h).
+  std::optional<double> sigma = std::nullopt;
 };
 
 struct Anchors {
@@ -23,23 +27,32 @@ struct Anchors {
   std::vector<AnchorPair> pairs;
 };
 
-/// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"?}]} or, by the ending
-/// .csv, rows name,ax,ay,az,bx,by,bz[,weight] with an optional header row. Throws FileError, or FormatError
-/// naming the file and the line or the pair and what is wrong (not finite, weight ≤ 0, missing key, two pairs
-/// of one name).
+/// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"? or
+/// "sigma"?}]} or, by the ending .csv, rows name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header
+/// row, which may also name sigma alone or first. Throws FileError, or FormatError naming the file and the
+/// line or the pair and what is wrong (not finite, weight ≤ 0, sigma < 0, both of them, missing key, two
+/// pairs of one name).
 Anchors read_anchors(const std::filesystem::path& path);
 
-/// Appends the eight corners of the bounding boxes as exact pairs named "corner_000" … "corner_111" (x, y, z;
-/// Fig. 5). The boxes are those of the source and of the target in the source's frame, H'_b, which the pairs
-/// already there fix (Eq. 2–6): a model that is turned has other corners. With fewer than three pairs nothing
-/// is known of a turn, and the target is taken as it stands. Vertices: 3×n, mesh units. Throws InvalidInput
-/// when there are no vertices, the pairs are collinear, or a name is taken.
+/// Appends the eight corners of the bounding boxes as exact pairs (σ = 0) named "corner_000" … "corner_111"
+/// (x, y, z; Fig. 5). The boxes are those of the source and of the target in the source's frame, H'_b, which
+/// the pairs already there fix (Eq. 2–6): a model that is turned has other corners. With fewer than three
+/// pairs nothing is known of a turn, and the target is taken as it stands. Vertices: 3×n, mesh units. Throws
+/// InvalidInput when there are no vertices, the pairs are collinear, or a name is taken.
 void add_box_corners(Anchors& anchors, const Points& source_vertices, const Points& target_vertices);
 
-/// 3×n each, and n: the pairs as matrices.
+/// Whether a pair has to be met: it has no weight, and its σ is 0 or not given.
+bool is_exact(const AnchorPair& pair);
+
+/// 3×n each, n and n: the pairs as matrices; a σ that is not given is 0.
 Points source_points(const Anchors& anchors);
 Points target_points(const Anchors& anchors);
 Eigen::VectorXd weights(const Anchors& anchors);
+Eigen::VectorXd sigmas(const Anchors& anchors);
+
+/// The weights, with those that a σ above 0 has in terms of a smoothing spline: (c / σ)², since it is by some
+/// c = 10 % of the targets' diagonal that bodies differ across their length.
+Eigen::VectorXd spline_weights(const Anchors& anchors);
 
 /// How messages call a pair: its name in quotes, or "pair 3" for the third.
 std::string label(const Anchors& anchors, std::size_t index);

@@ -16,12 +16,13 @@ std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) 
   if (anchors.pairs.size() < min_pairs) return found;
   const Points sources = source_points(anchors), targets = target_points(anchors);
   if (!(diagonal(sources) > 0)) return found;  // the rigid part says so
-  const Eigen::VectorXd weight = weights(anchors);
-  const Points aligned = align_similarly(sources, targets, Eigen::VectorXd::Ones(weight.size())) * sources;
+  const Points aligned = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols())) * sources;
   const double reach = near * diagonal(targets);
   for (Eigen::Index i = 0; i < aligned.cols(); ++i)
     for (Eigen::Index j = i + 1; j < aligned.cols(); ++j) {
-      if (!(std::isinf(weight[i]) && std::isinf(weight[j]))) continue;
+      if (!(is_exact(anchors.pairs[static_cast<std::size_t>(i)]) &&
+            is_exact(anchors.pairs[static_cast<std::size_t>(j)])))
+        continue;
       const Vector3 arm = aligned.col(j) - aligned.col(i);
       const double asked = (targets.col(j) - targets.col(i) - arm).norm();
       if (arm.norm() < reach && asked > arm.norm())
@@ -46,7 +47,7 @@ std::string to_string(const std::vector<ContradictingAnchors>& contradicting, co
   }
   if (contradicting.size() > most_named)
     text += " and " + std::to_string(contradicting.size() - most_named) + " more";
-  if (!text.empty()) text += " contradict each other; give those that are not exact a weight";
+  if (!text.empty()) text += " contradict each other; give those that are not exact a sigma";
   return text;
 }
 

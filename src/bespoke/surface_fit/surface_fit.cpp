@@ -21,6 +21,10 @@ void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& o
     throw InvalidInput("surface fitting: " + std::to_string(input.anchor_sources.cols()) +
                        " anchor sources, " + std::to_string(input.anchor_targets.cols()) +
                        " anchor targets and " + std::to_string(input.anchor_weights.size()) + " weights");
+  if (input.anchor_sigmas.size() != 0 && (input.anchor_sigmas.size() != input.anchor_weights.size() ||
+                                          !(input.anchor_sigmas.array() >= 0).all()))
+    throw InvalidInput("surface fitting: " + std::to_string(input.anchor_weights.size()) +
+                       " anchors need as many accuracies, each at least 0");
   if (!(options.max_iterations >= 1))
     throw InvalidInput("surface fitting: max_iterations is " + std::to_string(options.max_iterations) +
                        ", but must be at least 1");

@@ -98,6 +98,9 @@ struct SurfaceFitInput {
   const Points& anchor_sources;           ///< 3×k
   const Points& anchor_targets;           ///< 3×k
   const Eigen::VectorXd& anchor_weights;  ///< k
+  /// k, ≥ 0, mesh units: accuracies. Empty is 0 for all; where it is 0 the weight says how much an anchor
+  /// counts. The deformation graph goes by it, the laplacian fit by the weights alone.
+  Eigen::VectorXd anchor_sigmas = {};
 };
 
 /// Throws InvalidInput for unusable meshes or sizes that differ, SolverError when the factorisation fails.

@@ -1,6 +1,7 @@
 #include "bespoke/surface_fit/detail/deformation_graph_fit.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -23,21 +24,45 @@ constexpr std::size_t grain = 256;
 /// Anchors that lie on the surface or near it.
 struct SurfaceAnchors {
   Points sources, targets;  // 3×k
-  Eigen::VectorXd weights;
-  std::vector<Eigen::Index> exact;  // columns of those with infinite weight
+  Eigen::VectorXd weights, sigmas;
+  std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
 };
 
-SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& settings) {
+/// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
+/// their anchors are from the source.
+void lay_on_target(const TriangleMesh& source, const TargetSurface& target, SurfaceAnchors& anchors) {
+  const ClosestPointTree source_surface(source);
+  for (Eigen::Index k = 0; k < anchors.sigmas.size(); ++k) {
+    if (!(anchors.sigmas[k] > 0)) continue;
+    const double wanted = source_surface.closest(anchors.sources.col(k))->squared_distance;
+    const SurfacePoint foot = target.closest(anchors.targets.col(k));
+    if (foot.squared_distance > wanted)
+      anchors.targets.col(k) =
+          foot.point + std::sqrt(wanted / foot.squared_distance) * (anchors.targets.col(k) - foot.point);
+  }
+}
+
+SurfaceAnchors anchors_of(const SurfaceFitInput& input, const TargetSurface& target,
+                          const NodeFitSettings& settings) {
   const std::vector<Eigen::Index> near = anchors_near(input.source, input.anchor_sources, settings);
+  const Eigen::VectorXd sigmas = input.anchor_sigmas.size() == 0
+                                     ? Eigen::VectorXd::Zero(input.anchor_weights.size())
+                                     : input.anchor_sigmas;
   SurfaceAnchors anchors{input.anchor_sources(Eigen::all, near),
                          input.anchor_targets(Eigen::all, near),
                          input.anchor_weights(near),
+                         sigmas(near),
                          {}};
-  for (Eigen::Index k = 0; k < anchors.weights.size(); ++k)
-    if (std::isinf(anchors.weights[k])) anchors.exact.push_back(k);
+  for (Eigen::Index k = 0; k < anchors.weights.size(); ++k) {
+    if (anchors.sigmas[k] > 0)
+      anchors.weights[k] = std::numeric_limits<double>::infinity();  // limited by σ instead
+    else if (std::isinf(anchors.weights[k]))
+      anchors.exact.push_back(k);
+  }
+  lay_on_target(input.source, target, anchors);
   return anchors;
 }
 
@@ -117,9 +142,10 @@ struct Scene {
 /// Nodes, layers of space, mending. Returns what the summary says of them.
 SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
                          const DeformationGraphSettings& settings, const Progress& progress) {
-  const NodeFit nodes = fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets,
-                                   scene.anchors.weights, scene.diagonal, options.boundaries},
-                                  settings.nodes, progress);
+  const NodeFit nodes =
+      fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets, scene.anchors.weights,
+                 scene.diagonal, options.boundaries, scene.anchors.sigmas},
+                settings.nodes, progress);
   scene.surface.vertices = nodes.vertices;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
@@ -160,7 +186,7 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   const DeformationGraphSettings settings;
   TriangleMesh surface = refined_source(input.source, settings.edges_per_area);
   const TargetSurface target(input.target);
-  const SurfaceAnchors anchors = anchors_of(input, settings.nodes);
+  const SurfaceAnchors anchors = anchors_of(input, target, settings.nodes);
   const auto [aligned, suffices] = align(input, surface, target, anchors, settings.similarity);
   surface.vertices = aligned * surface.vertices;
   Scene scene{std::move(surface),

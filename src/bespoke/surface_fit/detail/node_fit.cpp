@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/statistics.h"
+#include "bespoke/surface_fit/detail/anchor_limits.h"
 #include "bespoke/surface_fit/detail/boundary_match.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
 #include "bespoke/surface_fit/detail/node_system.h"
@@ -46,6 +48,22 @@ Points carried(const NodeFitInput& input, const std::vector<NodeAnchor>& anchors
   return places;
 }
 
+double median_distance(const std::vector<PlanePair>& planes, const Points& vertices) {
+  std::vector<double> distances;
+  for (const PlanePair& plane : planes)
+    distances.push_back((plane.point - vertices.col(plane.vertex)).norm());
+  return summarize(std::move(distances)).median;
+}
+
+/// Limits for the next solve; empty where every anchor is exact or weighted.
+std::vector<double> next_limits(const NodeFitInput& input, const std::vector<NodeAnchor>& anchors,
+                                const NodeGoals& goals, AnchorLimits& limits) {
+  if (input.anchor_sigmas.size() == 0 || !(input.anchor_sigmas.maxCoeff() > 0)) return {};
+  const Eigen::VectorXd residuals =
+      (carried(input, anchors, goals.vertices) - input.anchor_targets).colwise().norm();
+  return limits.next({residuals, median_distance(goals.planes, goals.vertices), goals.smoothing});
+}
+
 }  // namespace
 
 NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress) {
@@ -56,6 +74,7 @@ NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, co
   BoundaryMatcher boundaries({rest, input.anchor_sources, input.target, input.boundaries},
                              settings.boundaries);
   const NodeSurface node_surface{input.rest, areas.sum(), input.diagonal};
+  AnchorLimits limits(input.anchor_sigmas, node_surface.area, input.diagonal, settings.anchors);
 
   NodeFit fit;
   fit.vertices = input.rest.vertices;
@@ -75,9 +94,10 @@ NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, co
             {rest.moved(fit.vertices), input.target, areas, target_areas, input.diagonal}, level, settings);
       if (fit.iterations == settings.boundary_start) boundaries.decide(fit.vertices);
       const std::vector<BoundaryMatch> cuts = boundaries.match(fit.vertices);
-      fit.vertices = system.solve({fit.vertices, planes, cuts,
-                                   smoothing_length(settings, fit.iterations, input.diagonal),
-                                   settings.anchor_growth * (iteration + 1)});
+      NodeGoals goals{fit.vertices, planes, cuts, smoothing_length(settings, fit.iterations, input.diagonal),
+                      settings.anchor_growth * (iteration + 1)};
+      goals.anchor_limits = next_limits(input, anchors, goals, limits);
+      fit.vertices = system.solve(goals);
     }
   }
   fit.anchor_sources = carried(input, anchors, fit.vertices);

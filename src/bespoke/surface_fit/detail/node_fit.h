@@ -17,6 +17,8 @@ struct NodeFitInput {
   const Eigen::VectorXd& anchor_weights;
   double diagonal = 0;  ///< of the aligned source
   BoundaryRule boundaries = BoundaryRule::automatic;
+  /// k, ≥ 0, mesh units: accuracies of anchors of infinite weight; empty is 0 for all.
+  Eigen::VectorXd anchor_sigmas = {};
 };
 
 struct NodeFit {

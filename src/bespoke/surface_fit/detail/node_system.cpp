@@ -89,7 +89,7 @@ Points NodeSystem::solve(const NodeGoals& goals) {
   system_.set_zero();
   add_planes(goals);
   add_boundary(goals.boundary);
-  add_anchors(goals.exact_anchor_weight);
+  add_anchors(goals);
   add_bending(std::pow(goals.smoothing / nodes_.spacing, 4));
   add_local_similarity(std::pow(settings_.shape_share * goals.smoothing / nodes_.spacing, 2));
   displacements_ = system_.solve();
@@ -143,10 +143,14 @@ void NodeSystem::add_boundary(const std::vector<BoundaryMatch>& boundary) {
   }
 }
 
-void NodeSystem::add_anchors(double exact_weight) {
-  for (const Anchor& anchor : anchors_) {
-    const double weight = std::isinf(anchor.weight) ? exact_weight / double(anchors_.size())
-                                                    : anchor.weight / settings_.whole_surface_weight;
+void NodeSystem::add_anchors(const NodeGoals& goals) {
+  for (std::size_t k = 0; k < anchors_.size(); ++k) {
+    const Anchor& anchor = anchors_[k];
+    double weight = anchor.weight / settings_.whole_surface_weight;
+    if (std::isinf(anchor.weight)) {
+      weight = goals.exact_anchor_weight / double(anchors_.size());
+      if (!goals.anchor_limits.empty()) weight = std::min(weight, goals.anchor_limits[k]);
+    }
     add_quadratic(anchor.foot, weight * Matrix3::Identity(), anchor.displacement);
   }
 }

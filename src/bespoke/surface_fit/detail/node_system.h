@@ -23,6 +23,8 @@ struct NodeGoals {
   const std::vector<BoundaryMatch>& boundary;
   double smoothing = 0;            ///< ℓ
   double exact_anchor_weight = 0;  ///< of all exact anchors together; the surface has 1
+  /// k: the most that each anchor of infinite weight may pull (anchor_limits.h); empty: no limit.
+  std::vector<double> anchor_limits = {};
 };
 
 /// The surface that the nodes deform.
@@ -64,7 +66,7 @@ class NodeSystem {
   void add_quadratic(const Nodes& combination, const Matrix3& form, const Vector3& goal_displacement);
   void add_planes(const NodeGoals& goals);
   void add_boundary(const std::vector<BoundaryMatch>& boundary);
-  void add_anchors(double exact_weight);
+  void add_anchors(const NodeGoals& goals);
   void add_bending(double weight);
   void add_local_similarity(double weight);
   Matrix3 local_similarity(int node) const;

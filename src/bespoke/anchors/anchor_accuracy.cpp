@@ -1,0 +1,108 @@
+#include "bespoke/anchors/anchor_accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/statistics.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double near = 0.02;                // of the source's diagonal: an anchor of the surface
+constexpr double resolution = 1e-3;          // of the same: the least σ that is estimated
+constexpr double inlier_sigmas = 3;          // farther ones do not shape the estimate: 0.3 % of normal errors
+constexpr double slipped_sigmas = 4;         // 1 in 16,000 of normal errors
+constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
+
+bool is_unrated(const AnchorPair& pair) { return !pair.sigma && std::isinf(pair.weight); }
+
+/// How far each unrated pair of the surface lies off the target beyond what it lies off the source.
+std::vector<SlippedAnchor> offsets(const Anchors& anchors, const TriangleMesh& source,
+                                   const TriangleMesh& target, double reach) {
+  const ClosestPointTree source_surface(source), target_surface(target);
+  std::vector<SlippedAnchor> all;
+  for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
+    const AnchorPair& pair = anchors.pairs[i];
+    if (!is_unrated(pair)) continue;
+    const auto on_source = source_surface.closest(pair.a, {.max_distance = reach});
+    if (!on_source) continue;
+    const double distance = std::sqrt(target_surface.closest(pair.b)->squared_distance);
+    all.push_back({i, std::abs(distance - std::sqrt(on_source->squared_distance))});
+  }
+  return all;
+}
+
+/// The standard deviation of normal errors with these absolute values, robust against a few that are not.
+double robust_deviation(const std::vector<SlippedAnchor>& offsets) {
+  std::vector<double> distances;
+  for (const SlippedAnchor& offset : offsets) distances.push_back(offset.distance);
+  const double limit = inlier_sigmas * summarize(distances).median / median_of_normal;
+  std::erase_if(distances, [&](double distance) { return distance > limit; });
+  double squares = 0;
+  for (const double distance : distances) squares += distance * distance;
+  return distances.empty() ? 0 : std::sqrt(squares / double(distances.size()));
+}
+
+Anchors without_swapped(Anchors anchors, const std::vector<SwappedAnchors>& swapped) {
+  std::vector<char> drop(anchors.pairs.size(), 0);
+  for (const SwappedAnchors& pair : swapped) drop[pair.first] = drop[pair.second] = 1;
+  std::vector<AnchorPair> kept;
+  for (std::size_t i = 0; i < anchors.pairs.size(); ++i)
+    if (!drop[i]) kept.push_back(std::move(anchors.pairs[i]));
+  anchors.pairs = std::move(kept);
+  return anchors;
+}
+
+}  // namespace
+
+RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target) {
+  RatedAnchors rated{anchors, {}, {}};
+  AnchorAccuracy& accuracy = rated.accuracy;
+  accuracy.swapped = swapped_anchors(anchors);
+  // Who gives an accuracy stands by the pair.
+  std::erase_if(accuracy.swapped, [&](const SwappedAnchors& pair) {
+    return !(is_unrated(anchors.pairs[pair.first]) && is_unrated(anchors.pairs[pair.second]));
+  });
+  const double source_diagonal = diagonal(source.vertices);
+  const double least = resolution * source_diagonal;
+  const std::vector<SlippedAnchor> off = offsets(anchors, source, target, near * source_diagonal);
+  if (!off.empty()) {
+    const double deviation = robust_deviation(off);
+    accuracy.estimated = off.size();
+    accuracy.sigma = deviation < least ? 0 : deviation;
+    const double unit = std::max(deviation, least);
+    for (const SlippedAnchor& offset : off) {
+      rated.anchors.pairs[offset.index].sigma =
+          offset.distance > inlier_sigmas * unit ? offset.distance : accuracy.sigma;
+      if (offset.distance > slipped_sigmas * unit) accuracy.slipped.push_back(offset);
+    }
+  }
+  for (AnchorPair& pair : rated.anchors.pairs)
+    if (is_unrated(pair)) pair.sigma = 0;
+  for (const AnchorPair& pair : rated.anchors.pairs) rated.sigmas.push_back(pair.sigma.value_or(0));
+  for (const SwappedAnchors& pair : accuracy.swapped)
+    rated.sigmas[pair.first] = rated.sigmas[pair.second] =
+        (anchors.pairs[pair.first].b - anchors.pairs[pair.second].b).norm();
+  rated.anchors = without_swapped(std::move(rated.anchors), accuracy.swapped);
+  return rated;
+}
+
+std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors) {
+  std::string text;
+  char number[120];
+  if (accuracy.sigma > 0) {
+    std::snprintf(number, sizeof number, "%zu anchors without an accuracy: sigma %.4g estimated",
+                  accuracy.estimated, accuracy.sigma);
+    text = number;
+  }
+  for (const SlippedAnchor& slipped : accuracy.slipped) {
+    std::snprintf(number, sizeof number, " lies %.4g beside the target and hardly pulls", slipped.distance);
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, slipped.index) + number;
+  }
+  if (!accuracy.swapped.empty()) text += (text.empty() ? "" : "; ") + to_string(accuracy.swapped, anchors);
+  return text;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bespoke/anchors/anchors.h"
+#include "bespoke/anchors/swapped_anchors.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// A pair that lies much farther beside the target than the others do.
+struct SlippedAnchor {
+  std::size_t index = 0;
+  double distance = 0;  ///< mesh units
+};
+
+/// What the models say about anchors that came without a weight and without a σ.
+struct AnchorAccuracy {
+  std::size_t estimated = 0;  ///< pairs whose σ was estimated
+  double sigma = 0;           ///< of these, mesh units; 0: nothing speaks against meeting them exactly
+  std::vector<SlippedAnchor> slipped;
+  std::vector<SwappedAnchors> swapped;
+};
+
+/// Anchors as the fit uses them.
+struct RatedAnchors {
+  Anchors anchors;  ///< without swapped pairs; every pair without a weight has its σ
+  std::vector<double>
+      sigmas;  ///< of all pairs given, mesh units; a swapped one's is the way to the other's target
+  AnchorAccuracy accuracy;
+};
+
+/// Estimates σ of the pairs near the source's surface (2 % of its diagonal; farther ones are points of space
+/// and stay exact). If q is on the source, q' should be on the target: however the surface fit, freed of the
+/// anchors, slides along the target, it moves q' by this distance at least. An inaccurate pair is off in all
+/// three directions alike, so the root mean square of the distances, those beyond three standard deviations
+/// left out, is σ. Below 0.1 % of the diagonal it cannot be told from the tessellation, and the pairs count
+/// as exact. A pair left out has its own distance as σ; beyond four times the others' it is listed as
+/// slipped. Swapped pairs (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for
+/// unusable meshes.
+RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
+
+/// One line, empty where nothing was estimated above 0 and nothing found.
+std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors);
+
+}  // namespace bespoke

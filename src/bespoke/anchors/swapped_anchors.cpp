@@ -1,0 +1,58 @@
+#include "bespoke/anchors/swapped_anchors.h"
+
+#include <utility>
+
+#include "bespoke/anchors/detail/biharmonic_warp.h"
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t min_pairs = 6;  // four are met by the affine tail alone
+
+/// Of the energy. On 29 pairs of models with 13 to 36 anchors no interchange of right ones lowered it below
+/// 0.95, with 1 % of noise 0.82; changing a swapped pair back left less than 0.42 in all but two.
+constexpr double largest_ratio = 0.5;
+
+SwappedAnchors best_interchange(const BiharmonicWarp& warp, std::size_t count) {
+  const double energy = warp.energy();
+  SwappedAnchors best{0, 0, 1};
+  if (!(energy > 0)) return best;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count; ++j) {
+      const double ratio =
+          warp.energy_interchanged(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) / energy;
+      if (ratio < best.energy_ratio) best = {i, j, ratio};
+    }
+  return best;
+}
+
+}  // namespace
+
+std::vector<SwappedAnchors> swapped_anchors(const Anchors& anchors) {
+  const Points sources = source_points(anchors);
+  Points targets = target_points(anchors);
+  if (!(sources.allFinite() && targets.allFinite()))
+    throw InvalidInput("an anchor has a coordinate that is not finite");
+  std::vector<SwappedAnchors> swapped;
+  const std::size_t count = anchors.pairs.size();
+  if (count < min_pairs) return swapped;
+  while (2 * swapped.size() < count / 3) {  // most pairs must be right for the others to be seen
+    const SwappedAnchors best = best_interchange(BiharmonicWarp(sources, targets), count);
+    if (!(best.energy_ratio <= largest_ratio)) break;
+    targets.col(static_cast<Eigen::Index>(best.first))
+        .swap(targets.col(static_cast<Eigen::Index>(best.second)));
+    swapped.push_back(best);
+  }
+  return swapped;
+}
+
+std::string to_string(const std::vector<SwappedAnchors>& swapped, const Anchors& anchors) {
+  std::string text;
+  for (const SwappedAnchors& pair : swapped)
+    text += (text.empty() ? "anchors " : ", ") + label(anchors, pair.first) + " and " +
+            label(anchors, pair.second);
+  return text.empty() ? text : text + " look swapped and are left out";
+}
+
+}  // namespace bespoke

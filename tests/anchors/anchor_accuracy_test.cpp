@@ -1,0 +1,111 @@
+#include "bespoke/anchors/anchor_accuracy.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+constexpr std::size_t count = 60;
+
+/// A sphere and an ellipsoid, with vertices of the one paired with their images.
+struct Pair {
+  TriangleMesh source = shapes::icosphere(4);
+  TriangleMesh target = shapes::moved(source, {Vector3(1.1, 0.95, 1).asDiagonal(), Vector3(2, 0, 0)});
+  Anchors anchors;
+
+  Pair() {
+    const auto stride = source.vertices.cols() / static_cast<Eigen::Index>(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto vertex = static_cast<Eigen::Index>(k) * stride;
+      AnchorPair pair{"p", source.vertices.col(vertex), target.vertices.col(vertex)};
+      pair.name += std::to_string(k);
+      anchors.pairs.push_back(pair);
+    }
+  }
+  double size() const { return diagonal(source.vertices); }
+  RatedAnchors rate() const { return rate_anchors(anchors, source, target); }
+
+  void disturb(double sigma) {
+    std::mt19937 generator(7);
+    std::normal_distribution<double> error(0, sigma);
+    for (AnchorPair& pair : anchors.pairs)
+      for (double& coordinate : pair.b) coordinate += error(generator);
+  }
+};
+
+TEST(RateAnchors, TakesAnchorsOnBothSurfacesForExact) {
+  const Pair pair;
+  const RatedAnchors rated = pair.rate();
+  EXPECT_EQ(rated.accuracy.estimated, count);
+  EXPECT_EQ(rated.accuracy.sigma, 0);
+  EXPECT_THAT(rated.sigmas, Each(0.0));
+  for (const AnchorPair& anchor : rated.anchors.pairs) EXPECT_TRUE(is_exact(anchor));
+  EXPECT_EQ(to_string(rated.accuracy, pair.anchors), "");
+}
+
+TEST(RateAnchors, FindsTheDeviationOfTheErrors) {
+  for (const double share : {0.003, 0.01}) {
+    Pair pair;
+    pair.disturb(share * pair.size());
+    const RatedAnchors rated = pair.rate();
+    // The deviation of 60 squares' mean is 9 % of the root; three of them.
+    EXPECT_NEAR(rated.accuracy.sigma, share * pair.size(), 0.28 * share * pair.size());
+    EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("60 anchors without an accuracy"));
+    EXPECT_TRUE(rated.accuracy.swapped.empty());
+  }
+}
+
+TEST(RateAnchors, LeavesAloneWhatHasAnAccuracyOrIsNoPointOfTheSurface) {
+  Pair pair;
+  pair.disturb(0.01 * pair.size());
+  pair.anchors.pairs[0].sigma = 0;
+  pair.anchors.pairs[1].sigma = 0.5;
+  pair.anchors.pairs[2].weight = 3;
+  pair.anchors.pairs[3].a *= 1.5;
+  const RatedAnchors rated = pair.rate();
+  EXPECT_EQ(rated.accuracy.estimated, count - 4);
+  EXPECT_EQ(rated.anchors.pairs[0].sigma, 0.0);
+  EXPECT_EQ(rated.anchors.pairs[1].sigma, 0.5);
+  EXPECT_EQ(rated.anchors.pairs[2].sigma, std::nullopt);
+  EXPECT_EQ(rated.anchors.pairs[2].weight, 3);
+  EXPECT_EQ(rated.anchors.pairs[3].sigma, 0.0);
+  EXPECT_EQ(rated.anchors.pairs[4].sigma, rated.accuracy.sigma);
+}
+
+TEST(RateAnchors, NamesAClickBesideTheTargetAndTrustsItNoFarther) {
+  Pair pair;
+  const double slip = 0.05 * pair.size();
+  pair.anchors.pairs[8].b += slip * (pair.anchors.pairs[8].b - Vector3(2, 0, 0)).normalized();
+  const RatedAnchors rated = pair.rate();
+  ASSERT_EQ(rated.accuracy.slipped.size(), 1u);
+  EXPECT_EQ(rated.accuracy.slipped[0].index, 8u);
+  EXPECT_EQ(rated.accuracy.sigma, 0);
+  EXPECT_NEAR(rated.sigmas[8], slip, 0.1 * slip);  // an ellipsoid's normals are not quite its radii
+  EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p8\" lies"));
+}
+
+TEST(RateAnchors, LeavesOutASwappedPairAndNamesIt) {
+  Pair pair;
+  std::swap(pair.anchors.pairs[3].b, pair.anchors.pairs[40].b);
+  const RatedAnchors rated = pair.rate();
+  ASSERT_EQ(rated.accuracy.swapped.size(), 1u);
+  EXPECT_EQ(rated.anchors.pairs.size(), count - 2);
+  ASSERT_EQ(rated.sigmas.size(), count);
+  EXPECT_EQ(rated.sigmas[3], (pair.anchors.pairs[3].b - pair.anchors.pairs[40].b).norm());
+  EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p3\" and \"p40\" look swapped"));
+  for (AnchorPair& anchor : pair.anchors.pairs) anchor.sigma = 0;  // somebody stands by them
+  EXPECT_TRUE(pair.rate().accuracy.swapped.empty());
+}
+
+}  // namespace
+}  // namespace bespoke

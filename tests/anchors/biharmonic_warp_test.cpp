@@ -1,0 +1,38 @@
+#include "bespoke/anchors/detail/biharmonic_warp.h"
+
+#include <gtest/gtest.h>
+
+#include "support/random_points.h"
+
+namespace bespoke {
+namespace {
+
+const Points sources = test::random_points(15, 1), targets = test::random_points(15, 2);
+
+TEST(BiharmonicWarp, BendsNothingUnderAnAffineMap) {
+  const Points image = (test::random_rotation(3) * 1.3 * sources).colwise() + Vector3(2, 0, 1);
+  const BiharmonicWarp warp(sources, image);
+  EXPECT_NEAR(warp.energy(), 0, 1e-9);
+  EXPECT_LT((warp(Vector3(5, 6, 7)) - (test::random_rotation(3) * 1.3 * Vector3(5, 6, 7) + Vector3(2, 0, 1)))
+                .norm(),
+            1e-9);
+}
+
+TEST(BiharmonicWarp, PredictsAPairByTheOthers) {
+  const BiharmonicWarp warp(sources, targets);
+  const BiharmonicWarp others(sources.leftCols(14), targets.leftCols(14));
+  // The smoothing is relative to the sources' box, which the last of them does not span.
+  EXPECT_NEAR(warp.left_out(14), (others(sources.col(14)) - targets.col(14)).norm(), 1e-2);
+}
+
+TEST(BiharmonicWarp, KnowsTheEnergyOfInterchangedTargets) {
+  const BiharmonicWarp warp(sources, targets);
+  EXPECT_GT(warp.energy(), 0);
+  Points changed = targets;
+  changed.col(3).swap(changed.col(9));
+  const double expected = BiharmonicWarp(sources, changed).energy();
+  EXPECT_NEAR(warp.energy_interchanged(3, 9), expected, 1e-9 * expected);
+}
+
+}  // namespace
+}  // namespace bespoke
