@@ -250,6 +250,18 @@ TEST_F(FitCommand, AddsTheCornersOfTheBoxes) {
   EXPECT_EQ(info("map.vdb")["anchors"][14]["name"], "corner_000");
 }
 
+TEST_F(FitCommand, TakesAnAccuracyForAnchorsWithoutOne) {
+  ASSERT_EQ(pair_.fit("map.vdb", {"--anchor-sigma", "1%"}).exit_code, 0);
+  const double diagonal = 2 * Vector3(1, 1.4, 0.8).norm();
+  for (const json& anchor : info("map.vdb")["anchors"]) {
+    // A sphere's inscribed mesh is a little smaller than its box.
+    EXPECT_NEAR(anchor["sigma"], 0.01 * diagonal, 0.0005 * diagonal);
+  }
+  ASSERT_EQ(pair_.fit("map.vdb", {"--anchor-sigma", "0"}).exit_code, 0);
+  for (const json& anchor : info("map.vdb")["anchors"]) EXPECT_FALSE(anchor.contains("sigma"));
+  EXPECT_EQ(pair_.fit("map.vdb", {"--anchor-sigma=-1"}).exit_code, 1);
+}
+
 // Fig. 5: corners lie far off the surface, and the map meets them.
 TEST_F(FitCommand, MeetsTheCornersOfTheBoxes) {
   ASSERT_EQ(pair_.fit("map.vdb", {"--add-corners", "--keep-exact"}).exit_code, 0);

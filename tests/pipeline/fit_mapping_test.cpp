@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <utility>
 #include <variant>
 
 #include "bespoke/error.h"
@@ -108,6 +109,20 @@ TEST(FitMapping, RecoversARigidMotionExactly) {
   EXPECT_LT((fit.target_from_source.rotation - moved_away.rotation).norm(), 1e-12);
   const Points x = 3 * test::random_points(100, 1);
   EXPECT_LT(((*fit.elastic)(x)-x).cwiseAbs().maxCoeff(), 1e-7);
+}
+
+TEST(FitMapping, FitsAsIfSwappedAnchorsWereNotThere) {
+  Pair without, swapped;
+  without.anchors.pairs.erase(without.anchors.pairs.begin() + 7);
+  without.anchors.pairs.erase(without.anchors.pairs.begin() + 2);
+  std::swap(swapped.anchors.pairs[2].b, swapped.anchors.pairs[7].b);
+  const FittedMapping fit = swapped.fit();
+  EXPECT_EQ(fit.fitted_vertices, without.fit().fitted_vertices);
+  ASSERT_EQ(fit.summary.accuracy.swapped.size(), 1u);
+  EXPECT_EQ(fit.anchor_residual.size(), swapped.anchors.pairs.size());
+  EXPECT_GT(fit.anchor_residual[2], 0.5);
+  EXPECT_THAT(stage_lines(fit.summary, swapped.anchors).front().line,
+              HasSubstr("\"anchor 2\" and \"anchor 7\" look swapped"));
 }
 
 TEST(FitMapping, SaysWhatEveryStageFound) {

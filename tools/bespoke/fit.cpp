@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -31,6 +32,7 @@ struct FitArguments {
   std::optional<BoundaryRule> boundaries;
   std::optional<ElasticMethod> elastic;
   std::optional<RotationPath> path;
+  std::optional<Length> anchor_sigma;
   std::optional<Length> lambda;
   std::optional<Length> tolerance;
   std::optional<Length> fit_tolerance;
@@ -49,6 +51,8 @@ void require_consistent(const FitArguments& arguments) {
     throw CLI::ValidationError("--anchors", "is required unless --fitted gives the fitted source");
   if (arguments.add_corners && arguments.anchors.empty())
     throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
+  if (arguments.anchor_sigma && arguments.anchors.empty())
+    throw CLI::ValidationError("--anchor-sigma", "is of the pairs of --anchors, which is missing");
   if (!arguments.confidence_out.empty() && !arguments.fitted.empty())
     throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
   std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
@@ -123,6 +127,14 @@ void warn_of_contradictions(const Anchors& anchors) {
   if (!text.empty()) std::fprintf(stderr, "bespoke: warning: %s\n", text.c_str());
 }
 
+/// Gives a σ to the pairs that came without an accuracy; the printed method has exact anchors only.
+void rate_by_options(Anchors& anchors, const FitArguments& arguments, double source_diagonal) {
+  if (!arguments.anchor_sigma && !arguments.paper) return;
+  const double sigma = arguments.anchor_sigma ? arguments.anchor_sigma->in_mesh_units(source_diagonal) : 0;
+  for (AnchorPair& pair : anchors.pairs)
+    if (!pair.sigma && std::isinf(pair.weight)) pair.sigma = sigma;
+}
+
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
   if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
@@ -153,6 +165,7 @@ void run(const FitArguments& arguments, const Progress& progress) {
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
   warn_of_contradictions(anchors);
+  rate_by_options(anchors, arguments, diagonal(source.vertices));
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
@@ -223,6 +236,12 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
   add_length_option(fit, "--fit-tolerance", arguments.fit_tolerance,
                     defaulted("The multiscale and diffeomorphic maps refine where the fit is missed by more",
                               default_fit_tolerance));
+  add_length_option(
+      fit, "--anchor-sigma", arguments.anchor_sigma,
+      "Accuracy of the anchors that have neither a sigma nor a weight of their own: standard "
+      "deviation of a coordinate, mesh units or % of the diagonal; 0 meets them exactly (default: "
+      "estimated from their distance to the target)",
+      LengthRange::not_negative);
   add_length_option(
       fit, "--voxel-size", arguments.voxel_size,
       "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: nested "

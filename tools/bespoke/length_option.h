@@ -16,14 +16,17 @@ struct Length {
   }
 };
 
-/// "0.02" or "10%"; finite and positive. Throws CLI::ValidationError naming `option` and the text.
-Length parse_length(const std::string& option, const std::string& text);
+enum class LengthRange { positive, not_negative };
+
+/// "0.02" or "10%"; finite and within the range. Throws CLI::ValidationError naming `option` and the text.
+Length parse_length(const std::string& option, const std::string& text,
+                    LengthRange range = LengthRange::positive);
 
 /// A fraction of the diagonal as the user would write it, for instance "10%".
 std::string percentage(double fraction);
 
 /// Adds an option that holds a length; `description` ends with what the default is.
 CLI::Option* add_length_option(CLI::App& app, const std::string& name, std::optional<Length>& length,
-                               const std::string& description);
+                               const std::string& description, LengthRange range = LengthRange::positive);
 
 }  // namespace bespoke::command

@@ -48,6 +48,7 @@ void require_valid(const AssetRecord& record) {
     require(anchor.a.allFinite() && anchor.b.allFinite(), "anchor " + anchor.name + " is not finite");
     require(anchor.weight > 0, "anchor " + anchor.name + " has weight " + std::to_string(anchor.weight));
     require_magnitude(anchor.residual, "anchor residual");
+    require_magnitude(anchor.sigma, "anchor sigma");
   }
   require_valid(record.source, "source");
   require_valid(record.target, "target");

@@ -25,6 +25,7 @@ struct AnchorRecord {
   Vector3 b;            ///< mesh units
   double weight = 0;    ///< infinite = exact
   double residual = 0;  ///< |Ψ(1)(a) − b|, mesh units
+  double sigma = 0;  ///< accuracy that the fit took the pair to have, mesh units; 0 where the weight says it
 };
 
 /// What an asset says about its map besides the map itself. No clock, no path, no user.

@@ -43,8 +43,7 @@ std::vector<std::size_t> anchors_off_surface(const TriangleMesh& source, const A
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
     const AnchorPair& anchor = anchors.pairs[i];
-    if (std::isinf(anchor.weight) && !surface.closest(anchor.a, {.max_distance = off_surface}))
-      found.push_back(i);
+    if (is_exact(anchor) && !surface.closest(anchor.a, {.max_distance = off_surface})) found.push_back(i);
   }
   return found;
 }

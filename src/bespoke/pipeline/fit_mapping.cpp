@@ -19,10 +19,11 @@ struct Pairs {
   Points sources;
   Points targets;
   Eigen::VectorXd weights;
+  Eigen::VectorXd sigmas;
 };
 
 Pairs pairs_of(const Anchors& anchors) {
-  return {source_points(anchors), target_points(anchors), weights(anchors)};
+  return {source_points(anchors), target_points(anchors), spline_weights(anchors), sigmas(anchors)};
 }
 
 std::vector<double> distances(const Points& from, const Points& to) {
@@ -35,8 +36,9 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
   if (!(options.lambda > 0 && std::isfinite(options.lambda)))
     throw InvalidInput("lambda is " + std::to_string(options.lambda) + ", but must be finite and above 0");
   for (const AnchorPair& pair : anchors.pairs)
-    if (!(pair.a.allFinite() && pair.b.allFinite() && pair.weight > 0))
-      throw InvalidInput("anchor \"" + pair.name + "\" is not finite, or its weight is not above 0");
+    if (!(pair.a.allFinite() && pair.b.allFinite() && pair.weight > 0 && pair.sigma.value_or(0) >= 0))
+      throw InvalidInput("anchor \"" + pair.name +
+                         "\" is not finite, its weight is not above 0, or its sigma below 0");
 }
 
 void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted) {
@@ -81,6 +83,11 @@ ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& 
   return with_anchors(std::move(pairs), anchors, off, inverse(fitted.target_from_source));
 }
 
+std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors& anchors) {
+  return distances(fitted.target_from_source * (*fitted.elastic)(source_points(anchors)),
+                   target_points(anchors));
+}
+
 /// The elastic map of the fitted vertices (IV.D, IV.E), and what can be said only at the end.
 void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                      const FitOptions& options, const Progress& progress) {
@@ -102,8 +109,7 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
       distances(images(Eigen::all, pairs.referenced), result.fitted_vertices(Eigen::all, pairs.referenced)));
   if (options.fit_tolerance > 0)
     summary.unmet = unmet_vertices(source, images, result.fitted_vertices, options.fit_tolerance);
-  result.anchor_residual =
-      distances(result.target_from_source * elastic(source_points(anchors)), target_points(anchors));
+  result.anchor_residual = anchor_residuals(result, anchors);
   summary.anchor_residuals = summarize(result.anchor_residual);
   summary.seconds = watch.seconds();
 }
@@ -116,7 +122,10 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   require_valid(target, "target");
   FittedMapping result;
   FitSummary& summary = result.summary;
-  Pairs pairs = pairs_of(anchors);
+  RatedAnchors rated = rate_anchors(anchors, source, target);
+  summary.accuracy = std::move(rated.accuracy);
+  result.anchor_sigma = std::move(rated.sigmas);
+  Pairs pairs = pairs_of(rated.anchors);
 
   // IV.A: Γ. From here on everything is in the source frame.
   const Stopwatch rigid_watch;
@@ -133,16 +142,17 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   const Points warped = warp_coarsely(source, pairs, anchors, summary.coarse.emplace());
 
   // IV.C: H'_a.
-  SurfaceFit fit =
-      fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights},
-                  options.surface_fit, progress);
+  SurfaceFit fit = fit_surface(
+      {source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights, pairs.sigmas},
+      options.surface_fit, progress);
   result.fitted_vertices = std::move(fit.vertices);
   result.confidence = std::move(fit.confidence);
   summary.surface = std::move(fit.summary);
   summary.surface_method = options.surface_fit.method;
 
   // IV.D, IV.E: E.
-  fit_elastic_map(result, source, anchors, options, progress);
+  fit_elastic_map(result, source, rated.anchors, options, progress);
+  result.anchor_residual = anchor_residuals(result, anchors);
   return result;
 }
 

@@ -24,12 +24,14 @@ struct FittedMapping {
   Points fitted_vertices;                     ///< H'_a, 3×n, source frame, mesh units
   std::vector<double> confidence;             ///< of the surface fitting, n (surface_fit.h); empty without
   std::vector<double> anchor_residual;        ///< |Γ(E(q)) − q'|, mesh units, one per pair
+  std::vector<double> anchor_sigma;           ///< as the fit took it, mesh units, one per pair; empty without
   FitSummary summary;
 };
 
-/// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Exact anchors farther
-/// from the source's surface than the fit tolerance are points of their own for E (p-FFD, which knows faces
-/// only, leaves them out). Throws InvalidInput, SolverError, MemoryLimitError.
+/// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
+/// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact
+/// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
+/// which knows faces only, leaves them out). Throws InvalidInput, SolverError, MemoryLimitError.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 

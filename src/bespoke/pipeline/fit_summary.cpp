@@ -41,7 +41,10 @@ std::string to_string(const ElasticSummary& summary) {
 }
 
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
-  std::vector<StageLine> lines{{"rigid", to_string(summary.rigid)}};
+  std::vector<StageLine> lines;
+  const std::string accuracy = to_string(summary.accuracy, anchors);
+  if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});
+  lines.push_back({"rigid", to_string(summary.rigid)});
   if (summary.coarse) lines.push_back({"coarse", to_string(*summary.coarse, anchors)});
   lines.push_back({"surface-fit", summary.surface ? std::string(entry_of(summary.surface_method).name) +
                                                         ": " + to_string(*summary.surface)

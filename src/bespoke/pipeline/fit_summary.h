@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/anchors/anchor_accuracy.h"
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/bake/bake.h"
@@ -44,6 +45,7 @@ struct ElasticSummary {
 
 /// What every stage of a fit found.
 struct FitSummary {
+  AnchorAccuracy accuracy;  ///< of anchors that came without
   RigidSummary rigid;
   std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given
   std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
@@ -59,11 +61,11 @@ std::string to_string(const ElasticSummary& summary);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "rigid", "coarse", "surface-fit", "elastic", "bake"
+  std::string name;  ///< "accuracy", "rigid", "coarse", "surface-fit", "elastic", "bake"
   std::string line;
 };
 
-/// In their order.
+/// In their order; "accuracy" only where it found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

@@ -49,7 +49,8 @@ std::vector<AnchorRecord> anchor_records(const Anchors& anchors, const FittedMap
   std::vector<AnchorRecord> records;
   for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
     const AnchorPair& pair = anchors.pairs[i];
-    records.push_back({pair.name, pair.a, pair.b, pair.weight, fit.anchor_residual[i]});
+    const double sigma = fit.anchor_sigma.empty() ? pair.sigma.value_or(0) : fit.anchor_sigma[i];
+    records.push_back({pair.name, pair.a, pair.b, pair.weight, fit.anchor_residual[i], sigma});
   }
   return records;
 }

@@ -73,6 +73,21 @@ Json to_json(const RigidSummary& summary) {
           {"residual", to_json(summary.residuals)}};
 }
 
+Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
+  Json slipped = Json::array(), swapped = Json::array();
+  for (const SlippedAnchor& anchor : accuracy.slipped)
+    slipped.push_back(
+        {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
+  for (const SwappedAnchors& pair : accuracy.swapped)
+    swapped.push_back({{"indices", {pair.first, pair.second}},
+                       {"names", {anchors.pairs[pair.first].name, anchors.pairs[pair.second].name}},
+                       {"energy_ratio", pair.energy_ratio}});
+  return {{"estimated", accuracy.estimated},
+          {"sigma", accuracy.sigma},
+          {"slipped_anchors", std::move(slipped)},
+          {"swapped_anchors", std::move(swapped)}};
+}
+
 Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
   Json suspicious = Json::array();
   for (const SuspiciousAnchor& anchor : summary.audit.suspicious) {
@@ -130,6 +145,8 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     json.update(found);
     stages.push_back({std::move(json), seconds});
   };
+  // Only where it found something: the records of all other fits stay as they were.
+  if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);
   add("rigid", to_json(summary.rigid), summary.rigid.seconds);
   if (summary.coarse) add("coarse", to_json(*summary.coarse, anchors), summary.coarse->seconds);
   if (summary.surface)

@@ -47,6 +47,7 @@ Json to_json(const ModelRecord& record) {
 Json to_json(const AnchorRecord& anchor) {
   Json json = {{"name", anchor.name}, {"a", bespoke::to_json(anchor.a)}, {"b", bespoke::to_json(anchor.b)}};
   if (std::isfinite(anchor.weight)) json["weight"] = anchor.weight;
+  if (anchor.sigma > 0) json["sigma"] = anchor.sigma;
   json["residual"] = anchor.residual;
   return json;
 }
@@ -81,11 +82,14 @@ std::string anchor_table(const std::vector<AnchorRecord>& anchors) {
   for (const AnchorRecord& anchor : anchors) width = std::max(width, anchor.name.size());
   const auto row = [&](std::string name, const std::string& weight, const std::string& residual) {
     name.resize(width, ' ');
-    text << "  " << name << "  " << std::setw(12) << weight << "  " << std::setw(12) << residual << '\n';
+    text << "  " << name << "  " << std::setw(16) << weight << "  " << std::setw(12) << residual << '\n';
   };
   row("name", "weight", "residual");
   for (const AnchorRecord& anchor : anchors)
-    row(anchor.name.empty() ? "-" : anchor.name, std::isinf(anchor.weight) ? "exact" : number(anchor.weight),
+    row(anchor.name.empty() ? "-" : anchor.name,
+        anchor.sigma > 0            ? "sigma " + number(anchor.sigma)
+        : std::isinf(anchor.weight) ? "exact"
+                                    : number(anchor.weight),
         number(anchor.residual));
   return text.str();
 }

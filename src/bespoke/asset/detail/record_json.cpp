@@ -46,11 +46,14 @@ Json to_json(const Certificate& c) {
 }
 
 Json to_json(const AnchorRecord& anchor) {
-  return {{"name", anchor.name},
-          {"a", to_json(anchor.a)},
-          {"b", to_json(anchor.b)},
-          {"weight", std::isinf(anchor.weight) ? Json("exact") : Json(anchor.weight)},
-          {"residual", anchor.residual}};
+  Json json = {{"name", anchor.name},
+               {"a", to_json(anchor.a)},
+               {"b", to_json(anchor.b)},
+               {"weight", std::isinf(anchor.weight) ? Json("exact") : Json(anchor.weight)},
+               {"residual", anchor.residual}};
+  // Only where it is not 0: a program that knows nothing of it finds what it has always found.
+  if (anchor.sigma > 0) json["sigma"] = anchor.sigma;
+  return json;
 }
 
 Json to_json(const Pyramid& pyramid) {
@@ -179,6 +182,7 @@ AnchorRecord parse_anchor(const Field& field) {
   const Field weight = field["weight"];
   anchor.weight = weight.is("exact") ? std::numeric_limits<double>::infinity() : weight.number();
   anchor.residual = field["residual"].number();
+  if (field.has("sigma")) anchor.sigma = field["sigma"].number();
   return anchor;
 }
 
