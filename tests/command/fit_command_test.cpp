@@ -7,36 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "command/example_pair.h"
+#include "command/fit_command.h"
 
 namespace bespoke::test {
 namespace {
 
-using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::Not;
-
-class FitCommand : public testing::Test {
- protected:
-  json info(const std::string& map) const {
-    const ProgramResult result = bespoke({"info", pair_.file(map), "--json"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return json::parse(result.out);
-  }
-  json read_json(const std::string& name) const { return json::parse(read_text(pair_.file(name))); }
-
-  /// Expects the fit to refuse with the exit code and a message that holds the text, leaving nothing behind.
-  void expect_refusal(const ProgramResult& result, int exit_code, const std::string& text) const {
-    EXPECT_EQ(result.exit_code, exit_code) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(text));
-    EXPECT_FALSE(pair_.has("map.vdb"));
-  }
-
-  ExamplePair pair_;
-};
 
 TEST_F(FitCommand, MapsTheSourceOntoTheTarget) {
   const ProgramResult fit = pair_.fit("map.vdb");
@@ -75,11 +55,6 @@ TEST_F(FitCommand, ChoosesTheMethods) {
     EXPECT_EQ(info("map.vdb")["elastic"], elastic);
     EXPECT_EQ(info("map.vdb")["surface_fit"], "laplacian");
   }
-}
-
-TEST_F(FitCommand, NamesTheMethodItDoesNotKnow) {
-  expect_refusal(pair_.fit("map.vdb", {"--elastic", "spline"}), 1, "spline");
-  expect_refusal(pair_.fit("map.vdb", {"--surface-fit", "glue"}), 1, "glue");
 }
 
 TEST_F(FitCommand, PaperIsThePrintedMethod) {
@@ -156,13 +131,6 @@ TEST_F(FitCommand, TakesLengthsInMeshUnitsAndPercent) {
   EXPECT_EQ(info("units.vdb")["lambda"], percent["lambda"]);
 }
 
-TEST_F(FitCommand, RefusesWhatIsNotALength) {
-  for (const std::string option : {"--lambda", "--tolerance", "--voxel-size", "--fit-tolerance"})
-    for (const std::string text : {"0", "-1", "nan", "inf", "ten", "10%%", "10 cm", "-5%"})
-      expect_refusal(pair_.fit("map.vdb", {option + "=" + text}), 1,
-                     "'" + text + "' is not a positive length");
-}
-
 TEST_F(FitCommand, MeetsTheTolerance) {
   ASSERT_EQ(pair_.fit("map.vdb", {"--lambda", "20%", "--tolerance", "0.2%"}).exit_code, 0);
   const json found = info("map.vdb");
@@ -209,15 +177,6 @@ TEST_F(FitCommand, WritesTheFittedSourceAndTakesIt) {
   EXPECT_LE(difference.colwise().norm().maxCoeff(),
             info("given.vdb")["tolerance"].get<double>() +
                 2 * float_rounding(read_obj_points(pair_.file("fitted.obj"))));
-}
-
-TEST_F(FitCommand, RefusesAFittedSourceOfOtherConnectivity) {
-  write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2, "642");
-}
-
-TEST_F(FitCommand, RefusesUnknownEndingsBeforeItWorks) {
-  expect_refusal(pair_.fit("map.vdb", {"--fitted-out", pair_.file("fitted.step")}), 1, "fitted.step");
 }
 
 TEST_F(FitCommand, KeepsTheExactMapOnRequest) {
@@ -385,49 +344,6 @@ TEST_F(FitCommand, PrintsPlainProgressWithoutATerminal) {
   EXPECT_THAT(fit.err, Not(HasSubstr("\r")));
 }
 
-TEST_F(FitCommand, NeedsAnchorsOrAFittedSource) {
-  expect_refusal(
-      bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o", pair_.file("map.vdb")}), 1,
-      "--anchors");
-  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
-                          pair_.file("map.vdb"), "--fitted", pair_.file("source.obj"), "--add-corners"}),
-                 1, "--add-corners");
-}
-
-TEST_F(FitCommand, NeedsItsPositionalArguments) {
-  EXPECT_EQ(bespoke({"fit"}).exit_code, 1);
-  EXPECT_EQ(bespoke({"fit", pair_.file("source.obj")}).exit_code, 1);
-  const ProgramResult no_output = bespoke(
-      {"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors", pair_.file("anchors.json")});
-  EXPECT_EQ(no_output.exit_code, 1);
-  EXPECT_THAT(no_output.err, HasSubstr("--output"));
-}
-
-TEST_F(FitCommand, NamesTheMissingFile) {
-  std::filesystem::remove(pair_.file("target.obj"));
-  expect_refusal(pair_.fit("map.vdb"), 4, "target.obj");
-}
-
-TEST_F(FitCommand, NamesTheLineOfABadFace) {
-  write_text(pair_.file("target.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
-  const ProgramResult fit = pair_.fit("map.vdb");
-  expect_refusal(fit, 2, "target.obj");
-  EXPECT_THAT(fit.err, HasSubstr("4"));
-}
-
-TEST_F(FitCommand, RefusesAModelWithoutFaces) {
-  write_text(pair_.file("source.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
-  expect_refusal(pair_.fit("map.vdb"), 2, "source.obj");
-}
-
-TEST_F(FitCommand, RefusesAnchorsThatDoNotFixTheMap) {
-  write_text(pair_.file("anchors.json"),
-             R"({"pairs":[{"name":"p","a":[0,0,0],"b":[0,0,0]},{"name":"q","a":[1,0,0],"b":[1,0,0]}]})");
-  expect_refusal(pair_.fit("map.vdb"), 2, "2");
-  write_text(pair_.file("anchors.json"), R"({"pairs":[{"name":"p","a":[0,0,0],"b":[0,0]}]})");
-  expect_refusal(pair_.fit("map.vdb"), 2, "anchors.json");
-}
-
 TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   EXPECT_THAT(pair_.fit("map.vdb").err, Not(HasSubstr("warning")));
   json anchors = read_json("anchors.json");
@@ -479,105 +395,6 @@ TEST_F(FitCommand, TakesAnchorsAsCsv) {
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_EQ(info("map.vdb")["anchors"].size(), 14u);
 }
-
-// The number behind `before` in a message.
-double number_after(const std::string& text, const std::string& before) {
-  const std::size_t at = text.find(before);
-  return at == std::string::npos ? 0 : std::stod(text.substr(at + before.size()));
-}
-
-TEST_F(FitCommand, AdvisesALambdaThatWorksWhenTheSystemIsTooLarge) {
-  const std::vector<std::string> options{"--elastic", "csrbf", "--max-memory", "1MiB", "--lambda"};
-  const auto fit_with = [&](const std::string& lambda) {
-    std::vector<std::string> all = options;
-    all.push_back(lambda);
-    return pair_.fit("map.vdb", all);
-  };
-  const ProgramResult refused = fit_with("50%");
-  expect_refusal(refused, 4, "MB; use an effective distance of at most ");
-  // The advice fits the memory of the system; what the bake then needs is another matter.
-  const double advised = number_after(refused.err, "at most ");
-  EXPECT_THAT(fit_with(std::to_string(0.999 * advised)).err, Not(HasSubstr("effective distance")));
-}
-
-TEST_F(FitCommand, AdvisesALambdaThatWorksWhenTheSystemIsTooIllConditioned) {
-  const ProgramResult refused = pair_.fit("map.vdb", {"--elastic", "csrbf", "--lambda", "3000%"});
-  expect_refusal(refused, 3, "the system's condition is about");
-  const double advised = number_after(refused.err, "use an effective distance of at most ");
-  const ProgramResult fit = pair_.fit(
-      "map.vdb", {"--elastic", "csrbf", "--voxel-size", "50%", "--lambda", std::to_string(0.999 * advised)});
-  EXPECT_EQ(fit.exit_code, 0) << fit.err;
-}
-
-TEST_F(FitCommand, AdvisesAVoxelSizeAndAToleranceThatFitTheMemory) {
-  std::vector<std::string> options{"--elastic", "pffd-smooth",  "--max-memory",
-                                   "40MB",      "--voxel-size", "0.1%"};
-  const ProgramResult refused = pair_.fit("map.vdb", options);
-  expect_refusal(refused, 4, "the limit is ");
-  options.back() = std::to_string(number_after(refused.err, "; voxels of "));
-  EXPECT_EQ(pair_.fit("map.vdb", options).exit_code, 0) << refused.err;
-  expect_refusal(
-      (std::filesystem::remove(pair_.file("map.vdb")),
-       pair_.fit("map.vdb", {"--elastic", "pffd-smooth", "--max-memory", "1MB", "--voxel-size", "1%"})),
-      4, "no voxel size fits, allow at least");
-}
-
-TEST_F(FitCommand, AdvisesAToleranceThatFitsTheMemory) {
-  const auto fit_with = [&](const std::string& tolerance, const char* memory) {
-    return pair_.fit("map.vdb", {"--tolerance", tolerance, "--max-memory", memory});
-  };
-  const ProgramResult refused = fit_with("0.001%", "100MB");
-  expect_refusal(refused, 4, "the limit is 100 MB; a tolerance of ");
-  const ProgramResult fit =
-      fit_with(std::to_string(number_after(refused.err, "MB; a tolerance of ")), "100MB");
-  EXPECT_EQ(fit.exit_code, 0) << refused.err << fit.err;
-  std::filesystem::remove(pair_.file("map.vdb"));
-  expect_refusal(fit_with("0.001%", "10MB"), 4, "the limit is 10 MB; no tolerance fits, allow at least ");
-}
-
-TEST_F(FitCommand, TakesMemoryInBytesAndTheirMultiples) {
-  for (const std::string size : {"4GiB", "4GB", "4096MB", "4294967296"})
-    EXPECT_EQ(pair_.fit("map.vdb", {"--max-memory", size}).exit_code, 0) << size;
-  for (const std::string size : {"much", "-1", "4 parsecs"})
-    EXPECT_EQ(pair_.fit("map.vdb", {"--max-memory=" + size}).exit_code, 1) << size;
-}
-
-TEST_F(FitCommand, DoesNotOverwriteItsInputs) {
-  const std::string before = read_text(pair_.file("source.obj"));
-  expect_refusal(pair_.fit("source.obj"), 1, "overwritten");
-  expect_refusal(pair_.fit("map.vdb", {"--fitted-out", pair_.file("./target.obj")}), 1, "overwritten");
-  expect_refusal(pair_.fit("map.vdb", {"--report", pair_.file("map.vdb")}), 1, "twice");
-  EXPECT_EQ(read_text(pair_.file("source.obj")), before);
-}
-
-TEST_F(FitCommand, NamesTheDirectoryThatDoesNotExist) {
-  expect_refusal(pair_.fit("none/map.vdb"), 4, "none");
-}
-
-TEST_F(FitCommand, LeavesNothingWhenAnOutputCannotBeWritten) {
-  const std::vector<std::string> before = pair_.files();
-  std::filesystem::create_directory(pair_.file("report.json"));
-  expect_refusal(pair_.fit("map.vdb", {"--report", pair_.file("report.json")}), 4, "report.json");
-  std::filesystem::remove(pair_.file("report.json"));
-  EXPECT_EQ(pair_.files(), before);
-}
-
-class InterruptedFit : public FitCommand, public testing::WithParamInterface<int> {};
-
-TEST_P(InterruptedFit, LeavesNothing) {
-  const std::vector<std::string> before = pair_.files();
-  RunningProgram fit({BESPOKE_COMMAND, "fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
-                      pair_.file("anchors.json"), "-o", pair_.file("map.vdb"), "--elastic", "csrbf",
-                      "--voxel-size", "0.15%"});
-  ASSERT_TRUE(fit.wait_for_error_text("bake: "));
-  fit.send(GetParam());
-  const ProgramResult result = fit.wait();
-  EXPECT_EQ(result.exit_code, 128 + GetParam());
-  EXPECT_THAT(result.err, HasSubstr("interrupted"));
-  EXPECT_EQ(pair_.files(), before);
-}
-
-INSTANTIATE_TEST_SUITE_P(Signals, InterruptedFit, testing::Values(SIGINT, SIGTERM));
 
 }  // namespace
 }  // namespace bespoke::test
