@@ -79,7 +79,8 @@ TEST_F(BadAnchors, Json) {
 TEST_F(BadAnchors, Csv) {
   expect_refused({
       {"a.csv", "\n", "a.csv: no rows"},
-      {"a.csv", "p,0,0,0\n", "a.csv: line 1: 4 columns, but a row is name,ax,ay,az,bx,by,bz[,weight]"},
+      {"a.csv", "p,0,0,0\n",
+       "a.csv: line 1: 4 columns, but a row is name,ax,ay,az,bx,by,bz[,weight[,sigma]]"},
       {"a.csv", "p,0,0,0,0,x,0\n", "line 1: by is \"x\", not a finite number"},
       {"a.csv", "p,0,0,0,0,inf,0\n", "line 1: by is \"inf\", not a finite number"},
       {"a.csv", "p,0,0,0,0,0,0,-1\n", "line 1: weight is -1, but must be > 0"},
