@@ -18,6 +18,9 @@ constexpr double rotation_tolerance = 1e-9;
 // Of the sums of products of three entries, relative to the largest entry's cube.
 constexpr double determinant_tolerance = 1e-12;
 
+// Some four full turns of a limb. A file that claims more is damaged.
+constexpr std::size_t most_steps = 100;
+
 void require(bool holds, const std::string& what) {
   if (!holds) throw InvalidInput(what);
 }
@@ -54,31 +57,73 @@ void require_valid(const AssetRecord& record) {
   require_valid(record.target, "target");
 }
 
-/// Refuses a certificate of bijection that the stored map contradicts.
-void require_consistent(const Certificate& certificate, const Asset& asset) {
+/// Refuses a certificate of bijection that the stored step contradicts.
+void require_consistent(const MapStep& step) {
+  const Certificate& certificate = step.certificate;
   require(std::isfinite(certificate.least_determinant) && std::isfinite(certificate.affine_determinant),
           "the certificate's determinants are not finite");
   if (!certificate.is_bijection()) return;
   require(certificate.least_determinant > 0, "the certificate claims a bijection with least determinant " +
                                                  std::to_string(certificate.least_determinant));
-  require(asset.pyramid.levels.empty() || certificate.certified > 0,
+  require(step.pyramid.levels.empty() || certificate.certified > 0,
           "the certificate claims a bijection but no cell is certified");
-  const double scale = asset.affine.linear.cwiseAbs().maxCoeff();
-  const double error = std::abs(certificate.affine_determinant - asset.affine.linear.determinant());
+  const double scale = step.affine.linear.cwiseAbs().maxCoeff();
+  const double error = std::abs(certificate.affine_determinant - step.affine.linear.determinant());
   require(error <= determinant_tolerance * scale * scale * scale,
           "the certificate's affine determinant " + std::to_string(certificate.affine_determinant) +
               " is not that of the affine part");
 }
 
+void require_valid(const MapStep& step) {
+  require(step.affine.linear.allFinite() && step.affine.offset.allFinite(), "the affine part is not finite");
+  require_valid(step.pyramid);
+  for (const PyramidLevel& level : step.pyramid.levels) require_storable(level.voxel_size, "pyramid");
+  require_consistent(step);
+}
+
 }  // namespace
+
+ElasticChain baked_chain(std::vector<MapStep> steps) {
+  std::vector<std::shared_ptr<const ElasticMap>> maps;
+  for (MapStep& step : steps)
+    maps.push_back(std::make_shared<const BakedMap>(step.affine, std::move(step.pyramid)));
+  return ElasticChain(std::move(maps));
+}
+
+Certificate whole_certificate(const Asset& asset) {
+  Certificate whole = asset.steps.front().certificate;
+  for (std::size_t k = 1; k < asset.steps.size(); ++k) {
+    const Certificate& step = asset.steps[k].certificate;
+    whole.certified += step.certified;
+    whole.undecided += step.undecided;
+    whole.folded += step.folded;
+    whole.least_determinant *= step.least_determinant;
+    // Two reflections are none together, but neither step is a bijection.
+    whole.affine_determinant = whole.affine_determinant > 0 && step.affine_determinant > 0
+                                   ? whole.affine_determinant * step.affine_determinant
+                                   : std::min(whole.affine_determinant, step.affine_determinant);
+    whole.places.insert(whole.places.end(), step.places.begin(), step.places.end());
+    whole.seconds += step.seconds;
+  }
+  return whole;
+}
+
+std::size_t voxel_count(const Asset& asset) {
+  std::size_t count = 0;
+  for (const MapStep& step : asset.steps) count += step.pyramid.voxel_count();
+  return count;
+}
 
 void require_valid(const Asset& asset) {
   require_valid(asset.target_from_source);
-  require(asset.affine.linear.allFinite() && asset.affine.offset.allFinite(),
-          "the affine part is not finite");
-  require_valid(asset.pyramid);
-  for (const PyramidLevel& level : asset.pyramid.levels) require_storable(level.voxel_size, "pyramid");
-  require_consistent(asset.certificate, asset);
+  require(!asset.steps.empty(), "the map has no steps");
+  require(asset.steps.size() <= most_steps,
+          "the map has " + std::to_string(asset.steps.size()) + " steps, more than any chain needs");
+  for (const MapStep& step : asset.steps) {
+    require_valid(step);
+    require(step.pyramid.precision == asset.steps.front().pyramid.precision,
+            "the steps are not of one precision");
+  }
   require_valid(asset.record);
 }
 
@@ -86,7 +131,7 @@ namespace {
 
 Asset with_grids(Asset asset, const Box& source_box, StoredGrid source_distance) {
   require_valid(asset);
-  const BakedMap baked(asset.affine, asset.pyramid);
+  const ElasticChain baked = baked_chain(asset.steps);
   StoredGrid displacement = displacement_preview(asset, baked, source_box);
   StoredGrid jacobian = jacobian_preview(baked, displacement);
   std::vector<StoredGrid> grids;

@@ -7,6 +7,7 @@
 
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/lattice/pyramid.h"
+#include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/statistics.h"
@@ -47,22 +48,37 @@ struct AssetRecord {
 /// kept as they are from reading to writing.
 class PreviewGrids;
 
-/// A map as a file holds it, version 1 (src/bespoke/README.md, "The file").
-struct Asset {
-  RigidTransform target_from_source;  ///< Γ
-  RotationPath path = RotationPath::geodesic;
+/// One step of a map: a₀, A, u, and what is proved about them.
+struct MapStep {
   AffineMap affine;         ///< a₀, A
   Pyramid pyramid;          ///< u
   Certificate certificate;  ///< of t = 1, as found when the asset was made
+};
+
+/// A map as a file holds it: version 1 with one step, version 2 with several (src/bespoke/README.md, "The
+/// file").
+struct Asset {
+  RigidTransform target_from_source;  ///< Γ
+  RotationPath path = RotationPath::geodesic;
+  std::vector<MapStep> steps = std::vector<MapStep>(1);  ///< E = E_K ∘ … ∘ E_1, all in the source frame
   AssetRecord record;
   std::string
       exact_map;  ///< bytes of the exact E (`--keep-exact`), empty without; the asset does not read them
   std::shared_ptr<const PreviewGrids> preview;
 };
 
-/// Throws InvalidInput, naming what is wrong, unless R is a rotation, every number is finite and within its
-/// range, the boxes are not empty, the pyramid is valid, and a certificate of bijection does not contradict
-/// the map.
+/// E as stored, without further copies of the steps' pyramids.
+ElasticChain baked_chain(std::vector<MapStep> steps);
+
+/// Of the whole: counts add up, determinants (lower bounds, where certified) multiply, and places follow one
+/// another, each in the frame of its own step. A bijection exactly when every step is one.
+Certificate whole_certificate(const Asset& asset);
+
+std::size_t voxel_count(const Asset& asset);
+
+/// Throws InvalidInput, naming what is wrong, unless there is a step, R is a rotation, every number is finite
+/// and within its range, the boxes are not empty, the pyramids are valid and of one precision, and no
+/// certificate of bijection contradicts its step.
 void require_valid(const Asset& asset);
 
 /// Adds the preview grids for `source` (the reference model, source frame) to everything else that `asset`

@@ -22,7 +22,10 @@ constexpr std::size_t preview_count = 3;
 constexpr std::size_t longest_reason = 200;
 constexpr std::size_t longest_path = 80;
 
-std::string level_name(std::size_t level) { return "u_" + std::to_string(level); }
+/// u_0, u_1, … of the first step, s1_u_0, s1_u_1, … of the second.
+std::string level_name(std::size_t step, std::size_t level) {
+  return step_prefix(step) + "u_" + std::to_string(level);
+}
 
 /// One line of printable characters.
 std::string one_line(std::string text, std::size_t longest) {
@@ -75,18 +78,18 @@ std::string record_of(const Metadata& metadata) {
           std::string("metadata ") + version_key + " is missing: not a bespoke asset");
   const auto* number = std::get_if<std::int64_t>(&version->second);
   require(number != nullptr, std::string("metadata ") + version_key + " is not a 64-bit integer");
-  require(*number == format_version, "format version " + std::to_string(*number) +
-                                         "; this program reads version " + std::to_string(format_version));
+  require(*number == one_step_version || *number == chain_version,
+          "format version " + std::to_string(*number) + "; this program reads versions " +
+              std::to_string(one_step_version) + " and " + std::to_string(chain_version));
   const auto record = metadata.find(record_key);
   require(record != metadata.end() && std::holds_alternative<std::string>(record->second),
           std::string("metadata ") + record_key + " is missing");
   return std::get<std::string>(record->second);
 }
 
-PyramidLevel level_from_grid(StoredGrid grid, std::size_t level, const Vector3& origin,
+PyramidLevel level_from_grid(StoredGrid grid, const std::string& name, const Vector3& origin,
                              ValuePrecision precision, const LevelRecord& record) {
-  require(grid.name == level_name(level),
-          "grid " + grid.name + " stands in the place of " + level_name(level));
+  require(grid.name == name, "grid " + grid.name + " stands in the place of " + name);
   require(grid.components == 3 && grid.grid_class == GridClass::unknown,
           "grid " + grid.name + " is no Vec3S grid");
   require(grid.voxel_size == record.voxel_size && grid.origin == origin,
@@ -107,13 +110,18 @@ Asset asset_from(StoredFile file, std::string_view exact_map) {
   ParsedRecord parsed = parse_record(record);
   require_same_metadata(file.metadata, record);
   Asset& asset = parsed.asset;
-  require(file.grids.size() == preview_count + parsed.levels.size(),
-          "has " + std::to_string(file.grids.size()) + " grids, the record asks for " +
-              std::to_string(preview_count + parsed.levels.size()));
-  for (std::size_t level = 0; level < parsed.levels.size(); ++level)
-    asset.pyramid.levels.push_back(level_from_grid(std::move(file.grids[preview_count + level]), level,
-                                                   asset.pyramid.origin, asset.pyramid.precision,
-                                                   parsed.levels[level]));
+  std::size_t count = preview_count;
+  for (const std::vector<LevelRecord>& levels : parsed.levels) count += levels.size();
+  require(file.grids.size() == count, "has " + std::to_string(file.grids.size()) +
+                                          " grids, the record asks for " + std::to_string(count));
+  std::size_t grid = preview_count;
+  for (std::size_t step = 0; step < asset.steps.size(); ++step) {
+    Pyramid& pyramid = asset.steps[step].pyramid;
+    for (std::size_t level = 0; level < parsed.levels[step].size(); ++level)
+      pyramid.levels.push_back(level_from_grid(std::move(file.grids[grid++]), level_name(step, level),
+                                               pyramid.origin, pyramid.precision,
+                                               parsed.levels[step][level]));
+  }
   file.grids.resize(preview_count);
   asset.preview = std::make_shared<PreviewGrids>(std::move(file.grids));
   asset.exact_map = exact_map;
@@ -126,15 +134,18 @@ StoredFile stored_file_from(const Asset& asset) {
   const std::string record = record_json(asset);
   file.metadata = file_metadata(record);
   file.grids = asset.preview->grids();
-  for (std::size_t level = 0; level < asset.pyramid.levels.size(); ++level) {
-    StoredGrid grid;
-    grid.name = level_name(level);
-    grid.voxel_size = asset.pyramid.levels[level].voxel_size;
-    grid.origin = asset.pyramid.origin;
-    grid.half = asset.pyramid.precision == ValuePrecision::half;
-    grid.leaves = asset.pyramid.levels[level].leaves;
-    grid.values = asset.pyramid.levels[level].values;
-    file.grids.push_back(std::move(grid));
+  for (std::size_t step = 0; step < asset.steps.size(); ++step) {
+    const Pyramid& pyramid = asset.steps[step].pyramid;
+    for (std::size_t level = 0; level < pyramid.levels.size(); ++level) {
+      StoredGrid grid;
+      grid.name = level_name(step, level);
+      grid.voxel_size = pyramid.levels[level].voxel_size;
+      grid.origin = pyramid.origin;
+      grid.half = pyramid.precision == ValuePrecision::half;
+      grid.leaves = pyramid.levels[level].leaves;
+      grid.values = pyramid.levels[level].values;
+      file.grids.push_back(std::move(grid));
+    }
   }
   return file;
 }

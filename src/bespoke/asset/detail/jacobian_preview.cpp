@@ -6,6 +6,7 @@
 
 #include "bespoke/asset/detail/preview.h"
 #include "bespoke/certificate/jacobian_bound.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/lattice/finest_cells.h"
 #include "bespoke/lattice/leaf_table.h"
 #include "bespoke/parallel.h"
@@ -114,23 +115,50 @@ float rounded_down(double value) {
   return rounded <= value ? rounded : std::nextafter(rounded, -std::numeric_limits<float>::infinity());
 }
 
-}  // namespace
-
-StoredGrid jacobian_preview(const BakedMap& baked, const StoredGrid& displacement) {
+/// Lower bounds of det ∇ over the cells that touch each node.
+std::vector<double> bounds_at_nodes(const BakedMap& baked, const StoredGrid& displacement) {
   const Pyramid& pyramid = baked.pyramid();
   NodeBounds nodes(displacement, baked.affine().linear.determinant());
   if (!pyramid.levels.empty())
     lower_by_pyramid(RootBounder(pyramid, baked.affine().linear),
                      std::ilogb(displacement.voxel_size / pyramid.levels.front().voxel_size), nodes);
+  return nodes.bounds();
+}
+
+std::vector<double> determinants_at_nodes(const ElasticChain& baked, const StoredGrid& lattice) {
+  Points nodes(3, static_cast<Eigen::Index>(lattice.leaves.size()) * leaf_nodes);
+  Eigen::Index column = 0;
+  for (const LeafCoordinates& leaf : lattice.leaves)
+    for (int node = 0; node < leaf_nodes; ++node) {
+      const Vector3 place(leaf_edge * leaf[0] + node / 64, leaf_edge * leaf[1] + node / 8 % 8,
+                          leaf_edge * leaf[2] + node % 8);
+      nodes.col(column++) = lattice.origin + lattice.voxel_size * place;
+    }
+  const Matrix3 linear = baked.affine().linear;
+  const Points gradient = baked.displacement_gradient(nodes);
+  std::vector<double> determinants;
+  for (Eigen::Index i = 0; i < nodes.cols(); ++i)
+    determinants.push_back((linear + gradient.middleCols<3>(3 * i)).determinant());
+  return determinants;
+}
+
+}  // namespace
+
+StoredGrid jacobian_preview(const ElasticChain& baked, const StoredGrid& displacement) {
+  const auto* only =
+      baked.steps().size() == 1 ? dynamic_cast<const BakedMap*>(baked.steps().front().get()) : nullptr;
   StoredGrid grid;
   grid.name = jacobian_name;
   grid.components = 1;
   grid.voxel_size = displacement.voxel_size;
   grid.origin = displacement.origin;
   grid.leaves = displacement.leaves;
-  for (const double bound : nodes.bounds()) grid.values.push_back(rounded_down(bound - 1));
+  for (const double value :
+       only ? bounds_at_nodes(*only, displacement) : determinants_at_nodes(baked, displacement))
+    grid.values.push_back(rounded_down(value - 1));
   grid.metadata["bespoke:meaning"] =
-      std::string("lower bound of det grad E over the cells that touch the node, minus 1");
+      std::string(only ? "lower bound of det grad E over the cells that touch the node, minus 1"
+                       : "det grad E of the whole chain at the node, minus 1");
   return grid;
 }
 

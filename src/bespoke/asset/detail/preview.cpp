@@ -25,22 +25,26 @@ struct LeafBox {
   Eigen::Index node(int i, int j, int k) const { return (Eigen::Index{i} * nodes(1) + j) * nodes(2) + k; }
 };
 
-Box domain(const Asset& asset, Box box) {
-  box.min().array() -= asset.record.lambda;
-  box.max().array() += asset.record.lambda;
-  for (const PyramidLevel& level : asset.pyramid.levels) {
-    const Lattice lattice{asset.pyramid.origin, level.voxel_size};
+void extend_by_leaves(const Pyramid& pyramid, Box& box) {
+  for (const PyramidLevel& level : pyramid.levels) {
+    const Lattice lattice{pyramid.origin, level.voxel_size};
     constexpr int last = leaf_edge - 1;
     for (const LeafCoordinates& leaf : level.leaves) {
       box.extend(lattice(first_node(leaf)));
       box.extend(lattice(moved(first_node(leaf), {last, last, last})));
     }
   }
+}
+
+Box domain(const Asset& asset, Box box) {
+  box.min().array() -= asset.record.lambda;
+  box.max().array() += asset.record.lambda;
+  for (const MapStep& step : asset.steps) extend_by_leaves(step.pyramid, box);
   return box;
 }
 
-/// A power of two times the pyramid's coarsest, so that every cell of the pyramid lies in one cell of the
-/// preview.
+/// A power of two times the pyramid's coarsest, so that every cell of the (first) pyramid lies in one cell of
+/// the preview.
 double preview_voxel_size(const Pyramid& pyramid, double longest_side) {
   const double wanted = longest_side / nodes_along_longest_side;
   if (pyramid.levels.empty()) return wanted;
@@ -82,7 +86,7 @@ Points lattice_points(const LeafBox& leaves, const Lattice& lattice, double shif
   return points;
 }
 
-Points displacement_at(const Asset& asset, const BakedMap& baked, const Points& x) {
+Points displacement_at(const Asset& asset, const ElasticChain& baked, const Points& x) {
   return asset.target_from_source * baked(x) - x;
 }
 
@@ -126,12 +130,13 @@ PreviewGrids::PreviewGrids(std::vector<StoredGrid> grids) : grids_(std::move(gri
   }
 }
 
-StoredGrid displacement_preview(const Asset& asset, const BakedMap& baked, const Box& source_box) {
+StoredGrid displacement_preview(const Asset& asset, const ElasticChain& baked, const Box& source_box) {
   const Box box = domain(asset, source_box);
   StoredGrid grid;
   grid.name = displacement_name;
-  grid.voxel_size = preview_voxel_size(asset.pyramid, box.sizes().maxCoeff());
-  grid.origin = asset.pyramid.levels.empty() ? box.min() : asset.pyramid.origin;
+  const Pyramid& pyramid = asset.steps.front().pyramid;
+  grid.voxel_size = preview_voxel_size(pyramid, box.sizes().maxCoeff());
+  grid.origin = pyramid.levels.empty() ? box.min() : pyramid.origin;
   const LeafBox leaves = leaf_box(box, grid.origin, grid.voxel_size);
   const Lattice lattice{grid.origin, grid.voxel_size};
   const Points nodes =

@@ -5,7 +5,7 @@
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/asset/detail/stored_grid.h"
-#include "bespoke/lattice/baked_map.h"
+#include "bespoke/mapping/elastic_chain.h"
 
 namespace bespoke {
 
@@ -25,13 +25,14 @@ class PreviewGrids {
   std::vector<StoredGrid> grids_;
 };
 
-/// Ψ(1)(x) − x on one lattice over the source's box, grown by λ, and over all leaves of the pyramid; about 64
-/// nodes along its longest side. Its error, measured at the centres of its cells, is in its metadata. `baked`
-/// is the asset's E.
-StoredGrid displacement_preview(const Asset& asset, const BakedMap& baked, const Box& source_box);
+/// Ψ(1)(x) − x on one lattice over the source's box, grown by λ, and over all leaves of the pyramids; about
+/// 64 nodes along its longest side. Its error, measured at the centres of its cells, is in its metadata.
+/// `baked` is the asset's E.
+StoredGrid displacement_preview(const Asset& asset, const ElasticChain& baked, const Box& source_box);
 
-/// Lower bound, minus 1, of det ∇E over the cells that touch each node of the displacement preview's lattice.
-StoredGrid jacobian_preview(const BakedMap& baked, const StoredGrid& displacement);
+/// On the displacement preview's lattice: with one step the lower bound, minus 1, of det ∇E over the cells
+/// that touch the node; with several, whose cells do not coincide, det ∇E − 1 at the node itself.
+StoredGrid jacobian_preview(const ElasticChain& baked, const StoredGrid& displacement);
 
 /// The source as a level set about 128 voxels long: of the signed distance where the mesh has no boundary;
 /// otherwise of a shell, the unsigned distance minus one voxel. Its metadata says which.

@@ -14,12 +14,28 @@ using Json = nlohmann::ordered_json;
 // Deeper JSON than any record has could exhaust the stack of a recursive reader.
 constexpr int max_depth = 64;
 
+const char* path_name(RotationPath path) {
+  switch (path) {
+    case RotationPath::geodesic:
+      return "geodesic";
+    case RotationPath::euler:
+      return "euler";
+    case RotationPath::flow:
+      return "flow";
+  }
+  throw InvalidInput("unknown rotation path");
+}
+
 Json to_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json to_json(const Matrix3& m) {
   Json rows = Json::array();
   for (int i = 0; i < 3; ++i) rows.push_back(to_json(Vector3(m.row(i))));
   return rows;
+}
+
+Json to_json(const AffineMap& affine) {
+  return {{"linear", to_json(affine.linear)}, {"offset", to_json(affine.offset)}};
 }
 
 Json to_json(const Statistics& s) {
@@ -187,9 +203,9 @@ AnchorRecord parse_anchor(const Field& field) {
 }
 
 RotationPath parse_path(const Field& field) {
-  if (field.is("geodesic")) return RotationPath::geodesic;
-  if (field.is("euler")) return RotationPath::euler;
-  field.fail("is neither geodesic nor euler");
+  for (const RotationPath path : {RotationPath::geodesic, RotationPath::euler, RotationPath::flow})
+    if (field.is(path_name(path))) return path;
+  field.fail("is none of geodesic, euler and flow");
 }
 
 ValuePrecision parse_precision(const Field& pyramid) {
@@ -199,15 +215,25 @@ ValuePrecision parse_precision(const Field& pyramid) {
   return ValuePrecision::half;
 }
 
+/// A step of which the pyramid's levels are still missing, and those levels.
+std::vector<LevelRecord> parse_step(const Field& field, MapStep& step) {
+  step.affine.linear = field["affine"]["linear"].matrix();
+  step.affine.offset = field["affine"]["offset"].vector();
+  step.certificate = parse_certificate(field["certificate"]);
+  step.pyramid.origin = field["pyramid"]["origin"].vector();
+  step.pyramid.precision = parse_precision(field["pyramid"]);
+  std::vector<LevelRecord> levels;
+  for (const Field& level : field["pyramid"]["levels"].items())
+    levels.push_back({level["voxel_size"].number(), level["leaves"].count()});
+  return levels;
+}
+
 ParsedRecord parse_fields(const Field& field) {
   ParsedRecord parsed;
   Asset& asset = parsed.asset;
   asset.target_from_source.rotation = field["rigid"]["rotation"].matrix();
   asset.target_from_source.translation = field["rigid"]["translation"].vector();
   asset.path = parse_path(field["rotation_path"]);
-  asset.affine.linear = field["affine"]["linear"].matrix();
-  asset.affine.offset = field["affine"]["offset"].vector();
-  asset.certificate = parse_certificate(field["certificate"]);
   AssetRecord& record = asset.record;
   record.unit = field["unit"].text();
   record.elastic_method = field["elastic_method"].text();
@@ -220,10 +246,12 @@ ParsedRecord parse_fields(const Field& field) {
   for (const Field& anchor : field["anchors"].items()) record.anchors.push_back(parse_anchor(anchor));
   record.source = parse_model(field["source"]);
   record.target = parse_model(field["target"]);
-  asset.pyramid.origin = field["pyramid"]["origin"].vector();
-  asset.pyramid.precision = parse_precision(field["pyramid"]);
-  for (const Field& level : field["pyramid"]["levels"].items())
-    parsed.levels.push_back({level["voxel_size"].number(), level["leaves"].count()});
+  const bool chain = field.has("steps");
+  const std::vector<Field> steps = chain ? field["steps"].items() : std::vector<Field>{field};
+  if (chain && steps.size() < 2) field["steps"].fail("has not two steps; one is written as version 1");
+  asset.steps.resize(steps.size());
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    parsed.levels.push_back(parse_step(steps[k], asset.steps[k]));
   return parsed;
 }
 
@@ -233,25 +261,33 @@ std::string record_json(const Asset& asset) {
   const AssetRecord& record = asset.record;
   Json anchors = Json::array();
   for (const AnchorRecord& anchor : record.anchors) anchors.push_back(to_json(anchor));
-  const Json json = {
-      {"unit", record.unit},
-      {"rigid",
-       {{"rotation", to_json(asset.target_from_source.rotation)},
-        {"translation", to_json(asset.target_from_source.translation)}}},
-      {"rotation_path", asset.path == RotationPath::geodesic ? "geodesic" : "euler"},
-      {"affine", {{"linear", to_json(asset.affine.linear)}, {"offset", to_json(asset.affine.offset)}}},
-      {"elastic_method", record.elastic_method},
-      {"surface_fit_method", record.surface_fit_method},
-      {"lambda", record.lambda},
-      {"tolerance", record.tolerance},
-      {"bake_error", to_json(record.bake_error)},
-      {"certificate", to_json(asset.certificate)},
-      {"options", embedded(record.options_json, "options_json", Json::object())},
-      {"stages", embedded(record.stages_json, "stages_json", Json::array())},
-      {"anchors", std::move(anchors)},
-      {"source", to_json(record.source)},
-      {"target", to_json(record.target)},
-      {"pyramid", to_json(asset.pyramid)}};
+  // One step keeps the places that version 1 gave it.
+  const MapStep* only = asset.steps.size() == 1 ? &asset.steps.front() : nullptr;
+  Json json = {{"unit", record.unit},
+               {"rigid",
+                {{"rotation", to_json(asset.target_from_source.rotation)},
+                 {"translation", to_json(asset.target_from_source.translation)}}},
+               {"rotation_path", path_name(asset.path)}};
+  if (only) json["affine"] = to_json(only->affine);
+  json.update({{"elastic_method", record.elastic_method},
+               {"surface_fit_method", record.surface_fit_method},
+               {"lambda", record.lambda},
+               {"tolerance", record.tolerance},
+               {"bake_error", to_json(record.bake_error)}});
+  if (only) json["certificate"] = to_json(only->certificate);
+  json.update({{"options", embedded(record.options_json, "options_json", Json::object())},
+               {"stages", embedded(record.stages_json, "stages_json", Json::array())},
+               {"anchors", std::move(anchors)},
+               {"source", to_json(record.source)},
+               {"target", to_json(record.target)}});
+  if (only) {
+    json["pyramid"] = to_json(only->pyramid);
+  } else {
+    for (const MapStep& step : asset.steps)
+      json["steps"].push_back({{"affine", to_json(step.affine)},
+                               {"certificate", to_json(step.certificate)},
+                               {"pyramid", to_json(step.pyramid)}});
+  }
   return dump(json);
 }
 
@@ -264,43 +300,62 @@ ParsedRecord parse_record(std::string_view json) {
   }
 }
 
+std::string step_prefix(std::size_t step) { return step == 0 ? "" : "s" + std::to_string(step) + "_"; }
+
+namespace {
+
+constexpr const char* one_step_convention =
+    "column vectors; E(x) = affine_offset + affine x + u_0(x) + u_1(x) + ... with x in the source frame, "
+    "each u "
+    "trilinear between its nodes and 0 outside its leaves; Psi(t)(x) = R(t) ((1-t) x + t E(x)) + t T, "
+    "R(1) = rotation, T = translation";
+
+constexpr const char* chain_convention =
+    "column vectors; E = E_K after ... after E_1, all in the source frame; the first step takes x to "
+    "affine_offset + affine x + u_0(x) + u_1(x) + ..., the second likewise with s1_affine_offset, s1_affine, "
+    "s1_u_0, s1_u_1, ..., and so on; each u is trilinear between its nodes and 0 outside its leaves; "
+    "Psi(1)(x) = rotation E(x) + translation";
+
+void add_step(const MapStep& step, std::size_t levels, const std::string& prefix, Metadata& metadata) {
+  for (int i = 0; i < 3; ++i)
+    metadata[prefix + "affine_row_" + std::to_string(i)] = Vector3(step.affine.linear.row(i));
+  metadata[prefix + "affine_offset"] = step.affine.offset;
+  metadata[prefix + "cells_certified"] = static_cast<std::int64_t>(step.certificate.certified);
+  metadata[prefix + "cells_undecided"] = static_cast<std::int64_t>(step.certificate.undecided);
+  metadata[prefix + "cells_folded"] = static_cast<std::int64_t>(step.certificate.folded);
+  metadata[prefix + "least_determinant"] = step.certificate.least_determinant;
+  metadata[prefix + "affine_determinant"] = step.certificate.affine_determinant;
+  metadata[prefix + "levels"] = static_cast<std::int64_t>(levels);
+}
+
+}  // namespace
+
 Metadata file_metadata(const std::string& json) {
   const auto [asset, levels] = parse_record(json);
   const AssetRecord& record = asset.record;
+  const bool chain = asset.steps.size() > 1;
   Metadata metadata;
-  metadata[version_key] = format_version;
+  metadata[version_key] = chain ? chain_version : one_step_version;
   metadata[record_key] = json;
   metadata["bespoke:direction"] = std::string("maps points a to b");
-  metadata["bespoke:convention"] = std::string(
-      "column vectors; E(x) = affine_offset + affine x + u_0(x) + u_1(x) + ... with x in the source frame, "
-      "each u "
-      "trilinear between its nodes and 0 outside its leaves; Psi(t)(x) = R(t) ((1-t) x + t E(x)) + t T, "
-      "R(1) = rotation, T = translation");
+  metadata["bespoke:convention"] = std::string(chain ? chain_convention : one_step_convention);
   metadata["bespoke:unit"] = record.unit;
-  for (int i = 0; i < 3; ++i) {
-    const std::string row = "_row_" + std::to_string(i);
-    metadata["bespoke:rotation" + row] = Vector3(asset.target_from_source.rotation.row(i));
-    metadata["bespoke:affine" + row] = Vector3(asset.affine.linear.row(i));
-  }
+  for (int i = 0; i < 3; ++i)
+    metadata["bespoke:rotation_row_" + std::to_string(i)] = Vector3(asset.target_from_source.rotation.row(i));
   metadata["bespoke:translation"] = asset.target_from_source.translation;
-  metadata["bespoke:affine_offset"] = asset.affine.offset;
-  metadata["bespoke:rotation_path"] =
-      std::string(asset.path == RotationPath::geodesic ? "geodesic" : "euler");
+  metadata["bespoke:rotation_path"] = std::string(path_name(asset.path));
   metadata["bespoke:elastic_method"] = record.elastic_method;
   metadata["bespoke:surface_fit_method"] = record.surface_fit_method;
   metadata["bespoke:lambda"] = record.lambda;
   metadata["bespoke:tolerance"] = record.tolerance;
   metadata["bespoke:error_max"] = record.bake_error.max;
   metadata["bespoke:error_p99"] = record.bake_error.p99;
-  if (asset.pyramid.precision != ValuePrecision::single)
-    metadata["bespoke:precision"] = std::string(name_of(asset.pyramid.precision));
-  metadata["bespoke:cells_certified"] = static_cast<std::int64_t>(asset.certificate.certified);
-  metadata["bespoke:cells_undecided"] = static_cast<std::int64_t>(asset.certificate.undecided);
-  metadata["bespoke:cells_folded"] = static_cast<std::int64_t>(asset.certificate.folded);
-  metadata["bespoke:least_determinant"] = asset.certificate.least_determinant;
-  metadata["bespoke:affine_determinant"] = asset.certificate.affine_determinant;
-  metadata["bespoke:is_bijection"] = asset.certificate.is_bijection();
-  metadata["bespoke:levels"] = static_cast<std::int64_t>(levels.size());
+  if (asset.steps.front().pyramid.precision != ValuePrecision::single)
+    metadata["bespoke:precision"] = std::string(name_of(asset.steps.front().pyramid.precision));
+  for (std::size_t k = 0; k < asset.steps.size(); ++k)
+    add_step(asset.steps[k], levels[k].size(), "bespoke:" + step_prefix(k), metadata);
+  metadata["bespoke:is_bijection"] = whole_certificate(asset).is_bijection();
+  if (chain) metadata["bespoke:steps"] = static_cast<std::int64_t>(asset.steps.size());
   for (const auto& [side, model] : {std::pair("source", record.source), std::pair("target", record.target)}) {
     const std::string prefix = std::string("bespoke:") + side;
     metadata[prefix + "_hash"] = model.hash;

@@ -8,9 +8,10 @@
 
 namespace bespoke {
 
-/// Everything of an asset but the grids' values and the exact map, as one JSON object; of the pyramid its
-/// origin, voxel sizes and numbers of leaves. Doubles are written so that they come back with the same bits;
-/// times are left out. Throws InvalidInput where options_json or stages_json is not JSON.
+/// Everything of an asset but the grids' values and the exact map, as one JSON object; of the pyramids their
+/// origins, voxel sizes and numbers of leaves. One step stands in the object itself, several in an array.
+/// Doubles are written so that they come back with the same bits; times are left out. Throws InvalidInput
+/// where options_json or stages_json is not JSON.
 std::string record_json(const Asset& asset);
 
 /// The pyramid's levels as the record names them.
@@ -20,8 +21,8 @@ struct LevelRecord {
 };
 
 struct ParsedRecord {
-  Asset asset;  ///< without pyramid levels, preview and exact map
-  std::vector<LevelRecord> levels;
+  Asset asset;                                   ///< without pyramid levels, preview and exact map
+  std::vector<std::vector<LevelRecord>> levels;  ///< of every step
 };
 
 /// Throws FormatError, naming what is missing or wrong.
@@ -34,6 +35,10 @@ Metadata file_metadata(const std::string& json);
 /// The part of `file_metadata` that the reader needs first.
 inline constexpr const char* record_key = "bespoke:record";
 inline constexpr const char* version_key = "bespoke:format_version";
-inline constexpr std::int64_t format_version = 1;
+inline constexpr std::int64_t one_step_version = 1;
+inline constexpr std::int64_t chain_version = 2;
+
+/// What the names of a step's grids and entries begin with: nothing for the first, "s1_" for the second.
+std::string step_prefix(std::size_t step);
 
 }  // namespace bespoke

@@ -1,0 +1,118 @@
+#include "bespoke/pipeline/bake_steps.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "bespoke/bake/error_points.h"
+#include "bespoke/lattice/baked_map.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+// Of the whole's tolerance: largest errors of several steps rarely meet in one point.
+constexpr double tolerance_of_a_step = 0.5;
+
+// Aimed at when all are baked again, of the tolerance.
+constexpr double aim = 0.9;
+
+// Random points of the band at which a step's own error is looked at, of those of the whole.
+constexpr std::size_t points_of_a_step = 10;
+
+constexpr std::uint64_t seed = 31;
+
+/// The steps from `first` on, as a chain.
+ElasticChain tail(const ElasticChain& chain, std::size_t first) {
+  return ElasticChain({chain.steps().begin() + static_cast<std::ptrdiff_t>(first), chain.steps().end()});
+}
+
+ElasticChain baked_maps(const std::vector<MapStep>& steps) { return baked_chain(steps); }
+
+/// Where the error is looked at from step `k` on: in its band, and in its finest cells on the surface.
+Points error_points(const MapStep& step, const TriangleMesh& surface, std::size_t count) {
+  if (step.pyramid.levels.empty()) return Points(3, 0);
+  const PyramidLevel& level = step.pyramid.levels.front();
+  const Points band = random_points({step.pyramid.origin, level.voxel_size}, level.leaves, count, seed);
+  const Points near = points_in_cells(step.pyramid, finest_cells_on(step.pyramid, surface), count, seed);
+  Points all(3, band.cols() + near.cols());
+  all << band, near;
+  return all;
+}
+
+/// From every step to the end: points of a later band that no earlier one moves are met there.
+Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& steps,
+                       const std::vector<Points>& surfaces, const Faces& faces, std::size_t count,
+                       const Progress& progress) {
+  const ElasticChain baked = baked_maps(steps);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const Points x = error_points(steps[k], {surfaces[k], faces}, k == 0 ? count : count / steps.size());
+    const std::vector<double> found = displacement_errors(tail(baked, k), tail(exact, k), x, progress);
+    errors.insert(errors.end(), found.begin(), found.end());
+  }
+  return summarize(std::move(errors));
+}
+
+void add(const BakeSummary& step, BakeSummary& whole) {
+  whole.levels.insert(whole.levels.end(), step.levels.begin(), step.levels.end());
+  whole.error_random_points += step.error_random_points;
+  whole.error_surface_points += step.error_surface_points;
+  whole.surface_cells += step.surface_cells;
+  whole.refined_folds += step.refined_folds;
+  whole.repaired_cells += step.repaired_cells;
+  whole.repair_cost = std::max(whole.repair_cost, step.repair_cost);
+  whole.folded_cells += step.folded_cells;
+  whole.evaluated_points += step.evaluated_points;
+  whole.peak_bytes = std::max(whole.peak_bytes, step.peak_bytes);
+  whole.refine_seconds += step.refine_seconds;
+  whole.measure_seconds += step.measure_seconds;
+  whole.mend_seconds += step.mend_seconds;
+}
+
+BakedSteps bake_to(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
+                   const BakeOptions& options, const Progress& progress) {
+  BakedSteps baked;
+  for (std::size_t k = 0; k < exact.steps().size(); ++k) {
+    const TriangleMesh surface{surfaces[k], faces};
+    BakeOptions step_options = options;
+    step_options.surface = &surface;
+    Bake step = bake(*exact.steps()[k], step_options, progress);
+    const AffineMap affine = exact.steps()[k]->affine();
+    baked.steps.push_back({affine, std::move(step.pyramid), {}});
+    baked.steps.back().certificate = certify(baked.steps.back().pyramid, affine, 1, progress);
+    baked.summaries.push_back(std::move(step.summary));
+  }
+  return baked;
+}
+
+}  // namespace
+
+BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
+                      const BakeOptions& options, const Progress& progress) {
+  if (exact.steps().size() == 1) {
+    BakedSteps baked = bake_to(exact, surfaces, faces, options, progress);
+    baked.whole = baked.summaries.front();
+    return baked;
+  }
+  const Stopwatch watch;
+  BakeOptions step_options = options;
+  step_options.tolerance = tolerance_of_a_step * options.tolerance;
+  step_options.error_points = std::max<std::size_t>(1, options.error_points / points_of_a_step);
+  BakedSteps baked;
+  for (const bool last : {false, true}) {
+    baked = bake_to(exact, surfaces, faces, step_options, progress);
+    for (const BakeSummary& summary : baked.summaries) add(summary, baked.whole);
+    const Stopwatch measure;
+    baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, step_options.error_points, progress);
+    baked.whole.measure_seconds += measure.seconds();
+    baked.whole.tolerance_met = baked.whole.error.max <= options.tolerance;
+    const bool finer_helps = std::all_of(baked.summaries.begin(), baked.summaries.end(),
+                                         [](const BakeSummary& summary) { return summary.tolerance_met; });
+    if (last || baked.whole.tolerance_met || !finer_helps) break;
+    step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
+  }
+  baked.whole.seconds = watch.seconds();
+  return baked;
+}
+
+}  // namespace bespoke

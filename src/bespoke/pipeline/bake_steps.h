@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "bespoke/asset/asset.h"
+#include "bespoke/bake/bake.h"
+#include "bespoke/mapping/elastic_chain.h"
+
+namespace bespoke {
+
+struct BakedSteps {
+  std::vector<MapStep> steps;          ///< certified
+  std::vector<BakeSummary> summaries;  ///< one per step
+  BakeSummary whole;  ///< sums over the steps; the error is that of the whole map, measured on it
+};
+
+/// Bakes every step of a chain so that the whole meets the tolerance. Errors add up along a chain, so that
+/// steps are baked to a fraction of it; the whole is measured, and where it misses the tolerance although
+/// every step met its own, all are baked once more, finer by what was missed. surfaces: 3×n per step, where
+/// the source's vertices are when it begins; faces: the source's. One step is baked as bake does it.
+BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
+                      const BakeOptions& options, const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/flow/surface_path.h"
+#include "bespoke/mapping/elastic_chain.h"
+#include "bespoke/pipeline/elastic_pairs.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// A path of surfaces and the times that divide it into the steps of a chain.
+struct StepPlan {
+  std::shared_ptr<const SurfacePath> path;  ///< of the source, with anchors off its surface as loose vertices
+  std::vector<double> times;                ///< increasing, 0 first, 1 last: one more than there are steps
+
+  std::size_t steps() const { return times.size() - 1; }
+};
+
+/// Equal steps. pairs: of the source and its fitted vertices, the anchors off the surface at their end.
+StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
+
+/// The plan with these steps halved.
+StepPlan halved(const StepPlan& plan, const std::vector<std::size_t>& steps);
+
+struct ElasticSteps {
+  std::vector<std::shared_ptr<const ElasticMap>> maps;
+  std::vector<ElasticFindings> found;
+  std::vector<Points> sources;  ///< 3×n, where the source's vertices are when a step begins, mesh units
+};
+
+/// One elastic map per step. Each starts from where the maps before it have left the points, so that what
+/// they missed is made good by those after them, and its affine part is a similarity: least-squares affine
+/// maps of a changing pose shear the space around the model. `done`: steps to begin with, taken as they are.
+ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
+                               ElasticMethod method, const ElasticOptions& options, ElasticSteps done = {},
+                               const Progress& progress = {});
+
+}  // namespace bespoke
