@@ -1,7 +1,6 @@
 // Applies a stored map to points, half-way and all the way.
 #include <bespoke/apply/apply_mapping.h>
 #include <bespoke/asset/asset_io.h>
-#include <bespoke/lattice/baked_map.h>
 
 #include <cstdio>
 
@@ -11,7 +10,7 @@ int main(int argc, char** argv) try {
     return 1;
   }
   const bespoke::Asset asset = bespoke::read_asset(argv[1]);
-  const bespoke::BakedMap map(asset.affine, asset.pyramid);
+  const bespoke::ElasticChain map = bespoke::baked_chain(asset.steps);
 
   bespoke::Points points(3, 2);
   points.col(0) = asset.record.source.box.center();

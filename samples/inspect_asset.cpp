@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
     return 1;
   }
   const bespoke::Asset asset = bespoke::read_asset(argv[1]);
-  std::printf("bijection: %s\n", asset.certificate.is_bijection() ? "proved" : "not proved");
+  std::printf("bijection: %s\n", whole_certificate(asset).is_bijection() ? "proved" : "not proved");
   std::printf("bake error: %s\n", to_string(asset.record.bake_error).c_str());
   for (const bespoke::AnchorRecord& anchor : asset.record.anchors)
     std::printf("%s: %g %s\n", anchor.name.c_str(), anchor.residual, asset.record.unit.c_str());

@@ -88,8 +88,8 @@ TEST_F(AssetClients, PyopenvdbReadsHalfPrecision) {
   const std::string python = "/usr/bin/python3";
   if (is_missing(python + " -c 'import pyopenvdb'")) GTEST_SKIP() << "pyopenvdb is not installed";
   Asset asset = test::small_asset();
-  asset.pyramid.precision = ValuePrecision::half;
-  for (PyramidLevel& level : asset.pyramid.levels)
+  asset.steps.front().pyramid.precision = ValuePrecision::half;
+  for (PyramidLevel& level : asset.steps.front().pyramid.levels)
     for (float& value : level.values) value = rounded_to_half(value);
   write_asset(path_, with_preview(asset, test::sphere({0, 0, 0}, 1, 3)));
   test::write_text(directory_ / "read.py", R"(
@@ -103,7 +103,7 @@ print('%.9g' % by_name['u_0'].getConstAccessor().getValue((3, 4, 2))[0])
 )");
   const ProgramRun read = run(python + " " + (directory_ / "read.py").string() + " " + path_.string());
   ASSERT_EQ(read.status, 0) << read.output;
-  EXPECT_EQ(std::stof(read.output), asset.pyramid.levels[0].values[3 * ((3 * 8 + 4) * 8 + 2)]);
+  EXPECT_EQ(std::stof(read.output), asset.steps.front().pyramid.levels[0].values[3 * ((3 * 8 + 4) * 8 + 2)]);
 }
 
 TEST_F(AssetClients, NanovdbConvertsIt) {

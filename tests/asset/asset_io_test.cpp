@@ -39,23 +39,23 @@ class AssetIo : public testing::Test {
 void expect_same(const Asset& a, const Asset& b) {
   EXPECT_EQ(a.target_from_source.rotation, b.target_from_source.rotation);
   EXPECT_EQ(a.target_from_source.translation, b.target_from_source.translation);
-  EXPECT_EQ(a.affine.linear, b.affine.linear);
-  EXPECT_EQ(a.affine.offset, b.affine.offset);
+  EXPECT_EQ(a.steps.front().affine.linear, b.steps.front().affine.linear);
+  EXPECT_EQ(a.steps.front().affine.offset, b.steps.front().affine.offset);
   EXPECT_EQ(a.path, b.path);
-  EXPECT_EQ(a.pyramid.origin, b.pyramid.origin);
-  ASSERT_EQ(a.pyramid.levels.size(), b.pyramid.levels.size());
-  for (std::size_t i = 0; i < a.pyramid.levels.size(); ++i) {
-    EXPECT_EQ(a.pyramid.levels[i].voxel_size, b.pyramid.levels[i].voxel_size);
-    EXPECT_EQ(a.pyramid.levels[i].leaves, b.pyramid.levels[i].leaves);
-    EXPECT_EQ(a.pyramid.levels[i].values, b.pyramid.levels[i].values);
+  EXPECT_EQ(a.steps.front().pyramid.origin, b.steps.front().pyramid.origin);
+  ASSERT_EQ(a.steps.front().pyramid.levels.size(), b.steps.front().pyramid.levels.size());
+  for (std::size_t i = 0; i < a.steps.front().pyramid.levels.size(); ++i) {
+    EXPECT_EQ(a.steps.front().pyramid.levels[i].voxel_size, b.steps.front().pyramid.levels[i].voxel_size);
+    EXPECT_EQ(a.steps.front().pyramid.levels[i].leaves, b.steps.front().pyramid.levels[i].leaves);
+    EXPECT_EQ(a.steps.front().pyramid.levels[i].values, b.steps.front().pyramid.levels[i].values);
   }
   EXPECT_EQ(record_json(a), record_json(b));
   EXPECT_EQ(a.exact_map, b.exact_map);
 }
 
 Asset in_half_precision(Asset asset) {
-  asset.pyramid.precision = ValuePrecision::half;
-  for (PyramidLevel& level : asset.pyramid.levels)
+  asset.steps.front().pyramid.precision = ValuePrecision::half;
+  for (PyramidLevel& level : asset.steps.front().pyramid.levels)
     for (float& value : level.values) value = rounded_to_half(value);
   return asset;
 }
@@ -67,10 +67,11 @@ TEST_F(AssetIo, HalfPrecisionTakesLessRoomAndComesBackAsItWas) {
   EXPECT_LT(bytes.size(), written(single).size());
   for (const bool untrusted : {false, true}) {
     const Asset read = read_bytes(bytes, untrusted);
-    EXPECT_EQ(read.pyramid.precision, ValuePrecision::half);
+    EXPECT_EQ(read.steps.front().pyramid.precision, ValuePrecision::half);
     expect_same(read, half);
     EXPECT_EQ(written(read), bytes);
-    const Certificate before = certify(half.pyramid, half.affine), after = certify(read.pyramid, read.affine);
+    const Certificate before = certify(half.steps.front().pyramid, half.steps.front().affine),
+                      after = certify(read.steps.front().pyramid, read.steps.front().affine);
     EXPECT_EQ(after.certified, before.certified);
     EXPECT_EQ(after.least_determinant, before.least_determinant);
   }
@@ -126,7 +127,7 @@ TEST_F(AssetIo, SinglePrecisionKeepsToTheKeysOfTheFirstAssets) {
 
 TEST_F(AssetIo, RefusesValuesThatHalfPrecisionWouldChange) {
   Asset asset = in_half_precision(test::tiny_asset());
-  asset.pyramid.levels[0].values[5] = 0.1f;
+  asset.steps.front().pyramid.levels[0].values[5] = 0.1f;
   EXPECT_THAT([&] { written(asset); }, ThrowsMessage<InvalidInput>(HasSubstr("half precision")));
 }
 
@@ -142,20 +143,20 @@ TEST_F(AssetIo, ReadsBackWhatWasWritten) {
 // (s + o) − o differs from s for these, so whoever derives the voxel size from two points rounds it.
 TEST_F(AssetIo, KeepsEveryBitOfTheLattice) {
   Asset asset = test::tiny_asset();
-  asset.pyramid.origin = {-1.346511805807968, -1.8102458160690365, -1.1204059798501647};
-  asset.pyramid.levels[0].voxel_size = 0.09486832917676327;
-  asset.pyramid.levels[1].voxel_size = 0.09486832917676327 / 2;
+  asset.steps.front().pyramid.origin = {-1.346511805807968, -1.8102458160690365, -1.1204059798501647};
+  asset.steps.front().pyramid.levels[0].voxel_size = 0.09486832917676327;
+  asset.steps.front().pyramid.levels[1].voxel_size = 0.09486832917676327 / 2;
   expect_same(read_bytes(written(asset)), asset);
 }
 
 TEST_F(AssetIo, KeepsTheSignOfZeroAndDenormals) {
   Asset asset = test::tiny_asset();
-  asset.pyramid.levels[0].values[0] = -0.0f;
-  asset.pyramid.levels[0].values[1] = std::numeric_limits<float>::denorm_min();
+  asset.steps.front().pyramid.levels[0].values[0] = -0.0f;
+  asset.steps.front().pyramid.levels[0].values[1] = std::numeric_limits<float>::denorm_min();
   const Asset read = read_bytes(written(asset));
-  for (std::size_t i = 0; i < asset.pyramid.levels[0].values.size(); ++i)
-    ASSERT_EQ(std::bit_cast<std::uint32_t>(read.pyramid.levels[0].values[i]),
-              std::bit_cast<std::uint32_t>(asset.pyramid.levels[0].values[i]));
+  for (std::size_t i = 0; i < asset.steps.front().pyramid.levels[0].values.size(); ++i)
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(read.steps.front().pyramid.levels[0].values[i]),
+              std::bit_cast<std::uint32_t>(asset.steps.front().pyramid.levels[0].values[i]));
 }
 
 TEST_F(AssetIo, WriteReadWriteGivesTheSameBytes) {
@@ -177,9 +178,9 @@ TEST_F(AssetIo, GivesTheSameBytesAtAnyThreadCount) {
 
 TEST_F(AssetIo, OfAnAffineMapHasNoLevelButADisplacement) {
   Asset asset = test::small_asset();
-  asset.pyramid.levels.clear();
+  asset.steps.front().pyramid.levels.clear();
   const Asset read = read_bytes(written(with_preview(asset, test::sphere({0, 0, 0}, 1, 1))));
-  EXPECT_TRUE(read.pyramid.levels.empty());
+  EXPECT_TRUE(read.steps.front().pyramid.levels.empty());
   EXPECT_FALSE(read.preview->grids().front().leaves.empty());
 }
 
@@ -203,23 +204,92 @@ TEST_F(AssetIo, RefusesToWriteWhatIsNotValid) {
   refuses([](Asset& a) { a.target_from_source.rotation *= 2; }, "not a rotation");
   refuses([](Asset& a) { a.target_from_source.rotation.col(0) *= -1; }, "not a rotation");
   refuses([&](Asset& a) { a.target_from_source.translation.x() = nan; }, "rigid part");
-  refuses([&](Asset& a) { a.affine.linear(0, 0) = nan; }, "affine part");
-  refuses([&](Asset& a) { a.pyramid.levels[1].values[7] = std::numeric_limits<float>::infinity(); },
-          "level 1");
+  refuses([&](Asset& a) { a.steps.front().affine.linear(0, 0) = nan; }, "affine part");
+  refuses(
+      [&](Asset& a) { a.steps.front().pyramid.levels[1].values[7] = std::numeric_limits<float>::infinity(); },
+      "level 1");
   refuses(
       [](Asset& a) {
-        a.pyramid.levels = {test::wavy_level({0, 0, 0}, 1e-5, {{0, 0, 0}}, 1e-6)};
+        a.steps.front().pyramid.levels = {test::wavy_level({0, 0, 0}, 1e-5, {{0, 0, 0}}, 1e-6)};
       },
       "smaller unit");
-  refuses([](Asset& a) { a.certificate.certified = 0; }, "no cell is certified");
-  refuses([](Asset& a) { a.certificate.least_determinant = 0; }, "least determinant");
-  refuses([](Asset& a) { a.certificate.affine_determinant = 1; }, "affine determinant");
+  refuses([](Asset& a) { a.steps.front().certificate.certified = 0; }, "no cell is certified");
+  refuses([](Asset& a) { a.steps.front().certificate.least_determinant = 0; }, "least determinant");
+  refuses([](Asset& a) { a.steps.front().certificate.affine_determinant = 1; }, "affine determinant");
   refuses([&](Asset& a) { a.record.lambda = nan; }, "lambda");
   refuses([&](Asset& a) { a.record.anchors[0].weight = 0; }, "weight");
   refuses([&](Asset& a) { a.record.source.box.setEmpty(); }, "source bounding box");
   refuses([&](Asset& a) { a.record.options_json = "{"; }, "options_json");
   refuses([&](Asset& a) { a.record.stages_json = "{}"; }, "stages_json");
   refuses([&](Asset& a) { a.preview.reset(); }, "with_preview");
+}
+
+/// tiny_asset() with another step after its own.
+Asset tiny_chain() {
+  Asset asset = test::tiny_asset();
+  MapStep second = asset.steps.front();
+  second.affine.offset = {0.3, 0, 0.1};
+  second.affine.linear *= 0.9;
+  second.certificate.affine_determinant = second.affine.linear.determinant();
+  second.pyramid.origin = {0.25, 0, 0};
+  second.pyramid.levels.pop_back();
+  asset.steps.push_back(std::move(second));
+  asset.path = RotationPath::flow;
+  return asset;
+}
+
+TEST_F(AssetIo, RoundTripsAChain) {
+  const Asset asset = tiny_chain();
+  const std::string bytes = written(asset);
+  for (const bool untrusted : {false, true}) {
+    const Asset read = read_bytes(bytes, untrusted);
+    expect_same(read, asset);
+    ASSERT_EQ(read.steps.size(), 2u);
+    EXPECT_EQ(read.steps[1].affine.linear, asset.steps[1].affine.linear);
+    EXPECT_EQ(read.steps[1].affine.offset, asset.steps[1].affine.offset);
+    EXPECT_EQ(read.steps[1].pyramid.origin, asset.steps[1].pyramid.origin);
+    ASSERT_EQ(read.steps[1].pyramid.levels.size(), 1u);
+    EXPECT_EQ(read.steps[1].pyramid.levels[0].values, asset.steps[1].pyramid.levels[0].values);
+    EXPECT_EQ(written(read), bytes);
+  }
+}
+
+TEST_F(AssetIo, NamesTheGridsAndEntriesOfEveryStep) {
+  const StoredFile file = stored_file_from_vdb(unseal(written(tiny_chain())).vdb);
+  std::vector<std::string> names;
+  for (const StoredGrid& grid : file.grids) names.push_back(grid.name);
+  EXPECT_THAT(names,
+              testing::ElementsAre("displacement", "source_distance", "jacobian", "u_0", "u_1", "s1_u_0"));
+  EXPECT_EQ(std::get<std::int64_t>(file.metadata.at(version_key)), 2);
+  EXPECT_EQ(std::get<std::int64_t>(file.metadata.at("bespoke:steps")), 2);
+  EXPECT_EQ(std::get<std::int64_t>(file.metadata.at("bespoke:levels")), 2);
+  EXPECT_EQ(std::get<std::int64_t>(file.metadata.at("bespoke:s1_levels")), 1);
+  EXPECT_EQ(std::get<Vector3>(file.metadata.at("bespoke:s1_affine_offset")), Vector3(0.3, 0, 0.1));
+  EXPECT_EQ(std::get<std::string>(file.metadata.at("bespoke:rotation_path")), "flow");
+}
+
+TEST_F(AssetIo, RefusesAChainWithAStepThatItCannotVouchFor) {
+  Asset no_steps = test::tiny_asset(), broken = tiny_chain(), mixed = tiny_chain();
+  no_steps.steps.clear();
+  broken.steps[1].affine.linear(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  mixed.steps[1].pyramid.precision = ValuePrecision::half;
+  mixed.steps[1].pyramid.levels.clear();
+  EXPECT_THAT([&] { require_valid(no_steps); }, ThrowsMessage<InvalidInput>(HasSubstr("no steps")));
+  EXPECT_THAT([&] { require_valid(broken); }, ThrowsMessage<InvalidInput>(HasSubstr("affine part")));
+  EXPECT_THAT([&] { require_valid(mixed); }, ThrowsMessage<InvalidInput>(HasSubstr("one precision")));
+}
+
+TEST(WholeCertificate, IsABijectionOnlyWhenEveryStepIs) {
+  Asset asset = tiny_chain();
+  const Certificate whole = whole_certificate(asset);
+  EXPECT_TRUE(whole.is_bijection());
+  EXPECT_EQ(whole.certified, 2 * asset.steps[0].certificate.certified);
+  EXPECT_NEAR(whole.least_determinant, 0.0625 * 0.0625, 1e-15);
+  asset.steps[1].certificate.folded = 1;
+  EXPECT_FALSE(whole_certificate(asset).is_bijection());
+  asset.steps[1].certificate.folded = 0;
+  asset.steps[0].certificate.affine_determinant = asset.steps[1].certificate.affine_determinant = -1;
+  EXPECT_FALSE(whole_certificate(asset).is_bijection());
 }
 
 TEST_F(AssetIo, NamesTheFileThatCannotBeRead) {
@@ -261,7 +331,8 @@ TEST_F(AssetIo, RejectsWellSealedContentThatItCannotVouchFor) {
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   rejects([](StoredFile& f) { f.metadata.erase(version_key); }, "bespoke:format_version is missing");
-  rejects([](StoredFile& f) { f.metadata[version_key] = std::int64_t{2}; }, "format version 2");
+  rejects([](StoredFile& f) { f.metadata[version_key] = std::int64_t{3}; }, "format version 3");
+  rejects([](StoredFile& f) { f.metadata[version_key] = std::int64_t{2}; }, "format_version contradicts");
   rejects([](StoredFile& f) { f.metadata[version_key] = 1.0; }, "not a 64-bit integer");
   rejects([](StoredFile& f) { f.metadata.erase(record_key); }, "bespoke:record is missing");
   rejects([](StoredFile& f) { f.metadata[record_key] = std::string("{"); }, "not JSON");

@@ -29,7 +29,7 @@ double metadata_number(const StoredGrid& grid, const std::string& key) {
 
 TEST(DisplacementPreview, IsThatOfTheMapAtItsNodes) {
   const Asset asset = with_preview(test::small_asset(), test::sphere({0, 0, 0}, 1, 2));
-  const BakedMap baked(asset.affine, asset.pyramid);
+  const BakedMap baked(asset.steps.front().affine, asset.steps.front().pyramid);
   const StoredGrid& grid = asset.preview->grids()[0];
   for_each_node(grid, [&](const Vector3& x, std::size_t node) {
     const Vector3 moved = asset.target_from_source * Vector3(baked(Points(x)));
@@ -41,7 +41,7 @@ TEST(DisplacementPreview, IsThatOfTheMapAtItsNodes) {
 
 TEST(DisplacementPreview, OfAnAffineMapHasNoErrorButRounding) {
   Asset asset = test::small_asset();
-  asset.pyramid.levels.clear();
+  asset.steps.front().pyramid.levels.clear();
   asset = with_preview(asset, test::sphere({0, 0, 0}, 1, 2));
   EXPECT_LT(metadata_number(asset.preview->grids()[0], "bespoke:error_max"), 1e-6);
 }
@@ -55,15 +55,15 @@ TEST(DisplacementPreview, CoversTheSourceAndItsBand) {
 
 TEST(JacobianPreview, OfAnAffineMapIsItsDeterminant) {
   Asset asset = test::small_asset();
-  asset.pyramid.levels.clear();
+  asset.steps.front().pyramid.levels.clear();
   asset = with_preview(asset, test::sphere({0, 0, 0}, 1, 2));
   for (const float value : asset.preview->grids()[2].values)
-    ASSERT_NEAR(value, asset.affine.linear.determinant() - 1, 1e-6);
+    ASSERT_NEAR(value, asset.steps.front().affine.linear.determinant() - 1, 1e-6);
 }
 
 TEST(JacobianPreview, BoundsTheDeterminantFromBelow) {
   const Asset asset = with_preview(test::small_asset(), test::sphere({0, 0, 0}, 1, 2));
-  const BakedMap baked(asset.affine, asset.pyramid);
+  const BakedMap baked(asset.steps.front().affine, asset.steps.front().pyramid);
   const StoredGrid& grid = asset.preview->grids()[2];
   std::mt19937 random(5);
   std::uniform_real_distribution<double> within(-0.999, 0.999);
@@ -71,7 +71,7 @@ TEST(JacobianPreview, BoundsTheDeterminantFromBelow) {
   for_each_node(grid, [&](const Vector3& node, std::size_t n) {
     const Vector3 x = node + grid.voxel_size * Vector3(within(random), within(random), within(random));
     const double determinant =
-        (asset.affine.linear + Matrix3(baked.displacement_gradient(Points(x)))).determinant();
+        (asset.steps.front().affine.linear + Matrix3(baked.displacement_gradient(Points(x)))).determinant();
     least = std::min(least, determinant);
     ASSERT_LE(grid.values[n] + 1.0, determinant + 1e-9) << x.transpose();
   });

@@ -42,17 +42,17 @@ inline Asset small_asset() {
   asset.target_from_source.rotation =
       Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   asset.target_from_source.translation = {0.5, -0.25, 1.0 / 3};
-  asset.affine.linear << 1.1, 0.02, 0, -0.01, 0.95, 0.03, 0, 0, 1.05;
-  asset.affine.offset = {0.1, 0.2, -0.3};
-  asset.pyramid.origin = {-1.0 / 3, -1.1, -0.9};
+  asset.steps.front().affine.linear << 1.1, 0.02, 0, -0.01, 0.95, 0.03, 0, 0, 1.05;
+  asset.steps.front().affine.offset = {0.1, 0.2, -0.3};
+  asset.steps.front().pyramid.origin = {-1.0 / 3, -1.1, -0.9};
   const double voxel_size = 0.012369952865891319 * 10;  // neither it nor its sums with the origin are exact
-  asset.pyramid.levels = {
-      wavy_level(asset.pyramid.origin, voxel_size, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
-      wavy_level(asset.pyramid.origin, voxel_size / 2, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
-  asset.certificate.certified = 12345;
-  asset.certificate.least_determinant = 0.0625;
-  asset.certificate.affine_determinant = asset.affine.linear.determinant();
-  asset.certificate.places = {{1, {0.1, 0.2, 0.3}, 1e-3}};
+  asset.steps.front().pyramid.levels = {
+      wavy_level(asset.steps.front().pyramid.origin, voxel_size, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
+      wavy_level(asset.steps.front().pyramid.origin, voxel_size / 2, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
+  asset.steps.front().certificate.certified = 12345;
+  asset.steps.front().certificate.least_determinant = 0.0625;
+  asset.steps.front().certificate.affine_determinant = asset.steps.front().affine.linear.determinant();
+  asset.steps.front().certificate.places = {{1, {0.1, 0.2, 0.3}, 1e-3}};
   asset.record.unit = "dm";
   asset.record.elastic_method = "csrbf";
   asset.record.surface_fit_method = "laplacian";

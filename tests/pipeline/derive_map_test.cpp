@@ -25,9 +25,9 @@ Asset asset_of(const Vector3& amplitude, const std::string& source_hash, const s
   const AnalyticMap map(
       {{Vector3(0.5, 0, 0), 1.0, amplitude}, {Vector3(-0.5, 0.3, 0), 0.8, 0.5 * amplitude}});
   Asset asset = test::small_asset();
-  asset.affine = map.affine();
-  asset.pyramid = bake(map, options()).pyramid;
-  asset.certificate = certify(asset.pyramid, asset.affine);
+  asset.steps.front().affine = map.affine();
+  asset.steps.front().pyramid = bake(map, options()).pyramid;
+  asset.steps.front().certificate = certify(asset.steps.front().pyramid, asset.steps.front().affine);
   asset.record.tolerance = tolerance;
   asset.record.source.hash = std::string(64, source_hash[0]);
   asset.record.target.hash = std::string(64, target_hash[0]);
@@ -35,14 +35,14 @@ Asset asset_of(const Vector3& amplitude, const std::string& source_hash, const s
 }
 
 Points whole_map(const Asset& asset, const Points& x) {
-  return asset.target_from_source * BakedMap(asset.affine, asset.pyramid)(x);
+  return asset.target_from_source * baked_chain(asset.steps)(x);
 }
 
 TEST(InvertMap, IsAnAssetThatUndoesTheOther) {
   const Asset forth = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
-  ASSERT_TRUE(forth.certificate.is_bijection());
+  ASSERT_TRUE(forth.steps.front().certificate.is_bijection());
   const DerivedMap back = invert_map(forth, options());
-  EXPECT_TRUE(back.asset.certificate.is_bijection());
+  EXPECT_TRUE(back.asset.steps.front().certificate.is_bijection());
   EXPECT_TRUE(back.bake.tolerance_met);
   EXPECT_LE(back.deviation.max, 2 * tolerance);
   EXPECT_EQ(back.asset.record.source.hash, forth.record.target.hash);
@@ -53,12 +53,13 @@ TEST(InvertMap, IsAnAssetThatUndoesTheOther) {
 
   const test::ScratchDirectory scratch;
   write_asset(scratch / "back.vdb", back.asset);
-  EXPECT_EQ(read_asset(scratch / "back.vdb").pyramid.voxel_count(), back.asset.pyramid.voxel_count());
+  EXPECT_EQ(read_asset(scratch / "back.vdb").steps.front().pyramid.voxel_count(),
+            back.asset.steps.front().pyramid.voxel_count());
 }
 
 TEST(InvertMap, RefusesAMapThatIsNotCertified) {
   Asset folded = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
-  folded.certificate.folded = 7;
+  folded.steps.front().certificate.folded = 7;
   try {
     invert_map(folded, options());
     ADD_FAILURE() << "inverted";
@@ -71,7 +72,7 @@ TEST(ComposeMaps, IsOneMapAfterTheOther) {
   const Asset first = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
   const Asset second = asset_of(Vector3(0, 0.1, 0.1), "b", "c");
   const DerivedMap both = compose_maps(first, second, options(), MeetingModels::must_be_the_same);
-  EXPECT_TRUE(both.asset.certificate.is_bijection());
+  EXPECT_TRUE(both.asset.steps.front().certificate.is_bijection());
   EXPECT_LE(both.deviation.max, tolerance);
   EXPECT_EQ(both.asset.record.source.hash, first.record.source.hash);
   EXPECT_EQ(both.asset.record.target.hash, second.record.target.hash);
@@ -81,6 +82,36 @@ TEST(ComposeMaps, IsOneMapAfterTheOther) {
   const test::ScratchDirectory scratch;
   write_asset(scratch / "both.vdb", both.asset);
   EXPECT_NO_THROW(read_asset(scratch / "both.vdb"));
+}
+
+// Two steps, in the frame of the first's source.
+Asset chain_asset() {
+  Asset asset = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  asset.steps.push_back(asset_of(Vector3(0.05, -0.1, 0.1), "a", "b").steps.front());
+  asset.path = RotationPath::flow;
+  return with_preview(std::move(asset), test::sphere(Vector3::Zero(), 0.8, 2));
+}
+
+TEST(InvertMap, ReversesTheStepsOfAChain) {
+  const Asset forth = chain_asset();
+  const DerivedMap back = invert_map(forth, options());
+  ASSERT_EQ(back.asset.steps.size(), 2u);
+  EXPECT_TRUE(whole_certificate(back.asset).is_bijection());
+  const Points x = 2 * Points::Random(3, 2000);
+  EXPECT_LT((whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm().maxCoeff(), 3 * tolerance);
+  EXPECT_LE(back.deviation.max, 3 * tolerance);
+}
+
+TEST(ComposeMaps, JoinsChains) {
+  const Asset first = chain_asset();
+  const Asset second = asset_of(Vector3(0, 0.1, 0.1), "b", "c");
+  const DerivedMap both = compose_maps(first, second, options(), MeetingModels::must_be_the_same);
+  EXPECT_EQ(both.asset.steps.size(), 3u);
+  EXPECT_EQ(both.asset.path, RotationPath::flow);
+  EXPECT_TRUE(whole_certificate(both.asset).is_bijection());
+  const Points x = 2 * Points::Random(3, 2000);
+  EXPECT_LT((whole_map(both.asset, x) - whole_map(second, whole_map(first, x))).colwise().norm().maxCoeff(),
+            1.2 * tolerance);
 }
 
 TEST(ComposeMaps, RefusesModelsThatDoNotMeetUnlessTold) {

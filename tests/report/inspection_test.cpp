@@ -36,7 +36,7 @@ TEST(InspectionText, SaysWhyTheMapIsABijection) {
   Asset asset = test::small_asset();
   EXPECT_THAT(inspection_text(asset), HasSubstr("proved to be a bijection"));
   EXPECT_THAT(inspection_text(asset), HasSubstr("at least 0.0625 in all 12345"));
-  asset.certificate.undecided = 1;
+  asset.steps.front().certificate.undecided = 1;
   EXPECT_THAT(inspection_text(asset), HasSubstr("not proved to be a bijection"));
   EXPECT_THAT(inspection_text(asset), HasSubstr("(0.1, 0.2, 0.3)"));
   EXPECT_THAT(inspection_text(asset), Not(HasSubstr("homeomorphism")));
@@ -48,7 +48,7 @@ TEST(InspectionJson, HoldsTheSameNumbers) {
   EXPECT_EQ(json["direction"], "maps points a to b");
   EXPECT_EQ(json["translation"][2], 1.0 / 3);
   EXPECT_EQ(json["levels"].size(), 2u);
-  EXPECT_EQ(json["levels"][1]["voxel_size"], asset.pyramid.levels[1].voxel_size);
+  EXPECT_EQ(json["levels"][1]["voxel_size"], asset.steps.front().pyramid.levels[1].voxel_size);
   EXPECT_EQ(json["anchors"][0]["residual"], 0.01);
   EXPECT_EQ(json["options"]["lambda"], "10%");
 }

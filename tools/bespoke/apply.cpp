@@ -83,20 +83,33 @@ std::vector<double> times(const ApplyArguments& arguments) {
 
 /// The way back through the map's own cells; turns the asset's rigid part round as well.
 std::shared_ptr<const ElasticMap> inverse_map(const ApplyArguments& arguments, Asset& asset) {
-  if (!asset.certificate.is_bijection())
+  if (!whole_certificate(asset).is_bijection())
     throw InvalidInput(arguments.map + ": is not certified as a bijection, so it has no inverse");
-  const auto baked = std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
   const RigidTransform target_from_source = asset.target_from_source;
   asset.target_from_source = inverse(target_from_source);
-  // The inverse refers to the baked map, which therefore goes last.
-  return {new InverseMap(*baked, target_from_source),
-          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); }};
+  std::vector<std::shared_ptr<const ElasticMap>> way_back;
+  for (auto step = asset.steps.rbegin(); step != asset.steps.rend(); ++step) {
+    const auto baked = std::make_shared<BakedMap>(step->affine, std::move(step->pyramid));
+    // The inverse refers to the baked map, which therefore goes last.
+    way_back.emplace_back(new InverseMap(*baked, target_from_source),
+                          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
+  }
+  return std::make_shared<ElasticChain>(std::move(way_back));
 }
 
 std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
   if (arguments.inverse) return inverse_map(arguments, asset);
   if (arguments.exact) return stored_exact_map(arguments.map, asset);
-  return std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
+  return std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
+}
+
+/// The asset's own path, but for orders that do not know it.
+MotionOptions motion_options(const ApplyArguments& arguments, const Asset& asset) {
+  const MappingOrder order = arguments.order.value_or(MappingOrder::elastic_first);
+  RotationPath path = arguments.path.value_or(asset.path);
+  if (!arguments.path && path == RotationPath::flow && order != MappingOrder::elastic_first)
+    path = RotationPath::geodesic;
+  return {path, order};
 }
 
 /// Throws InvalidInput, with the product's name, for products that cannot be moved.
@@ -116,8 +129,7 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
   const std::shared_ptr<const ElasticMap> elastic = elastic_map(arguments, asset);
-  const MotionOptions motion{arguments.path.value_or(asset.path),
-                             arguments.order.value_or(MappingOrder::elastic_first)};
+  const MotionOptions motion = motion_options(arguments, asset);
 
   OutputFiles outputs;
   std::vector<AppliedProduct> applied;
@@ -164,8 +176,10 @@ void add_apply_command(CLI::App& app) {
       ->check(CLI::Range(1, 100000))
       ->type_name("N")
       ->excludes(t);
-  add_name_option(*apply, "--path", arguments->path, rotation_paths,
-                  "How the rotation grows with t (default: as stored in the asset)");
+  add_name_option(
+      *apply, "--path", arguments->path, rotation_paths,
+      "How the motion goes with t: the rotation on its geodesic or by its Euler angles and the "
+      "elastic part straight, or the flow of a map with several steps (default: as stored in the asset)");
   add_name_option(*apply, "--order", arguments->order, mapping_orders,
                   "In which order the rigid and the elastic part act; all but the first are for comparison "
                   "(default: elastic-first)");

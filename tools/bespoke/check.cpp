@@ -3,6 +3,7 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
+#include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "commands.h"
 #include "run_options.h"
@@ -33,7 +34,7 @@ void print_places(const Certificate& certificate) {
 
 void run(const CheckArguments& arguments, const Progress& progress) {
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  const Certificate certificate = certify(asset.pyramid, asset.affine, arguments.t, progress);
+  const Certificate certificate = certify_map(asset, arguments.t, progress);
   if (arguments.json) {
     std::cout << to_json(certificate).dump(2) << '\n';
   } else {

@@ -30,7 +30,7 @@ void write_derived_map(const DerivedMapOptions& options, const DerivedMap& deriv
   outputs.keep();
   if (options.run.quiet) return;
   std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());
-  std::printf("%-12s %s\n", "certificate", to_string(derived.asset.certificate).c_str());
+  std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(derived.asset)).c_str());
   std::printf("%-12s %s\n", deviation, to_string(derived.deviation).c_str());
   std::printf("%-12s %s\n", "written", options.output.c_str());
 }

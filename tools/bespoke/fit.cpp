@@ -32,6 +32,7 @@ struct FitArguments {
   std::optional<BoundaryRule> boundaries;
   std::optional<ElasticMethod> elastic;
   std::optional<RotationPath> path;
+  std::optional<int> steps;
   std::optional<Length> anchor_sigma;
   std::optional<Length> lambda;
   std::optional<Length> tolerance;
@@ -72,11 +73,13 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
     options.fit.surface_fit.laplacian = no_additions;
     options.fit.elastic = ElasticMethod::csrbf;
     options.path = RotationPath::euler;
+    options.fit.steps = 1;
   }
   if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
   if (arguments.boundaries) options.fit.surface_fit.boundaries = *arguments.boundaries;
   if (arguments.elastic) options.fit.elastic = *arguments.elastic;
   if (arguments.path) options.path = *arguments.path;
+  if (arguments.steps) options.fit.steps = *arguments.steps;
   if (arguments.lambda) options.fit.lambda = arguments.lambda->in_mesh_units(source_diagonal);
   if (arguments.fit_tolerance)
     options.fit.fit_tolerance = arguments.fit_tolerance->in_mesh_units(source_diagonal);
@@ -109,7 +112,7 @@ TriangleMesh read_model(const std::string& role, const std::string& path, bool q
 void print_stages(const MadeMap& made, const Anchors& anchors) {
   for (const StageLine& stage : stage_lines(made.fit.summary, anchors))
     std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
-  std::printf("%-12s %s\n", "certificate", to_string(made.asset.certificate).c_str());
+  std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(made.asset)).c_str());
   std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
 }
@@ -171,8 +174,8 @@ void run(const FitArguments& arguments, const Progress& progress) {
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
   const MadeMap made = make_map(input, options, progress);
-  if (arguments.require_certified && !made.asset.certificate.is_bijection())
-    throw SolverError("the map is not certified as a bijection: " + to_string(made.asset.certificate));
+  if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
+    throw SolverError("the map is not certified as a bijection: " + to_string(whole_certificate(made.asset)));
   progress.check();
 
   OutputFiles outputs;
@@ -211,9 +214,16 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   CLI::Option* elastic = add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
-  CLI::Option* path = add_name_option(fit, "--path", arguments.path, rotation_paths,
-                                      with_default("How the rotation grows with t; stored in the asset",
-                                                   name_of(rotation_paths, defaults.path)));
+  CLI::Option* path =
+      add_name_option(fit, "--path", arguments.path, rotation_paths,
+                      "How the motion goes with t; stored in the asset (default: flow for a map of "
+                      "several steps, else geodesic)");
+  fit.add_option(
+         "--steps", arguments.steps,
+         "Steps of the chain that the map is made of (default: 1 for models in about the same pose, else by "
+         "the largest turn of a part)")
+      ->check(CLI::Range(1, 100))
+      ->type_name("N");
   fit.add_flag(
          "--paper", arguments.paper,
          "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, "

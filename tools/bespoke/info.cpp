@@ -26,7 +26,8 @@ void run(const InfoArguments& arguments) {
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
   // What a file claims is worth what its author is.
   if (arguments.untrusted)
-    require_same(asset.certificate, certify(asset.pyramid, asset.affine), arguments.map);
+    for (const MapStep& step : asset.steps)
+      require_same(step.certificate, certify(step.pyramid, step.affine), arguments.map);
   std::cout << (arguments.json ? inspection_json(asset) : inspection_text(asset));
 }
 

@@ -59,7 +59,7 @@ void run(const MeasureArguments& arguments, const Progress& progress) {
   if (arguments.exact)
     elastic = stored_exact_map(arguments.map, asset);
   else
-    elastic = std::make_shared<BakedMap>(asset.affine, std::move(asset.pyramid));
+    elastic = std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
   const MappingQuality quality = mapping_quality(
       {source, target, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       progress);

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "bespoke/error.h"
+#include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -24,6 +25,15 @@ void require_finite(const Points& x, const std::vector<double>& times) {
       throw InvalidInput("time " + std::to_string(i) + " is not finite: " + std::to_string(times[i]));
 }
 
+/// The map as a chain whose steps the motion follows; null where it goes straight.
+const ElasticChain* followed_chain(const ElasticMap& elastic, const MotionOptions& motion) {
+  if (motion.path != RotationPath::flow) return nullptr;
+  if (motion.order != MappingOrder::elastic_first)
+    throw InvalidInput("the flow of a map has one order: the elastic part first");
+  const auto* chain = dynamic_cast<const ElasticChain*>(&elastic);
+  return chain != nullptr && chain->steps().size() > 1 ? chain : nullptr;
+}
+
 /// Whether elastic_argument answers x itself.
 bool is_asked_at_rest(double t, const MotionOptions& motion) {
   return motion.order != MappingOrder::moving_point || t == 0 || t == 1;
@@ -33,6 +43,25 @@ std::size_t count_nonzero(const Points& u) {
   std::size_t count = 0;
   for (Eigen::Index i = 0; i < u.cols(); ++i) count += (u.col(i).array() != 0).any();
   return count;
+}
+
+/// Replaces the frames between the ends by those of the chain's own motion.
+void follow(const ElasticChain& chain, const RigidTransform& target_from_source, const Points& x,
+            const std::vector<double>& times, AppliedPoints& applied) {
+  std::vector<double> between;
+  for (const double t : times)
+    if (t != 0 && t != 1) between.push_back(t);
+  if (between.empty()) return;
+  const Stopwatch watch;
+  const std::vector<Points> images = chain.at(x, between);
+  applied.summary.seconds += watch.seconds();
+  std::size_t next = 0;
+  for (std::size_t frame = 0; frame < times.size(); ++frame) {
+    if (times[frame] == 0 || times[frame] == 1) continue;
+    const Points& image = images[next++];
+    // R(t) image + t T.
+    applied.frames[frame] = move_points(image, image, target_from_source, times[frame]);
+  }
 }
 
 }  // namespace
@@ -68,6 +97,8 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
         applied.frames[frame].middleCols(first, size) =
             move_points(chunk, image, target_from_source, times[frame], motion);
   });
+  if (const ElasticChain* chain = followed_chain(elastic, motion))
+    follow(*chain, target_from_source, x, times, applied);
   // Every t has a lookup of its own where E is asked for at points that move.
   for (std::size_t frame = 0; frame < times.size(); ++frame) {
     if (is_asked_at_rest(times[frame], motion)) continue;

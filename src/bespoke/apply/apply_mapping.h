@@ -24,8 +24,9 @@ struct AppliedPoints {
 };
 
 /// Ψ(t) of the columns of x (3×n, source frame, mesh units) for every t, from one lookup of E (and one more
-/// for every t between in the order of the moving point). The result is in the target frame at t = 1. Throws
-/// InvalidInput for non-finite points or times, naming the first.
+/// for every t between in the order of the moving point). On the path `flow` a chain of several steps goes
+/// through them (ElasticChain::at). The result is in the target frame at t = 1. Throws InvalidInput for
+/// non-finite points or times, naming the first.
 AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& target_from_source,
                             const Points& x, const std::vector<double>& times,
                             const MotionOptions& motion = {});

@@ -18,11 +18,19 @@ struct ElasticInput {
   const Points& targets;  ///< 3×k: where they go
 };
 
+/// The part of an elastic map that holds everywhere, far from the models too.
+enum class AffinePart {
+  least_squares,  ///< the affine map nearest to the correspondences
+  similarity,  ///< the nearest similarity: for steps of a change of pose, whose affine maps would shear space
+};
+
 struct ElasticOptions {
   double lambda = 0;  ///< effective distance, > 0, mesh units
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
+  /// csrbf and p-FFD have an affine part by construction and take no other.
+  AffinePart affine_part = AffinePart::least_squares;
 };
 
 /// A number, or a list of them, that a method found, under the name that reports and assets give it.

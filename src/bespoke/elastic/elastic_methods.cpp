@@ -29,6 +29,7 @@ ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, 
   multiscale.lambda = options.lambda;
   multiscale.tolerance = options.fit_tolerance;
   multiscale.composed = composed;
+  multiscale.affine_part = options.affine_part;
   MultiscaleFit fit = fit_multiscale(input.sources, input.targets, multiscale, progress);
   return {std::move(fit.map), std::move(fit.summary)};
 }

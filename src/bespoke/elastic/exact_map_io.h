@@ -11,7 +11,8 @@ namespace bespoke {
 /// The bytes of an exact elastic map, so that an asset can carry it beside its grids (`--keep-exact`) and
 /// anybody can measure what baking cost. Little-endian: magic, version, type (elastic_methods.h), then what
 /// its constructor takes, all numbers as doubles or 32/64-bit integers. The same map gives the same bytes.
-/// Throws InvalidInput for a map of any other type (a baked one, for instance).
+/// Of a chain of several steps: another magic, their number, and of each its length and bytes. Throws
+/// InvalidInput for a map of any other type (a baked one, for instance).
 std::string serialize_exact_map(const ElasticMap& map);
 
 /// The map again: displacement and gradient have the same bits as before. Throws FormatError for bytes that

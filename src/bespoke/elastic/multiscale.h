@@ -21,6 +21,7 @@ struct MultiscaleOptions {
   bool composed = true;  ///< diffeomorphic: layers are composed and each is bounded by ‖∇u_k‖ < 1 everywhere;
                          ///< otherwise summed
   int max_levels = 12;
+  AffinePart affine_part = AffinePart::least_squares;
 };
 
 struct MultiscaleSummary {
@@ -68,12 +69,12 @@ struct MultiscaleFit {
   MultiscaleSummary summary;
 };
 
-/// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map of the pairs,
-/// the identity along directions in which the sources have no extent. Centres of a layer are thinned to
-/// λ_k/4; λ_k is halved while a residual exceeds the tolerance. A composed scale takes several layers where
-/// residuals are clipped to 0.3 λ_k or a layer is damped to keep ‖∇u_k‖ ≤ 0.9. What cannot be met (the data
-/// folds there) stays in the residuals. Throws InvalidInput (sizes, non-finite values, affine part with det ≤
-/// 0, values out of range), SolverError.
+/// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map (or
+/// similarity) of the pairs, the identity along directions in which the sources have no extent. Centres of a
+/// layer are thinned to λ_k/4; λ_k is halved while a residual exceeds the tolerance. A composed scale takes
+/// several layers where residuals are clipped to 0.3 λ_k or a layer is damped to keep ‖∇u_k‖ ≤ 0.9. What
+/// cannot be met (the data folds there) stays in the residuals. Throws InvalidInput (sizes, non-finite
+/// values, affine part with det ≤ 0, values out of range), SolverError.
 MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
                              const Progress& progress = {});
 

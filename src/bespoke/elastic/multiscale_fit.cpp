@@ -11,6 +11,7 @@
 #include "bespoke/rbf/layer_stack.h"
 #include "bespoke/rbf/point_grid.h"
 #include "bespoke/rigid/affine_alignment.h"
+#include "bespoke/rigid/similarity_alignment.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -42,7 +43,11 @@ void require_usable(const Points& sources, const Points& targets, const Multisca
                        " levels; there must be one at least");
 }
 
-AffineMap upright_affine(const Points& sources, const Points& targets) {
+AffineMap upright_affine(const Points& sources, const Points& targets, AffinePart part) {
+  if (part == AffinePart::similarity) {
+    const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
+    return {similarity.scale * similarity.rotation, similarity.translation};
+  }
   AffineMap map = align_affinely(sources, targets, FlatDirections::of_squared_width_1e_12);
   if (!(map.linear.determinant() > 0))
     throw InvalidInput("multiscale: the affine part of the correspondences has determinant " +
@@ -95,7 +100,7 @@ class Fitter {
         targets_(targets),
         options_(options),
         progress_(progress),
-        affine_(upright_affine(sources, targets)),
+        affine_(upright_affine(sources, targets, options.affine_part)),
         images_(affine_ * sources) {}
 
   MultiscaleFit run() {

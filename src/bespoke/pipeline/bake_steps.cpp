@@ -26,8 +26,6 @@ ElasticChain tail(const ElasticChain& chain, std::size_t first) {
   return ElasticChain({chain.steps().begin() + static_cast<std::ptrdiff_t>(first), chain.steps().end()});
 }
 
-ElasticChain baked_maps(const std::vector<MapStep>& steps) { return baked_chain(steps); }
-
 /// Where the error is looked at from step `k` on: in its band, and in its finest cells on the surface.
 Points error_points(const MapStep& step, const TriangleMesh& surface, std::size_t count) {
   if (step.pyramid.levels.empty()) return Points(3, 0);
@@ -43,7 +41,7 @@ Points error_points(const MapStep& step, const TriangleMesh& surface, std::size_
 Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& steps,
                        const std::vector<Points>& surfaces, const Faces& faces, std::size_t count,
                        const Progress& progress) {
-  const ElasticChain baked = baked_maps(steps);
+  const ElasticChain baked = baked_chain(steps);
   std::vector<double> errors;
   for (std::size_t k = 0; k < steps.size(); ++k) {
     const Points x = error_points(steps[k], {surfaces[k], faces}, k == 0 ? count : count / steps.size());
@@ -51,22 +49,6 @@ Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& st
     errors.insert(errors.end(), found.begin(), found.end());
   }
   return summarize(std::move(errors));
-}
-
-void add(const BakeSummary& step, BakeSummary& whole) {
-  whole.levels.insert(whole.levels.end(), step.levels.begin(), step.levels.end());
-  whole.error_random_points += step.error_random_points;
-  whole.error_surface_points += step.error_surface_points;
-  whole.surface_cells += step.surface_cells;
-  whole.refined_folds += step.refined_folds;
-  whole.repaired_cells += step.repaired_cells;
-  whole.repair_cost = std::max(whole.repair_cost, step.repair_cost);
-  whole.folded_cells += step.folded_cells;
-  whole.evaluated_points += step.evaluated_points;
-  whole.peak_bytes = std::max(whole.peak_bytes, step.peak_bytes);
-  whole.refine_seconds += step.refine_seconds;
-  whole.measure_seconds += step.measure_seconds;
-  whole.mend_seconds += step.mend_seconds;
 }
 
 BakedSteps bake_to(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
@@ -87,6 +69,22 @@ BakedSteps bake_to(const ElasticChain& exact, const std::vector<Points>& surface
 
 }  // namespace
 
+void add_step(const BakeSummary& step, BakeSummary& whole) {
+  whole.levels.insert(whole.levels.end(), step.levels.begin(), step.levels.end());
+  whole.error_random_points += step.error_random_points;
+  whole.error_surface_points += step.error_surface_points;
+  whole.surface_cells += step.surface_cells;
+  whole.refined_folds += step.refined_folds;
+  whole.repaired_cells += step.repaired_cells;
+  whole.repair_cost = std::max(whole.repair_cost, step.repair_cost);
+  whole.folded_cells += step.folded_cells;
+  whole.evaluated_points += step.evaluated_points;
+  whole.peak_bytes = std::max(whole.peak_bytes, step.peak_bytes);
+  whole.refine_seconds += step.refine_seconds;
+  whole.measure_seconds += step.measure_seconds;
+  whole.mend_seconds += step.mend_seconds;
+}
+
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, const Progress& progress) {
   if (exact.steps().size() == 1) {
@@ -101,7 +99,7 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
   BakedSteps baked;
   for (const bool last : {false, true}) {
     baked = bake_to(exact, surfaces, faces, step_options, progress);
-    for (const BakeSummary& summary : baked.summaries) add(summary, baked.whole);
+    for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
     const Stopwatch measure;
     baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, step_options.error_points, progress);
     baked.whole.measure_seconds += measure.seconds();

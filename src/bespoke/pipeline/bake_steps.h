@@ -14,6 +14,9 @@ struct BakedSteps {
   BakeSummary whole;  ///< sums over the steps; the error is that of the whole map, measured on it
 };
 
+/// Adds a step's counts and levels to those of the whole; its error is not touched.
+void add_step(const BakeSummary& step, BakeSummary& whole);
+
 /// Bakes every step of a chain so that the whole meets the tolerance. Errors add up along a chain, so that
 /// steps are baked to a fraction of it; the whole is measured, and where it misses the tolerance although
 /// every step met its own, all are baked once more, finer by what was missed. surfaces: 3×n per step, where

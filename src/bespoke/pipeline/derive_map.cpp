@@ -1,11 +1,15 @@
 #include "bespoke/pipeline/derive_map.h"
 
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/composed_map.h"
+#include "bespoke/pipeline/bake_steps.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -18,12 +22,12 @@ constexpr std::uint64_t deviation_seed = 77;
 class WholeMap {
  public:
   explicit WholeMap(const Asset& asset)
-      : elastic_(asset.affine, asset.pyramid), target_from_source_(asset.target_from_source) {}
+      : elastic_(baked_chain(asset.steps)), target_from_source_(asset.target_from_source) {}
   Points operator()(const Points& x) const { return target_from_source_ * elastic_(x); }
-  const BakedMap& elastic() const { return elastic_; }
+  const ElasticChain& elastic() const { return elastic_; }
 
  private:
-  BakedMap elastic_;
+  ElasticChain elastic_;
   RigidTransform target_from_source_;
 };
 
@@ -39,15 +43,43 @@ Statistics distances(const Points& a, const Points& b) {
   return summarize(std::move(values));
 }
 
-void bake_into(DerivedMap& derived, const ElasticMap& exact, const BakeOptions& options,
-               const Progress& progress) {
+// A step and what its bake found.
+struct DerivedStep {
+  MapStep step;
+  BakeSummary bake;
+};
+
+DerivedStep bake_step(const ElasticMap& exact, const BakeOptions& options, const Progress& progress) {
   Bake baked = bake(exact, options, progress);
-  derived.bake = std::move(baked.summary);
-  derived.asset.affine = exact.affine();
-  derived.asset.pyramid = std::move(baked.pyramid);
-  derived.asset.certificate = certify(derived.asset.pyramid, derived.asset.affine, 1, progress);
-  derived.asset.record.tolerance = options.tolerance;
+  MapStep step{exact.affine(), std::move(baked.pyramid), {}};
+  step.certificate = certify(step.pyramid, step.affine, 1, progress);
+  return {std::move(step), std::move(baked.summary)};
+}
+
+void take_steps(DerivedMap& derived, std::vector<DerivedStep> steps, double tolerance) {
+  derived.asset.steps.clear();
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    derived.asset.steps.push_back(std::move(steps[k].step));
+    if (k == 0)
+      derived.bake = std::move(steps[k].bake);
+    else
+      add_step(steps[k].bake, derived.bake);
+  }
+  derived.asset.record.tolerance = tolerance;
   derived.asset.record.bake_error = derived.bake.error;
+}
+
+// Of several steps each is baked to its share, since errors add up.
+BakeOptions share(BakeOptions options, std::size_t steps) {
+  options.tolerance /= static_cast<double>(steps);
+  return options;
+}
+
+// The error of a chain is that of the whole, not of its first step.
+void take_measured_error(DerivedMap& derived) {
+  if (derived.asset.steps.size() == 1) return;
+  derived.bake.error = derived.asset.record.bake_error = derived.deviation;
+  derived.bake.tolerance_met = derived.deviation.max <= derived.asset.record.tolerance;
 }
 
 void record_stages(DerivedMap& derived, const char* name) {
@@ -60,9 +92,10 @@ void record_stages(DerivedMap& derived, const char* name) {
 }  // namespace
 
 DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const Progress& progress) {
-  if (!b_from_a.certificate.is_bijection())
+  const Certificate certificate = whole_certificate(b_from_a);
+  if (!certificate.is_bijection())
     throw InvalidInput("the map is not certified as a bijection (" +
-                       std::to_string(b_from_a.certificate.folded + b_from_a.certificate.undecided) +
+                       std::to_string(certificate.folded + certificate.undecided) +
                        " cells fold or are undecided), so it has no inverse");
   const WholeMap forth(b_from_a);
   DerivedMap derived;
@@ -75,18 +108,75 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
   asset.record.options_json =
       Json({{"inverse_of", Json::parse(b_from_a.record.options_json)}, {"tolerance", options.tolerance}})
           .dump();
-  bake_into(derived, InverseMap(forth.elastic(), b_from_a.target_from_source), options, progress);
+  // E⁻¹ is the steps' inverses, the last one first.
+  std::vector<DerivedStep> steps;
+  for (auto step = forth.elastic().steps().rbegin(); step != forth.elastic().steps().rend(); ++step)
+    steps.push_back(bake_step(InverseMap(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source),
+                              share(options, b_from_a.steps.size()), progress));
+  take_steps(derived, std::move(steps), options.tolerance);
   const WholeMap back(asset);
   for (AnchorRecord& anchor : asset.record.anchors) {
     std::swap(anchor.a, anchor.b);
     anchor.residual = (back(anchor.a) - Points(anchor.b)).norm();
   }
-  const Points x = band_points(b_from_a.pyramid);
+  const Points x = band_points(b_from_a.steps.front().pyramid);
   derived.deviation = distances(back(forth(x)), x);
+  take_measured_error(derived);
   record_stages(derived, "round trip");
   asset = with_preview_of(std::move(asset), b_from_a, [&](const Points& y) { return back(y); });
   return derived;
 }
+
+namespace {
+
+// Both as one step; empty where that would fold, or cost more than it saves: more voxels than both, or too
+// much memory.
+std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, const BakeOptions& options,
+                                       const Progress& progress) {
+  const WholeMap b_from_a(first), c_from_b(second);
+  const ComposedMap both(*b_from_a.elastic().steps().front(), first.target_from_source,
+                         *c_from_b.elastic().steps().front());
+  try {
+    DerivedStep merged = bake_step(both, options, progress);
+    // One look-up instead of two, and nearly always fewer voxels; twice as many are no saving.
+    constexpr std::size_t worth = 2;
+    const bool folds = !merged.step.certificate.is_bijection() && whole_certificate(first).is_bijection() &&
+                       whole_certificate(second).is_bijection();
+    if (!folds && merged.step.pyramid.voxel_count() <= worth * (voxel_count(first) + voxel_count(second)))
+      return merged;
+  } catch (const MemoryLimitError&) {
+    // As two steps it may fit.
+  }
+  return std::nullopt;
+}
+
+// a→b's steps as they are, then b→c's, each seen from the frame of a.
+std::vector<DerivedStep> joined_steps(const Asset& first, const Asset& second, const BakeOptions& options,
+                                      const Progress& progress) {
+  std::vector<DerivedStep> steps;
+  for (const MapStep& step : first.steps) steps.push_back({step, {}});
+  steps.front().bake.error = first.record.bake_error;
+  const BakedMap at_rest({}, {});
+  for (const auto& step : baked_chain(second.steps).steps())
+    steps.push_back(bake_step(ComposedMap(at_rest, first.target_from_source, *step),
+                              share(options, second.steps.size()), progress));
+  return steps;
+}
+
+std::vector<DerivedStep> composed_steps(const Asset& first, const Asset& second, const BakeOptions& options,
+                                        const Progress& progress) {
+  if (first.steps.size() == 1 && second.steps.size() == 1) {
+    std::optional<DerivedStep> merged = merged_step(first, second, options, progress);
+    if (merged) {
+      std::vector<DerivedStep> steps;
+      steps.push_back(std::move(*merged));
+      return steps;
+    }
+  }
+  return joined_steps(first, second, options, progress);
+}
+
+}  // namespace
 
 DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const BakeOptions& options,
                         MeetingModels meeting, const Progress& progress) {
@@ -110,10 +200,11 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
                                     {"second", Json::parse(c_from_b.record.options_json)},
                                     {"tolerance", options.tolerance}})
                                   .dump();
-  bake_into(derived, ComposedMap(first.elastic(), b_from_a.target_from_source, second.elastic()), options,
-            progress);
-  const Points x = band_points(asset.pyramid);
+  take_steps(derived, composed_steps(b_from_a, c_from_b, options, progress), options.tolerance);
+  if (asset.steps.size() > 1) asset.path = RotationPath::flow;
+  const Points x = band_points(asset.steps.front().pyramid);
   derived.deviation = distances(WholeMap(asset)(x), second(first(x)));
+  take_measured_error(derived);
   record_stages(derived, "composition");
   asset = with_preview_of(std::move(asset), b_from_a);
   return derived;

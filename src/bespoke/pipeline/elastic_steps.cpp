@@ -22,8 +22,14 @@ StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const Elas
   plan.path = std::make_shared<const SurfacePath>(
       TriangleMesh{with_loose(source.vertices, pairs.sources, loose), source.faces},
       with_loose(fitted, pairs.targets, loose));
-  for (int k = 0; k <= steps; ++k) plan.times.push_back(static_cast<double>(k) / steps);
+  plan.times = equal_times(steps);
   return plan;
+}
+
+std::vector<double> equal_times(int steps) {
+  std::vector<double> times;
+  for (int k = 0; k <= steps; ++k) times.push_back(static_cast<double>(k) / steps);
+  return times;
 }
 
 StepPlan halved(const StepPlan& plan, const std::vector<std::size_t>& steps) {

@@ -19,6 +19,9 @@ struct StepPlan {
   std::size_t steps() const { return times.size() - 1; }
 };
 
+/// Equal steps along a path.
+std::vector<double> equal_times(int steps);
+
 /// Equal steps. pairs: of the source and its fitted vertices, the anchors off the surface at their end.
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
 

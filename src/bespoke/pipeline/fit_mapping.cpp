@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -35,6 +36,8 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
   require_valid(source, "source");
   if (!(options.lambda > 0 && std::isfinite(options.lambda)))
     throw InvalidInput("lambda is " + std::to_string(options.lambda) + ", but must be finite and above 0");
+  if (options.steps && *options.steps < 1)
+    throw InvalidInput("a map of " + std::to_string(*options.steps) + " steps; there must be one at least");
   for (const AnchorPair& pair : anchors.pairs)
     if (!(pair.a.allFinite() && pair.b.allFinite() && pair.weight > 0 && pair.sigma.value_or(0) >= 0))
       throw InvalidInput("anchor \"" + pair.name +
@@ -88,33 +91,86 @@ std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors&
                    target_points(anchors));
 }
 
-/// The elastic map of the fitted vertices (IV.D, IV.E), and what can be said only at the end.
+/// What can be said only with the whole map at hand.
+void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
+           const FitOptions& options) {
+  ElasticSummary& summary = result.summary.elastic;
+  const ElasticMap& elastic = *result.elastic;
+  const std::vector<int>& referenced = result.pairs.referenced;
+  const Points images = elastic(source.vertices);
+  summary.vertex_residuals =
+      summarize(distances(images(Eigen::all, referenced), result.fitted_vertices(Eigen::all, referenced)));
+  if (options.fit_tolerance > 0)
+    summary.unmet = unmet_vertices(source, images, result.fitted_vertices, options.fit_tolerance);
+  result.anchor_residual = anchor_residuals(result, anchors);
+  summary.anchor_residuals = summarize(result.anchor_residual);
+}
+
+ElasticOptions elastic_options(const FitOptions& options) {
+  return {options.lambda, options.fit_tolerance, options.max_memory};
+}
+
+void take_steps(FittedMapping& result, ElasticSteps steps) {
+  ElasticSummary& summary = result.summary.elastic;
+  summary.found = std::move(steps.found.front());
+  summary.later_steps.assign(std::make_move_iterator(steps.found.begin() + 1),
+                             std::make_move_iterator(steps.found.end()));
+  result.step_sources = std::move(steps.sources);
+  result.elastic = std::make_shared<const ElasticChain>(std::move(steps.maps));
+}
+
+/// The elastic map of the fitted vertices (IV.D, IV.E): one for models in about the same pose, else a chain
+/// of them along surfaces between the two.
 void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                      const FitOptions& options, const Progress& progress) {
   const Stopwatch watch;
   progress.step("elastic", 0, 0);
   ElasticSummary& summary = result.summary.elastic;
-  const ElasticPairs pairs = pairs_for_elastic(result, source, anchors, options, summary);
-  ElasticFit fit = elastic_method(options.elastic)
-                       .fit({source, result.fitted_vertices, pairs.sources, pairs.targets},
-                            {options.lambda, options.fit_tolerance, options.max_memory}, progress);
-  result.elastic = std::move(fit.map);
+  result.pairs = pairs_for_elastic(result, source, anchors, options, summary);
   summary.method = options.elastic;
-  summary.found = std::move(fit.found);
   summary.lambda = options.lambda;
-
-  const ElasticMap& elastic = *result.elastic;
-  const Points images = elastic(source.vertices);
-  summary.vertex_residuals = summarize(
-      distances(images(Eigen::all, pairs.referenced), result.fitted_vertices(Eigen::all, pairs.referenced)));
-  if (options.fit_tolerance > 0)
-    summary.unmet = unmet_vertices(source, images, result.fitted_vertices, options.fit_tolerance);
-  result.anchor_residual = anchor_residuals(result, anchors);
-  summary.anchor_residuals = summarize(result.anchor_residual);
+  summary.motion = regional_motion(source, result.fitted_vertices);
+  const int count = options.steps.value_or(step_count(summary.motion));
+  ElasticSteps steps;
+  if (count > 1) {
+    result.plan = plan_steps(source, result.fitted_vertices, result.pairs, count);
+    // Only the path knows turns beyond half a one.
+    summary.motion = result.plan->path->motion();
+    if (!options.steps) result.plan->times = equal_times(std::max(count, step_count(summary.motion)));
+    steps = fit_elastic_steps(source, result.pairs, *result.plan, options.elastic, elastic_options(options),
+                              {}, progress);
+  } else {
+    ElasticFit fit = elastic_method(options.elastic)
+                         .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
+                              elastic_options(options), progress);
+    steps = {{std::move(fit.map)}, {std::move(fit.found)}, {source.vertices}};
+  }
+  take_steps(result, std::move(steps));
+  judge(result, source, anchors, options);
   summary.seconds = watch.seconds();
 }
 
 }  // namespace
+
+void divide_steps(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                  const FitOptions& options, const std::vector<std::size_t>& steps,
+                  const Progress& progress) {
+  if (!fitted.plan || steps.empty()) throw InvalidInput("there are no steps to divide");
+  const Stopwatch watch;
+  ElasticSummary& summary = fitted.summary.elastic;
+  const std::size_t kept = *std::min_element(steps.begin(), steps.end());
+  ElasticSteps done;
+  for (std::size_t k = 0; k < kept; ++k) {
+    done.maps.push_back(fitted.elastic->steps()[k]);
+    done.found.push_back(k == 0 ? summary.found : summary.later_steps[k - 1]);
+    done.sources.push_back(fitted.step_sources[k]);
+  }
+  fitted.plan = halved(*fitted.plan, steps);
+  take_steps(fitted, fit_elastic_steps(source, fitted.pairs, *fitted.plan, options.elastic,
+                                       elastic_options(options), std::move(done), progress));
+  judge(fitted, source, anchors, options);
+  summary.seconds += watch.seconds();
+}
 
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress) {

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "bespoke/mapping/elastic_chain.h"
+#include "bespoke/pipeline/elastic_steps.h"
 #include "bespoke/pipeline/fit_summary.h"
 #include "bespoke/rigid/rigid_transform.h"
 
@@ -15,18 +18,28 @@ struct FitOptions {
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
+  std::optional<int> steps;  ///< of the chain, > 0; by the largest turn and stretch of a part when empty
 };
 
 /// Everything the fit found; Ψ = Γ∘E.
 struct FittedMapping {
-  RigidTransform target_from_source;          ///< Γ
-  std::shared_ptr<const ElasticMap> elastic;  ///< E
-  Points fitted_vertices;                     ///< H'_a, 3×n, source frame, mesh units
-  std::vector<double> confidence;             ///< of the surface fitting, n (surface_fit.h); empty without
-  std::vector<double> anchor_residual;        ///< |Γ(E(q)) − q'|, mesh units, one per pair
-  std::vector<double> anchor_sigma;           ///< as the fit took it, mesh units, one per pair; empty without
+  RigidTransform target_from_source;            ///< Γ
+  std::shared_ptr<const ElasticChain> elastic;  ///< E, of one step for models in about the same pose
+  std::vector<Points> step_sources;     ///< 3×n per step, where the source's vertices are when it begins
+  Points fitted_vertices;               ///< H'_a, 3×n, source frame, mesh units
+  std::vector<double> confidence;       ///< of the surface fitting, n (surface_fit.h); empty without
+  std::vector<double> anchor_residual;  ///< |Γ(E(q)) − q'|, mesh units, one per pair
+  std::vector<double> anchor_sigma;     ///< as the fit took it, mesh units, one per pair; empty without
   FitSummary summary;
+  ElasticPairs pairs;            ///< what E was fitted to
+  std::optional<StepPlan> plan;  ///< of a chain of several steps
 };
+
+/// A chain with some of its steps halved, by index, and all from the first of these on fitted again.
+/// `fitted` must have a plan; options as before.
+void divide_steps(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                  const FitOptions& options, const std::vector<std::size_t>& steps,
+                  const Progress& progress = {});
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
 /// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact

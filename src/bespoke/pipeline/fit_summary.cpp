@@ -22,9 +22,29 @@ std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
   return line;
 }
 
+namespace {
+
+std::string to_string(const ElasticFindings& found) {
+  return std::visit([](const auto& summary) { return bespoke::to_string(summary); }, found);
+}
+
+std::string steps_text(const ElasticSummary& summary) {
+  char text[200];
+  std::snprintf(text, sizeof text, "%zu steps, since parts turn by %.3g degrees and stretch by %.3g",
+                summary.later_steps.size() + 1, summary.motion.turn * 180 / std::numbers::pi,
+                summary.motion.stretch);
+  std::string line = text;
+  line += "; 1: " + to_string(summary.found);
+  for (std::size_t k = 0; k < summary.later_steps.size(); ++k)
+    line += "; " + std::to_string(k + 2) + ": " + to_string(summary.later_steps[k]);
+  return line;
+}
+
+}  // namespace
+
 std::string to_string(const ElasticSummary& summary) {
   std::string line = std::string(elastic_method(summary.method).name) + ": " +
-                     std::visit([](const auto& found) { return to_string(found); }, summary.found);
+                     (summary.later_steps.empty() ? to_string(summary.found) : steps_text(summary));
   char text[300];
   std::snprintf(text, sizeof text, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
                 summary.vertex_residuals.p95, summary.vertex_residuals.max, summary.anchor_residuals.max);

@@ -9,6 +9,7 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/bake/bake.h"
 #include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/unmet_vertices.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -31,11 +32,13 @@ struct CoarseSummary {
 
 struct ElasticSummary {
   ElasticMethod method = ElasticMethod::diffeomorphic;
-  ElasticFindings found;           ///< what the method says itself
-  double lambda = 0;               ///< effective distance, mesh units
-  Statistics vertex_residuals;     ///< |E(vᵢ) − v'ᵢ|, mesh units
-  Statistics anchor_residuals;     ///< |Γ(E(q)) − q'|, mesh units
-  std::vector<UnmetVertex> unmet;  ///< beyond a fit tolerance above 0; none asked for at 0
+  ElasticFindings found;                     ///< what the method says itself (of a chain's first step)
+  std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
+  RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
+  double lambda = 0;                         ///< effective distance, mesh units
+  Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units
+  Statistics anchor_residuals;               ///< |Γ(E(q)) − q'|, mesh units
+  std::vector<UnmetVertex> unmet;            ///< beyond a fit tolerance above 0; none asked for at 0
   std::size_t unreferenced_vertices = 0;
   std::size_t duplicate_vertices = 0;
   std::size_t anchors_off_surface = 0;    ///< exact ones, beyond the fit tolerance from the source
@@ -51,7 +54,8 @@ struct FitSummary {
   std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
   ElasticSummary elastic;
-  std::optional<BakeSummary> bake;  ///< empty without make_map
+  std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map
+  std::vector<BakeSummary> bake_steps;  ///< of a chain, one per step
 };
 
 /// One line each. Anchors: those of the fit, for their names.

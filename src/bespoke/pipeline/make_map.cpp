@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bespoke/elastic/exact_map_io.h"
+#include "bespoke/pipeline/bake_steps.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
 
@@ -19,9 +20,9 @@ Json laplacian_json(const SurfaceFitOptions& options) {
   return json;
 }
 
-std::string recorded_options(const MakeMapOptions& options, bool given_fitted) {
+std::string recorded_options(const MakeMapOptions& options, RotationPath path, bool given_fitted) {
   Json json;
-  json["path"] = name_of(rotation_paths, options.path);
+  json["path"] = name_of(rotation_paths, path);
   if (!given_fitted) {
     json["surface_fit"] = name_of(surface_fits, options.fit.surface_fit.method);
     json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
@@ -34,6 +35,7 @@ std::string recorded_options(const MakeMapOptions& options, bool given_fitted) {
   json["lambda"] = options.fit.lambda;
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["tolerance"] = options.bake.tolerance;
+  if (options.fit.steps) json["steps"] = *options.fit.steps;
   if (options.bake.precision == ValuePrecision::half) json["half"] = true;
   if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;
   return json.dump();
@@ -55,6 +57,34 @@ std::vector<AnchorRecord> anchor_records(const Anchors& anchors, const FittedMap
   return records;
 }
 
+/// One step goes the same way on its flow as on its geodesic.
+RotationPath path_of(const FittedMapping& fit, const MakeMapOptions& options) {
+  if (fit.elastic->steps().size() > 1) return options.path.value_or(RotationPath::flow);
+  const RotationPath path = options.path.value_or(RotationPath::geodesic);
+  return path == RotationPath::flow ? RotationPath::geodesic : path;
+}
+
+/// Steps that folded although they were mended.
+std::vector<std::size_t> folded_steps(const BakedSteps& baked) {
+  std::vector<std::size_t> folded;
+  for (std::size_t k = 0; k < baked.steps.size(); ++k)
+    if (!baked.steps[k].certificate.is_bijection()) folded.push_back(k);
+  return folded;
+}
+
+/// Bakes the fitted map; steps of a chain that fold are halved once.
+BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
+                       const Progress& progress) {
+  const auto bake_all = [&] {
+    return bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, progress);
+  };
+  BakedSteps baked = bake_all();
+  const std::vector<std::size_t> folded = folded_steps(baked);
+  if (!fit.plan || folded.empty()) return baked;
+  divide_steps(fit, input.source, input.anchors, options.fit, folded, progress);
+  return bake_all();
+}
+
 AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
   AssetRecord record;
   record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
@@ -63,7 +93,7 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
   record.lambda = options.fit.lambda;
   record.tolerance = options.bake.tolerance;
   record.bake_error = fit.summary.bake->error;
-  record.options_json = recorded_options(options, input.fitted != nullptr);
+  record.options_json = recorded_options(options, path_of(fit, options), input.fitted != nullptr);
   record.stages_json = recorded_stages(fit.summary, input.anchors);
   record.anchors = anchor_records(input.anchors, fit);
   record.source = {content_hash(input.source), bounding_box(input.source.vertices)};
@@ -86,17 +116,14 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   made.fit = input.fitted
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
-  BakeOptions bake_options = options.bake;
-  bake_options.surface = &input.source;
-  Bake baked = bake(*made.fit.elastic, bake_options, progress);
-  made.fit.summary.bake = std::move(baked.summary);
+  BakedSteps baked = bake_fitted(made.fit, input, options, progress);
+  made.fit.summary.bake = std::move(baked.whole);
+  if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);
 
   Asset& asset = made.asset;
   asset.target_from_source = made.fit.target_from_source;
-  asset.path = options.path;
-  asset.affine = made.fit.elastic->affine();
-  asset.pyramid = std::move(baked.pyramid);
-  asset.certificate = certify(asset.pyramid, asset.affine, 1, progress);
+  asset.path = path_of(made.fit, options);
+  asset.steps = std::move(baked.steps);
   asset.record = make_record(input, options, made.fit);
   if (options.keep_exact) asset.exact_map = serialize_exact_map(*made.fit.elastic);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "bespoke/asset/asset.h"
 #include "bespoke/pipeline/fit_mapping.h"
 
@@ -13,8 +15,8 @@ inline constexpr double default_fit_tolerance = 0.0001;
 struct MakeMapOptions {
   FitOptions fit;
   BakeOptions bake;
-  RotationPath path = RotationPath::geodesic;
-  bool keep_exact = false;  ///< store the exact E as well (Asset::exact_map)
+  std::optional<RotationPath> path;  ///< the flow of a chain, geodesic for one step when empty
+  bool keep_exact = false;           ///< store the exact E as well (Asset::exact_map)
 };
 
 /// Options whose lengths are the default fractions above of `source_diagonal` (mesh units).

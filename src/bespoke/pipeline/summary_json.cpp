@@ -121,10 +121,25 @@ Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
           {"mended_vertices", summary.mended_vertices}};
 }
 
+namespace {
+
+void add_figures(const ElasticFindings& found, Json& json) {
+  for (const Figure& figure : std::visit([](const auto& summary) { return figures(summary); }, found))
+    std::visit([&](const auto& value) { json[figure.name] = value; }, figure.value);
+}
+
+/// With what was found of every step of a chain.
+Json bake_json(const FitSummary& summary) {
+  Json json = to_json(*summary.bake);
+  for (const BakeSummary& step : summary.bake_steps) json["steps"].push_back(to_json(step));
+  return json;
+}
+
+}  // namespace
+
 Json to_json(const ElasticSummary& summary) {
   Json json = {{"method", elastic_method(summary.method).name}};
-  for (const Figure& figure : std::visit([](const auto& found) { return figures(found); }, summary.found))
-    std::visit([&](const auto& value) { json[figure.name] = value; }, figure.value);
+  add_figures(summary.found, json);
   json["lambda"] = summary.lambda;
   json["vertex_residual"] = to_json(summary.vertex_residuals);
   json["unmet_vertices"] = summary.unmet.size();
@@ -135,6 +150,11 @@ Json to_json(const ElasticSummary& summary) {
   if (summary.anchors_off_surface > 0)
     json[summary.meets_anchors_off_surface ? "anchors_off_surface" : "anchors_off_surface_left_out"] =
         summary.anchors_off_surface;
+  if (summary.later_steps.empty()) return json;
+  json["turn"] = summary.motion.turn;
+  json["stretch"] = summary.motion.stretch;
+  for (const ElasticFindings& found : summary.later_steps)
+    add_figures(found, json["later_steps"].emplace_back());
   return json;
 }
 
@@ -154,7 +174,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   else
     add("surface-fit", {{"method", "given"}}, 0);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
-  if (summary.bake) add("bake", to_json(*summary.bake), summary.bake->seconds);
+  if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);
   return stages;
 }
 

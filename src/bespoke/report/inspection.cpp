@@ -55,9 +55,15 @@ Json to_json(const AnchorRecord& anchor) {
 Json embedded(const std::string& json) { return json.empty() ? Json() : Json::parse(json); }
 
 /// Why the map is a bijection, with the value of each condition; or which of them fails.
-std::string certificate_text(const Certificate& certificate) {
+std::string certificate_text(const Certificate& certificate, std::size_t steps) {
   std::ostringstream text;
-  if (certificate.is_bijection()) {
+  if (certificate.is_bijection() && steps > 1) {
+    text << "proved to be a bijection of all of space: each of its " << steps
+         << " steps is one, continuous, trilinear in every finest cell with positive det of its gradient in "
+            "all "
+         << certificate.certified << " of them, and affine outside; det of the whole at least "
+         << number(certificate.least_determinant);
+  } else if (certificate.is_bijection()) {
     text
         << "proved to be a bijection of all of space: continuous, trilinear in every finest cell with det of "
            "its gradient at least "
@@ -94,6 +100,33 @@ std::string anchor_table(const std::vector<AnchorRecord>& anchors) {
   return text.str();
 }
 
+std::string step_text(const MapStep& step) {
+  std::ostringstream text;
+  text << "affine       " << rows(step.affine.linear) << ", offset " << tuple(step.affine.offset) << '\n';
+  for (std::size_t k = 0; k < step.pyramid.levels.size(); ++k) {
+    const PyramidLevel& level = step.pyramid.levels[k];
+    text << "level " << k << "      voxel size " << number(level.voxel_size) << ", "
+         << level.leaves.size() * leaf_nodes << " voxels in " << level.leaves.size() << " leaves\n";
+  }
+  return text.str();
+}
+
+Json levels_json(const Pyramid& pyramid) {
+  Json levels = Json::array();
+  for (const PyramidLevel& level : pyramid.levels) levels.push_back(to_json(level));
+  return levels;
+}
+
+Json steps_json(const Asset& asset) {
+  Json steps = Json::array();
+  for (const MapStep& step : asset.steps)
+    steps.push_back({{"affine_linear", bespoke::to_json(step.affine.linear)},
+                     {"affine_offset", bespoke::to_json(step.affine.offset)},
+                     {"levels", levels_json(step.pyramid)},
+                     {"certificate", bespoke::to_json(step.certificate)}});
+  return steps;
+}
+
 }  // namespace
 
 std::string inspection_text(const Asset& asset) {
@@ -105,16 +138,15 @@ std::string inspection_text(const Asset& asset) {
        << record.elastic_method << ", effective distance " << number(record.lambda) << '\n'
        << "rotation     " << rows(asset.target_from_source.rotation) << ", path "
        << name_of(rotation_paths, asset.path) << '\n'
-       << "translation  " << tuple(asset.target_from_source.translation) << '\n'
-       << "affine       " << rows(asset.affine.linear) << ", offset " << tuple(asset.affine.offset) << '\n';
-  for (std::size_t k = 0; k < asset.pyramid.levels.size(); ++k) {
-    const PyramidLevel& level = asset.pyramid.levels[k];
-    text << "level " << k << "      voxel size " << number(level.voxel_size) << ", "
-         << level.leaves.size() * leaf_nodes << " voxels in " << level.leaves.size() << " leaves\n";
+       << "translation  " << tuple(asset.target_from_source.translation) << '\n';
+  if (asset.steps.size() > 1) text << "steps        " << asset.steps.size() << ", one after the other\n";
+  for (std::size_t k = 0; k < asset.steps.size(); ++k) {
+    if (asset.steps.size() > 1) text << "step " << k << '\n';
+    text << step_text(asset.steps[k]);
   }
   text << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
-       << number(record.tolerance) << ", " << name_of(asset.pyramid.precision) << " precision\n"
-       << "certificate  " << certificate_text(asset.certificate) << '\n'
+       << number(record.tolerance) << ", " << name_of(asset.steps.front().pyramid.precision) << " precision\n"
+       << "certificate  " << certificate_text(whole_certificate(asset), asset.steps.size()) << '\n'
        << "source       " << model(record.source) << '\n'
        << "target       " << model(record.target) << '\n'
        << "exact map    "
@@ -125,32 +157,36 @@ std::string inspection_text(const Asset& asset) {
 
 std::string inspection_json(const Asset& asset) {
   const AssetRecord& record = asset.record;
-  Json levels = Json::array();
-  for (const PyramidLevel& level : asset.pyramid.levels) levels.push_back(to_json(level));
+  const MapStep& first = asset.steps.front();
   Json anchors = Json::array();
   for (const AnchorRecord& anchor : record.anchors) anchors.push_back(to_json(anchor));
-  const Json json = {{"direction", "maps points a to b"},
-                     {"unit", record.unit},
-                     {"rotation", bespoke::to_json(asset.target_from_source.rotation)},
-                     {"translation", bespoke::to_json(asset.target_from_source.translation)},
-                     {"path", name_of(rotation_paths, asset.path)},
-                     {"affine_linear", bespoke::to_json(asset.affine.linear)},
-                     {"affine_offset", bespoke::to_json(asset.affine.offset)},
-                     {"surface_fit", record.surface_fit_method},
-                     {"elastic", record.elastic_method},
-                     {"lambda", record.lambda},
-                     {"tolerance", record.tolerance},
-                     {"bake_error", bespoke::to_json(record.bake_error)},
-                     {"precision", name_of(asset.pyramid.precision)},
-                     {"voxels", asset.pyramid.voxel_count()},
-                     {"levels", std::move(levels)},
-                     {"certificate", bespoke::to_json(asset.certificate)},
-                     {"exact_map_bytes", asset.exact_map.size()},
-                     {"source", to_json(record.source)},
-                     {"target", to_json(record.target)},
-                     {"anchors", std::move(anchors)},
-                     {"options", embedded(record.options_json)},
-                     {"stages", embedded(record.stages_json)}};
+  Json json = {{"direction", "maps points a to b"},
+               {"unit", record.unit},
+               {"rotation", bespoke::to_json(asset.target_from_source.rotation)},
+               {"translation", bespoke::to_json(asset.target_from_source.translation)},
+               {"path", name_of(rotation_paths, asset.path)},
+               {"affine_linear", bespoke::to_json(first.affine.linear)},
+               {"affine_offset", bespoke::to_json(first.affine.offset)},
+               {"surface_fit", record.surface_fit_method},
+               {"elastic", record.elastic_method},
+               {"lambda", record.lambda},
+               {"tolerance", record.tolerance},
+               {"bake_error", bespoke::to_json(record.bake_error)},
+               {"precision", name_of(first.pyramid.precision)},
+               {"voxels", voxel_count(asset)},
+               {"levels", levels_json(first.pyramid)},
+               {"certificate", bespoke::to_json(whole_certificate(asset))},
+               {"exact_map_bytes", asset.exact_map.size()},
+               {"source", to_json(record.source)},
+               {"target", to_json(record.target)},
+               {"anchors", std::move(anchors)},
+               {"options", embedded(record.options_json)},
+               {"stages", embedded(record.stages_json)}};
+  if (asset.steps.size() > 1) {
+    // What above is the first step's alone stands here for every step.
+    for (const char* key : {"affine_linear", "affine_offset", "levels"}) json.erase(key);
+    json["steps"] = steps_json(asset);
+  }
   return json.dump(2) + "\n";
 }
 

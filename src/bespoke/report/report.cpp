@@ -44,7 +44,7 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
   stages.back()["refine_seconds"] = bake.refine_seconds;
   stages.back()["measure_seconds"] = bake.measure_seconds;
   stages.back()["mend_seconds"] = bake.mend_seconds;
-  const Certificate& certificate = made.asset.certificate;
+  const Certificate certificate = whole_certificate(made.asset);
   Json certified = {{"name", "certificate"}};
   certified.update(to_json(certificate));
   stages.push_back(timed(certified, certificate.seconds));
@@ -59,7 +59,7 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
                {"vertex_residuals", to_json(made.fit.summary.elastic.vertex_residuals)},
                {"unmet_vertices", unmet_vertices(made.fit.summary.elastic.unmet)},
                {"stages", std::move(stages)},
-               {"voxels", made.asset.pyramid.voxel_count()},
+               {"voxels", voxel_count(made.asset)},
                {"seconds", seconds},
                {"peak_memory", peak_memory()}};
   if (!made.fit.confidence.empty()) json["confidence"] = to_json(summarize(made.fit.confidence));

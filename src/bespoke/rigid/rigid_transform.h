@@ -29,10 +29,12 @@ double rotation_angle(const RigidTransform& transform);
 enum class RotationPath {
   geodesic,  ///< exp(t log R): constant angular speed about one axis
   euler,     ///< Eq. 1 as printed: the three Euler angles of R = Rz Ry Rx, each times t
+  flow,      ///< geodesic, while the elastic part goes through the steps of a chain (ElasticChain::at)
 };
 
 inline constexpr std::array rotation_paths{Named<RotationPath>{"geodesic", RotationPath::geodesic},
-                                           Named<RotationPath>{"euler", RotationPath::euler}};
+                                           Named<RotationPath>{"euler", RotationPath::euler},
+                                           Named<RotationPath>{"flow", RotationPath::flow}};
 
 /// R(t). At t = 0 the identity, at t = 1 `rotation`, exactly.
 Matrix3 rotation_at(const Matrix3& rotation, RotationPath path, double t);

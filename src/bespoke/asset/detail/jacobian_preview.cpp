@@ -128,12 +128,10 @@ std::vector<double> bounds_at_nodes(const BakedMap& baked, const StoredGrid& dis
 std::vector<double> determinants_at_nodes(const ElasticChain& baked, const StoredGrid& lattice) {
   Points nodes(3, static_cast<Eigen::Index>(lattice.leaves.size()) * leaf_nodes);
   Eigen::Index column = 0;
+  const Lattice places{lattice.origin, lattice.voxel_size};
   for (const LeafCoordinates& leaf : lattice.leaves)
-    for (int node = 0; node < leaf_nodes; ++node) {
-      const Vector3 place(leaf_edge * leaf[0] + node / 64, leaf_edge * leaf[1] + node / 8 % 8,
-                          leaf_edge * leaf[2] + node % 8);
-      nodes.col(column++) = lattice.origin + lattice.voxel_size * place;
-    }
+    for (int node = 0; node < leaf_nodes; ++node)
+      nodes.col(column++) = places(moved(first_node(leaf), place_of_number(node)));
   const Matrix3 linear = baked.affine().linear;
   const Points gradient = baked.displacement_gradient(nodes);
   std::vector<double> determinants;

@@ -14,18 +14,6 @@ using Json = nlohmann::ordered_json;
 // Deeper JSON than any record has could exhaust the stack of a recursive reader.
 constexpr int max_depth = 64;
 
-const char* path_name(RotationPath path) {
-  switch (path) {
-    case RotationPath::geodesic:
-      return "geodesic";
-    case RotationPath::euler:
-      return "euler";
-    case RotationPath::flow:
-      return "flow";
-  }
-  throw InvalidInput("unknown rotation path");
-}
-
 Json to_json(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
 Json to_json(const Matrix3& m) {
@@ -203,8 +191,7 @@ AnchorRecord parse_anchor(const Field& field) {
 }
 
 RotationPath parse_path(const Field& field) {
-  for (const RotationPath path : {RotationPath::geodesic, RotationPath::euler, RotationPath::flow})
-    if (field.is(path_name(path))) return path;
+  if (const auto path = value_of(rotation_paths, field.text())) return *path;
   field.fail("is none of geodesic, euler and flow");
 }
 
@@ -267,7 +254,7 @@ std::string record_json(const Asset& asset) {
                {"rigid",
                 {{"rotation", to_json(asset.target_from_source.rotation)},
                  {"translation", to_json(asset.target_from_source.translation)}}},
-               {"rotation_path", path_name(asset.path)}};
+               {"rotation_path", name_of(rotation_paths, asset.path)}};
   if (only) json["affine"] = to_json(only->affine);
   json.update({{"elastic_method", record.elastic_method},
                {"surface_fit_method", record.surface_fit_method},
@@ -343,7 +330,7 @@ Metadata file_metadata(const std::string& json) {
   for (int i = 0; i < 3; ++i)
     metadata["bespoke:rotation_row_" + std::to_string(i)] = Vector3(asset.target_from_source.rotation.row(i));
   metadata["bespoke:translation"] = asset.target_from_source.translation;
-  metadata["bespoke:rotation_path"] = std::string(path_name(asset.path));
+  metadata["bespoke:rotation_path"] = std::string(name_of(rotation_paths, asset.path));
   metadata["bespoke:elastic_method"] = record.elastic_method;
   metadata["bespoke:surface_fit_method"] = record.surface_fit_method;
   metadata["bespoke:lambda"] = record.lambda;

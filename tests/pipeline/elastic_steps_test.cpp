@@ -1,0 +1,87 @@
+#include "bespoke/pipeline/elastic_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/pipeline/make_map.h"
+#include "flow/bent_tube.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+FitOptions options_of(const TriangleMesh& source) {
+  FitOptions options = default_options(diagonal(source.vertices)).fit;
+  options.fit_tolerance *= 10;
+  return options;
+}
+
+FittedMapping fit_bent(const TriangleMesh& source, double angle, const FitOptions& options,
+                       const Anchors& anchors = {}) {
+  return fit_mapping_to_fitted(source, {test::bent(source.vertices, angle), source.faces}, anchors, options);
+}
+
+TEST(ElasticSteps, AreOneForOnePose) {
+  const TriangleMesh source = test::tube();
+  const FittedMapping fit = fit_bent(source, 30 * degree, options_of(source));
+  EXPECT_EQ(fit.elastic->steps().size(), 1u);
+  EXPECT_FALSE(fit.plan.has_value());
+}
+
+TEST(ElasticSteps, MeetTheFittedSourceWhereALimbTurns) {
+  const TriangleMesh source = test::tube();
+  const FitOptions options = options_of(source);
+  const FittedMapping fit = fit_bent(source, 150 * degree, options);
+  EXPECT_GT(fit.elastic->steps().size(), 3u);
+  EXPECT_EQ(fit.step_sources.size(), fit.elastic->steps().size());
+  // Each step starts where the ones before have ended, so that the whole misses no more than one step does.
+  EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+  for (const auto& step : fit.elastic->steps()) {
+    const Matrix3 linear = step->affine().linear;
+    const double scale = std::cbrt(linear.determinant());
+    EXPECT_LT((linear * linear.transpose() - scale * scale * Matrix3::Identity()).norm(), 1e-9)
+        << "the affine part of a step is a similarity";
+  }
+}
+
+TEST(ElasticSteps, FollowTheOptionRatherThanTheTurn) {
+  const TriangleMesh source = test::tube();
+  FitOptions options = options_of(source);
+  options.steps = 3;
+  EXPECT_EQ(fit_bent(source, 30 * degree, options).elastic->steps().size(), 3u);
+}
+
+TEST(ElasticSteps, CarryAnchorsOffTheSurfaceWithIt) {
+  const TriangleMesh source = test::tube();
+  const FitOptions options = options_of(source);
+  Anchors anchors;
+  Points q(3, 6);
+  q << 0, 0, 3, 9, 9, 10, 0.5, 0, -0.5, 0.9, 0, 0.5, 0, 0.5, 0, 0, 0.9, 0;
+  const Points image = test::bent(q, 120 * degree);
+  for (Eigen::Index i = 0; i < q.cols(); ++i)
+    anchors.pairs.push_back({"anchor " + std::to_string(i), q.col(i), image.col(i)});
+  const FittedMapping fit = fit_bent(source, 120 * degree, options, anchors);
+  EXPECT_GT(fit.elastic->steps().size(), 3u);
+  EXPECT_GE(fit.summary.elastic.anchors_off_surface, 2u);
+  EXPECT_LE(fit.summary.elastic.anchor_residuals.max, 2 * options.fit_tolerance);
+}
+
+TEST(ElasticSteps, CanBeDivided) {
+  const TriangleMesh source = test::tube();
+  const FitOptions options = options_of(source);
+  FittedMapping fit = fit_bent(source, 90 * degree, options);
+  const std::size_t before = fit.elastic->steps().size();
+  ASSERT_GE(before, 3u);
+  const auto first = fit.elastic->steps()[0];
+  divide_steps(fit, source, {}, options, {1, 2});
+  EXPECT_EQ(fit.elastic->steps().size(), before + 2);
+  EXPECT_EQ(fit.elastic->steps()[0], first);
+  EXPECT_EQ(fit.plan->steps(), before + 2);
+  EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+}
+
+}  // namespace
+}  // namespace bespoke
