@@ -250,8 +250,8 @@ TEST_F(BadAssets, WellSealedButWrong) {
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   refuses([](StoredFile& f) { f.metadata.erase(version_key); }, "bespoke:format_version is missing");
-  refuses([](StoredFile& f) { f.metadata[version_key] = std::int64_t{2}; },
-          "format version 2; this program reads version 1");
+  refuses([](StoredFile& f) { f.metadata[version_key] = std::int64_t{3}; },
+          "format version 3; this program reads versions 1 and 2");
   refuses([](StoredFile& f) { f.metadata[version_key] = 1.0; }, "not a 64-bit integer");
   refuses([](StoredFile& f) { f.metadata.erase(record_key); }, "bespoke:record is missing");
   refuses([](StoredFile& f) { f.metadata[record_key] = std::string("{"); }, "the record is not JSON");
