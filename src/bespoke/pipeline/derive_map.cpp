@@ -157,7 +157,8 @@ std::vector<DerivedStep> joined_steps(const Asset& first, const Asset& second, c
   for (const MapStep& step : first.steps) steps.push_back({step, {}});
   steps.front().bake.error = first.record.bake_error;
   const BakedMap at_rest({}, {});
-  for (const auto& step : baked_chain(second.steps).steps())
+  const ElasticChain then = baked_chain(second.steps);
+  for (const auto& step : then.steps())
     steps.push_back(bake_step(ComposedMap(at_rest, first.target_from_source, *step),
                               share(options, second.steps.size()), progress));
   return steps;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "bespoke/error.h"
 
@@ -287,7 +288,11 @@ ParsedRecord parse_record(std::string_view json) {
   }
 }
 
-std::string step_prefix(std::size_t step) { return step == 0 ? "" : "s" + std::to_string(step) + "_"; }
+std::string step_prefix(std::size_t step) {
+  std::ostringstream prefix;
+  if (step > 0) prefix << 's' << step << '_';
+  return prefix.str();
+}
 
 namespace {
 
