@@ -38,6 +38,7 @@ struct FitArguments {
   std::optional<Length> tolerance;
   std::optional<Length> fit_tolerance;
   std::optional<Length> voxel_size;
+  std::optional<Length> contact_gap;
   std::optional<std::uint64_t> max_memory;
   bool keep_exact = false;
   bool half = false;
@@ -74,6 +75,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
     options.fit.elastic = ElasticMethod::csrbf;
     options.path = RotationPath::euler;
     options.fit.steps = 1;
+    options.fit.contact_gap = 0;
   }
   if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
   if (arguments.boundaries) options.fit.surface_fit.boundaries = *arguments.boundaries;
@@ -83,6 +85,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
   if (arguments.lambda) options.fit.lambda = arguments.lambda->in_mesh_units(source_diagonal);
   if (arguments.fit_tolerance)
     options.fit.fit_tolerance = arguments.fit_tolerance->in_mesh_units(source_diagonal);
+  if (arguments.contact_gap) options.fit.contact_gap = arguments.contact_gap->in_mesh_units(source_diagonal);
   if (arguments.tolerance) options.bake.tolerance = arguments.tolerance->in_mesh_units(source_diagonal);
   if (arguments.voxel_size) options.bake.voxel_size = arguments.voxel_size->in_mesh_units(source_diagonal);
   if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
@@ -251,6 +254,11 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
       "Accuracy of the anchors that have neither a sigma nor a weight of their own: standard "
       "deviation of a coordinate, mesh units or % of the diagonal; 0 meets them exactly (default: "
       "estimated from their distance to the target)",
+      LengthRange::not_negative);
+  add_length_option(
+      fit, "--contact-gap", arguments.contact_gap,
+      defaulted("Where the target touches itself, the parts are held this far apart; 0 leaves them",
+                default_contact_gap),
       LengthRange::not_negative);
   add_length_option(
       fit, "--voxel-size", arguments.voxel_size,

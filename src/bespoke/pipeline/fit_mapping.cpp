@@ -101,7 +101,9 @@ void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anc
   summary.vertex_residuals =
       summarize(distances(images(Eigen::all, referenced), result.fitted_vertices(Eigen::all, referenced)));
   if (options.fit_tolerance > 0)
-    summary.unmet = unmet_vertices(source, images, result.fitted_vertices, options.fit_tolerance);
+    summary.unmet = unmet_vertices(
+        source, images, result.fitted_vertices, options.fit_tolerance,
+        result.summary.contact ? result.summary.contact->released : std::vector<ReleasedVertex>{});
   result.anchor_residual = anchor_residuals(result, anchors);
   summary.anchor_residuals = summarize(result.anchor_residual);
 }
@@ -117,6 +119,19 @@ void take_steps(FittedMapping& result, ElasticSteps steps) {
                              std::make_move_iterator(steps.found.end()));
   result.step_sources = std::move(steps.sources);
   result.elastic = std::make_shared<const ElasticChain>(std::move(steps.maps));
+}
+
+/// Where the target touches itself no homeomorphism exists: the parts of the fitted source are held apart.
+void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const FitOptions& options,
+                      const Progress& progress) {
+  // Parts that pass through each other more deeply were not laid there by a target's contact.
+  constexpr double reach = 20;  // of the gap
+  progress.step("contact", 0, 0);
+  ContactFit apart = hold_apart(source, result.fitted_vertices,
+                                {.gap = options.contact_gap, .reach = reach * options.contact_gap}, progress);
+  if (apart.summary.touching == 0) return;
+  result.fitted_vertices = std::move(apart.vertices);
+  result.summary.contact = std::move(apart.summary);
 }
 
 /// The elastic map of the fitted vertices (IV.D, IV.E): one for models in about the same pose, else a chain
@@ -206,6 +221,8 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   summary.surface = std::move(fit.summary);
   summary.surface_method = options.surface_fit.method;
 
+  hold_parts_apart(result, source, options, progress);
+
   // IV.D, IV.E: E.
   fit_elastic_map(result, source, rated.anchors, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
@@ -236,6 +253,7 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
                           rigid_watch.seconds()};
 
   result.fitted_vertices = inverse(result.target_from_source) * fitted.vertices;
+  hold_parts_apart(result, source, options, progress);
   fit_elastic_map(result, source, anchors, options, progress);
   return result;
 }

@@ -18,6 +18,9 @@ struct FitOptions {
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
+  /// Parts of the fitted source that touch or pass through each other are held this far apart (contact.h),
+  /// ≥ 0, mesh units; 0 leaves them.
+  double contact_gap = 0;
   std::optional<int> steps;  ///< of the chain, > 0; by the largest turn and stretch of a part when empty
 };
 
@@ -26,7 +29,7 @@ struct FittedMapping {
   RigidTransform target_from_source;            ///< Γ
   std::shared_ptr<const ElasticChain> elastic;  ///< E, of one step for models in about the same pose
   std::vector<Points> step_sources;     ///< 3×n per step, where the source's vertices are when it begins
-  Points fitted_vertices;               ///< H'_a, 3×n, source frame, mesh units
+  Points fitted_vertices;               ///< H'_a, 3×n, source frame, mesh units, parts held apart
   std::vector<double> confidence;       ///< of the surface fitting, n (surface_fit.h); empty without
   std::vector<double> anchor_residual;  ///< |Γ(E(q)) − q'|, mesh units, one per pair
   std::vector<double> anchor_sigma;     ///< as the fit took it, mesh units, one per pair; empty without

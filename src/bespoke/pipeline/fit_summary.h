@@ -12,6 +12,7 @@
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/unmet_vertices.h"
 #include "bespoke/statistics.h"
+#include "bespoke/surface_fit/contact.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke {
@@ -53,6 +54,7 @@ struct FitSummary {
   std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given
   std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
+  std::optional<ContactSummary> contact;  ///< empty where nothing touches
   ElasticSummary elastic;
   std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map
   std::vector<BakeSummary> bake_steps;  ///< of a chain, one per step
@@ -65,7 +67,7 @@ std::string to_string(const ElasticSummary& summary);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "accuracy", "rigid", "coarse", "surface-fit", "elastic", "bake"
+  std::string name;  ///< "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic", "bake"
   std::string line;
 };
 

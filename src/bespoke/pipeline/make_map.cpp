@@ -34,6 +34,7 @@ std::string recorded_options(const MakeMapOptions& options, RotationPath path, b
   json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
   json["fit_tolerance"] = options.fit.fit_tolerance;
+  json["contact_gap"] = options.fit.contact_gap;
   json["tolerance"] = options.bake.tolerance;
   if (options.fit.steps) json["steps"] = *options.fit.steps;
   if (options.bake.precision == ValuePrecision::half) json["half"] = true;
@@ -107,6 +108,7 @@ MakeMapOptions default_options(double source_diagonal) {
   MakeMapOptions options;
   options.fit.lambda = default_lambda * source_diagonal;
   options.fit.fit_tolerance = default_fit_tolerance * source_diagonal;
+  options.fit.contact_gap = default_contact_gap * source_diagonal;
   options.bake.tolerance = default_tolerance * source_diagonal;
   return options;
 }

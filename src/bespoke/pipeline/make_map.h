@@ -11,6 +11,7 @@ namespace bespoke {
 inline constexpr double default_lambda = 0.1;
 inline constexpr double default_tolerance = 0.00025;
 inline constexpr double default_fit_tolerance = 0.0001;
+inline constexpr double default_contact_gap = 0.001;
 
 struct MakeMapOptions {
   FitOptions fit;

@@ -107,6 +107,14 @@ Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
           {"contradicting_anchors", std::move(contradicting)}};
 }
 
+Json to_json(const ContactSummary& summary) {
+  return {{"touching_vertices", summary.touching},
+          {"deepest", summary.deepest},
+          {"released_vertices", summary.released.size()},
+          {"iterations", summary.iterations},
+          {"left", summary.left}};
+}
+
 Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
   return {{"method", entry_of(method).name},
           {"before", to_json(summary.before)},
@@ -173,6 +181,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     add("surface-fit", to_json(*summary.surface, summary.surface_method), summary.surface->seconds);
   else
     add("surface-fit", {{"method", "given"}}, 0);
+  if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
   if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);
   return stages;

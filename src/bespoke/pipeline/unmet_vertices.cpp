@@ -9,7 +9,8 @@
 namespace bespoke {
 namespace {
 
-constexpr std::array reasons = {UnmetReason::shared_place, UnmetReason::folded, UnmetReason::steep};
+constexpr std::array reasons = {UnmetReason::shared_place, UnmetReason::touching, UnmetReason::folded,
+                                UnmetReason::steep};
 
 std::vector<char> at_folded_faces(const TriangleMesh& images, const TriangleMesh& fitted) {
   const Points image_normals = face_normals(images), fitted_normals = face_normals(fitted);
@@ -44,6 +45,8 @@ const char* to_string(UnmetReason reason) {
   switch (reason) {
     case UnmetReason::shared_place:
       return "shared place";
+    case UnmetReason::touching:
+      return "the target touches itself";
     case UnmetReason::folded:
       return "fitted faces folded";
     case UnmetReason::steep:
@@ -53,19 +56,27 @@ const char* to_string(UnmetReason reason) {
 }
 
 std::vector<UnmetVertex> unmet_vertices(const TriangleMesh& source, const Points& images,
-                                        const Points& fitted, double tolerance) {
+                                        const Points& fitted, double tolerance,
+                                        const std::vector<ReleasedVertex>& released) {
   std::vector<char> used(static_cast<std::size_t>(source.vertices.cols()), 0);
   for (const int vertex : source.faces.reshaped()) used[static_cast<std::size_t>(vertex)] = 1;
   const std::vector<char> folded = at_folded_faces({images, source.faces}, {fitted, source.faces});
   const std::vector<char> shared = at_shared_places(source, used, fitted);
+  Points wanted = fitted;
+  std::vector<char> touching(used.size(), 0);
+  for (const ReleasedVertex& vertex : released) {
+    wanted.col(vertex.vertex) = vertex.place;
+    touching[static_cast<std::size_t>(vertex.vertex)] = 1;
+  }
   std::vector<UnmetVertex> unmet;
   for (std::size_t i = 0; i < used.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    const double residual = (images.col(column) - fitted.col(column)).norm();
+    const double residual = (images.col(column) - wanted.col(column)).norm();
     if (!used[i] || residual <= tolerance) continue;
-    const UnmetReason reason = shared[i]   ? UnmetReason::shared_place
-                               : folded[i] ? UnmetReason::folded
-                                           : UnmetReason::steep;
+    const UnmetReason reason = shared[i]     ? UnmetReason::shared_place
+                               : touching[i] ? UnmetReason::touching
+                               : folded[i]   ? UnmetReason::folded
+                                             : UnmetReason::steep;
     unmet.push_back({static_cast<int>(i), residual, reason});
   }
   return unmet;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// Where parts of a fitted surface that the source keeps apart touch or pass through each other, no map
+/// without folds can follow: the space between them would have no volume left.
+struct ContactOptions {
+  double gap = 0;  ///< least distance to hold such parts apart, ≥ 0, mesh units; 0 leaves all as it is
+  /// Parts nearer than this fraction of their distance on the source count as in contact. A quarter leaves
+  /// lips and eyelids alone, which are as near on the source; not varied.
+  double compression = 0.25;
+  double reach = 0;         ///< deepest penetration that is looked for, ≥ gap, mesh units
+  int max_iterations = 30;  ///< of separation
+};
+
+/// A vertex that gave up its place.
+struct ReleasedVertex {
+  int vertex = 0;
+  Vector3 place = Vector3::Zero();  ///< where the surface fitting had laid it, mesh units
+};
+
+struct ContactSummary {
+  std::vector<ReleasedVertex> released;  ///< by index
+  std::size_t touching = 0;              ///< vertices in contact at first
+  std::size_t left = 0;                  ///< vertices still in contact at the end
+  double deepest = 0;  ///< largest penetration at first, mesh units; 0 where parts only touch
+  int iterations = 0;
+  double seconds = 0;
+};
+
+/// One line.
+std::string to_string(const ContactSummary& summary);
+
+/// A fitted surface whose parts were held apart.
+struct ContactFit {
+  Points vertices;  ///< 3×n, mesh units
+  ContactSummary summary;
+};
+
+/// Moves the vertices of a fitted surface (3×n, mesh units, the source's faces) apart where the target
+/// touches itself: a vertex and the nearest point that faces it are in contact when they lie on the same side
+/// of each other as on no source (signed distance below the gap) although the source keeps them at more than
+/// gap / compression. Each gives way by half, the vertices around follow smoothly. Sheets that lie back to
+/// back (the two sides of an ear) are no contact. Where parts are too crumpled to be parted, the step with
+/// the fewest contacts is the result. Throws InvalidInput for sizes that differ or options out of range,
+/// SolverError, Interrupted.
+ContactFit hold_apart(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
+                      const Progress& progress = {});
+
+}  // namespace bespoke

@@ -1,0 +1,88 @@
+#include "bespoke/surface_fit/contact.h"
+
+#include <gtest/gtest.h>
+
+#include "bespoke/error.h"
+#include "bespoke/quality/self_intersection.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+const Vector3 direction = Vector3(1, 0.13, -0.07).normalized();
+
+/// Two unit balls, `apart` between their centres along `direction`.
+TriangleMesh two_balls(double apart) {
+  const TriangleMesh ball = shapes::icosphere(3);
+  // Not along an axis of symmetry, where edges would meet edges.
+  return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), apart * direction}));
+}
+
+double least_distance_of_balls(const Points& vertices) {
+  const Eigen::Index count = vertices.cols() / 2;
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < count; ++i)
+    least =
+        std::min(least, (vertices.rightCols(count).colwise() - vertices.col(i)).colwise().norm().minCoeff());
+  return least;
+}
+
+constexpr ContactOptions options{.gap = 0.02, .reach = 0.2};
+
+TEST(HoldApart, SeparatesPartsThatPassThroughEachOther) {
+  const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
+  ASSERT_FALSE(self_intersections(fitted).empty());
+  const ContactFit fit = hold_apart(source, fitted.vertices, options);
+  EXPECT_GT(fit.summary.touching, 0u);
+  EXPECT_NEAR(fit.summary.deepest, 0.1, 0.01);
+  EXPECT_EQ(fit.summary.left, 0u);
+  EXPECT_TRUE(self_intersections({fit.vertices, source.faces}).empty());
+  EXPECT_GE(least_distance_of_balls(fit.vertices), 0.95 * options.gap);
+  // What lies on the far sides stays.
+  const Eigen::Index count = source.vertices.cols() / 2;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (source.vertices.col(i).dot(direction) < -0.5) {
+      EXPECT_LT((fit.vertices.col(i) - fitted.vertices.col(i)).norm(), 0.1 * options.gap);
+    }
+}
+
+TEST(HoldApart, ReleasesWhatTouchesAndNothingElse) {
+  const TriangleMesh source = two_balls(4), fitted = two_balls(2.001);
+  const ContactFit fit = hold_apart(source, fitted.vertices, options);
+  EXPECT_EQ(fit.summary.left, 0u);
+  EXPECT_FALSE(fit.summary.released.empty());
+  for (const ReleasedVertex& released : fit.summary.released) {
+    EXPECT_NEAR(fitted.vertices.col(released.vertex).dot(direction), 1, 0.15) << "vertex " << released.vertex;
+    EXPECT_EQ(released.place, fitted.vertices.col(released.vertex));
+  }
+}
+
+TEST(HoldApart, LeavesPartsThatAreAsNearOnTheSource) {
+  const TriangleMesh source = two_balls(2.01);
+  const ContactFit fit = hold_apart(source, source.vertices, options);
+  EXPECT_EQ(fit.summary.touching, 0u);
+  EXPECT_EQ(fit.vertices, source.vertices);
+}
+
+TEST(HoldApart, LeavesTheTwoSidesOfAThinPart) {
+  TriangleMesh source = shapes::icosphere(3);
+  source.vertices.row(2) *= 0.3;
+  TriangleMesh flat = source;
+  flat.vertices.row(2) *= 0.03;
+  EXPECT_EQ(hold_apart(source, flat.vertices, options).summary.touching, 0u);
+}
+
+TEST(HoldApart, DoesNothingWithoutAGap) {
+  const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
+  EXPECT_EQ(hold_apart(source, fitted.vertices, {.gap = 0}).vertices, fitted.vertices);
+}
+
+TEST(HoldApart, RefusesWhatCannotBe) {
+  const TriangleMesh source = two_balls(4);
+  EXPECT_THROW(hold_apart(source, Points::Zero(3, 5), options), InvalidInput);
+  EXPECT_THROW(hold_apart(source, source.vertices, {.gap = -1}), InvalidInput);
+  EXPECT_THROW(hold_apart(source, source.vertices, {.gap = 0.1, .reach = 0.05}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace bespoke
