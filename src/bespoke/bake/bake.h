@@ -18,11 +18,15 @@ struct BakeOptions {
   std::optional<double> voxel_size;  ///< one uniform level of this size (mesh units) instead of the
                                      ///< adaptive pyramid
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
-  std::size_t error_points = 1'000'000;  ///< random points of the band at which the error is measured
-  /// The source, in its frame: the error is measured at 27 points of every finest cell that it passes through
-  /// (of every so many, beyond 8·error_points points). Without it, of some cells of every leaf. Must outlive
-  /// the call.
+  /// Random points of the band at which the error is measured; of twice as many the finest cells on the
+  /// surface have an equal share, one to 27 each.
+  std::size_t error_points = 100'000;
+  /// The source, in its frame: the error is measured in the finest cells that it passes through. Without it,
+  /// in some cells of every leaf. Must outlive the call.
   const TriangleMesh* surface = nullptr;
+  /// What follows the map, where it is a step of a chain: errors are measured where it takes them. Must
+  /// outlive the call.
+  const ElasticMap* then = nullptr;
   /// Half precision stores 16 bits a number. Error, certificate and all decisions are about the rounded
   /// values.
   ValuePrecision precision = ValuePrecision::single;
@@ -36,7 +40,8 @@ struct BakeLevelSummary {
 
 struct BakeSummary {
   std::vector<BakeLevelSummary> levels;
-  /// |baked − exact|, mesh units, over a random sample: no decision of the bake used its points.
+  /// |baked − exact| (after BakeOptions::then), mesh units, over a random sample: no decision of the bake
+  /// used its points.
   Statistics error;
   std::size_t error_random_points = 0;   ///< of the sample, anywhere in the band
   std::size_t error_surface_points = 0;  ///< of the sample, in finest cells on the surface

@@ -123,31 +123,38 @@ std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMe
 
 Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& cells, std::size_t count,
                        std::uint64_t seed) {
-  const std::size_t drawn = std::min(cells.size(), count / 27);
+  constexpr std::size_t parts = 27;
+  if (cells.empty() || count == 0) return Points(3, 0);
+  const std::size_t drawn = std::min(cells.size(), count);
+  const std::size_t share = std::min(count / drawn, parts);
   std::mt19937_64 engine(seed);
-  // Another seed draws other cells.
-  const std::size_t start = engine() % std::max<std::size_t>(cells.size(), 1);
-  Points x(3, static_cast<Eigen::Index>(27 * drawn));
+  // Another seed draws other cells, and other parts of them.
+  const std::size_t start = engine() % cells.size();
+  Points x(3, static_cast<Eigen::Index>(share * drawn));
+  Eigen::Index column = 0;
   for (std::size_t i = 0; i < drawn; ++i) {
     const FinestCell& cell = cells[(i * cells.size() + start) / drawn];
-    for (int part = 0; part < 27; ++part) {
-      const Vector3 third(part / 9, part / 3 % 3, part % 3);
-      const Vector3 within = third + point_of_unit_cube(engine).reverse();
-      x.col(static_cast<Eigen::Index>(27 * i) + part) =
-          pyramid.lattice(cell.level).at(as_vector(cell.node) + within / 3);
+    const std::size_t first_part = engine() % parts;
+    for (std::size_t n = 0; n < share; ++n) {
+      const std::size_t part = (first_part + n * parts / share) % parts;
+      const Vector3 third(static_cast<double>(part / 9), static_cast<double>(part / 3 % 3),
+                          static_cast<double>(part % 3));
+      x.col(column++) =
+          pyramid.lattice(cell.level).at(as_vector(cell.node) + (third + point_of_unit_cube(engine)) / 3);
     }
   }
   return x;
 }
 
 std::vector<double> displacement_errors(const ElasticMap& baked, const ElasticMap& exact, const Points& x,
-                                        const Progress& progress) {
+                                        const Progress& progress, const ElasticMap* then) {
   std::vector<double> errors(static_cast<std::size_t>(x.cols()));
   for (std::size_t first = 0; first < errors.size(); first += points_per_call) {
     progress.step("measure", first, errors.size());
     const auto count = static_cast<Eigen::Index>(std::min(points_per_call, errors.size() - first));
     const Points part = x.middleCols(static_cast<Eigen::Index>(first), count);
-    const Points difference = baked.displacement(part) - exact.displacement(part);
+    const Points difference = then ? Points((*then)(baked(part)) - (*then)(exact(part)))
+                                   : Points(baked.displacement(part) - exact.displacement(part));
     for (Eigen::Index i = 0; i < count; ++i)
       errors[first + static_cast<std::size_t>(i)] = difference.col(i).norm();
   }

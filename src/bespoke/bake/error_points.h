@@ -33,13 +33,14 @@ std::vector<FinestCell> finest_cells_at(const Pyramid& pyramid, const Points& at
 /// grazes. `surface` in the source frame, mesh units.
 std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMesh& surface);
 
-/// 27 points in each cell, one in each of its 3³ parts; from every so many cells only, so that there are at
-/// most `count` points. The same for the same seed. Mesh units.
+/// An equal number of points in each cell, 27 at most, each in another of its 3³ parts; where there are more
+/// cells than points, one in every so many cells. At most `count`, the same for the same seed. Mesh units.
 Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& cells, std::size_t count,
                        std::uint64_t seed);
 
-/// |u of `baked` − u of `exact`| at each column of x, mesh units.
+/// |baked(x) − exact(x)| at each column of x, mesh units; both must have the same affine part. With `then`,
+/// of where it takes the two.
 std::vector<double> displacement_errors(const ElasticMap& baked, const ElasticMap& exact, const Points& x,
-                                        const Progress& progress);
+                                        const Progress& progress, const ElasticMap* then = nullptr);
 
 }  // namespace bespoke

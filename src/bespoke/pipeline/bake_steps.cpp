@@ -10,14 +10,9 @@
 namespace bespoke {
 namespace {
 
-// Of the whole's tolerance: largest errors of several steps rarely meet in one point.
+// Of the whole's tolerance, at the end of the chain: largest errors of several steps rarely meet in one
+// point.
 constexpr double tolerance_of_a_step = 0.5;
-
-// Aimed at when all are baked again, of the tolerance.
-constexpr double aim = 0.9;
-
-// Random points of the band at which a step's own error is looked at, of those of the whole.
-constexpr std::size_t points_of_a_step = 10;
 
 constexpr std::uint64_t seed = 31;
 
@@ -51,18 +46,26 @@ Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& st
   return summarize(std::move(errors));
 }
 
-BakedSteps bake_to(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
-                   const BakeOptions& options, const Progress& progress) {
+/// One step, its error measured where the baked steps after it take it.
+Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const std::vector<MapStep>& after,
+               BakeOptions options, const Progress& progress) {
+  options.surface = &surface;
+  if (after.empty()) return bake(exact, options, progress);
+  const ElasticChain then = baked_chain(after);
+  options.then = &then;
+  return bake(exact, options, progress);
+}
+
+/// The last step first.
+BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
+                    const BakeOptions& options, const Progress& progress) {
   BakedSteps baked;
-  for (std::size_t k = 0; k < exact.steps().size(); ++k) {
-    const TriangleMesh surface{surfaces[k], faces};
-    BakeOptions step_options = options;
-    step_options.surface = &surface;
-    Bake step = bake(*exact.steps()[k], step_options, progress);
-    const AffineMap affine = exact.steps()[k]->affine();
-    baked.steps.push_back({affine, std::move(step.pyramid), {}});
-    baked.steps.back().certificate = certify(baked.steps.back().pyramid, affine, 1, progress);
-    baked.summaries.push_back(std::move(step.summary));
+  for (std::size_t k = exact.steps().size(); k-- > 0;) {
+    const ElasticMap& map = *exact.steps()[k];
+    Bake step = bake_step(map, {surfaces[k], faces}, baked.steps, options, progress);
+    Certificate certificate = certify(step.pyramid, map.affine(), 1, progress);
+    baked.steps.insert(baked.steps.begin(), {map.affine(), std::move(step.pyramid), std::move(certificate)});
+    baked.summaries.insert(baked.summaries.begin(), std::move(step.summary));
   }
   return baked;
 }
@@ -88,27 +91,19 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, const Progress& progress) {
   if (exact.steps().size() == 1) {
-    BakedSteps baked = bake_to(exact, surfaces, faces, options, progress);
+    BakedSteps baked = bake_all(exact, surfaces, faces, options, progress);
     baked.whole = baked.summaries.front();
     return baked;
   }
   const Stopwatch watch;
   BakeOptions step_options = options;
   step_options.tolerance = tolerance_of_a_step * options.tolerance;
-  step_options.error_points = std::max<std::size_t>(1, options.error_points / points_of_a_step);
-  BakedSteps baked;
-  for (const bool last : {false, true}) {
-    baked = bake_to(exact, surfaces, faces, step_options, progress);
-    for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
-    const Stopwatch measure;
-    baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, step_options.error_points, progress);
-    baked.whole.measure_seconds += measure.seconds();
-    baked.whole.tolerance_met = baked.whole.error.max <= options.tolerance;
-    const bool finer_helps = std::all_of(baked.summaries.begin(), baked.summaries.end(),
-                                         [](const BakeSummary& summary) { return summary.tolerance_met; });
-    if (last || baked.whole.tolerance_met || !finer_helps) break;
-    step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
-  }
+  BakedSteps baked = bake_all(exact, surfaces, faces, step_options, progress);
+  for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
+  const Stopwatch measure;
+  baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, options.error_points, progress);
+  baked.whole.measure_seconds += measure.seconds();
+  baked.whole.tolerance_met = baked.whole.error.max <= options.tolerance;
   baked.whole.seconds = watch.seconds();
   return baked;
 }

@@ -17,10 +17,10 @@ struct BakedSteps {
 /// Adds a step's counts and levels to those of the whole; its error is not touched.
 void add_step(const BakeSummary& step, BakeSummary& whole);
 
-/// Bakes every step of a chain so that the whole meets the tolerance. Errors add up along a chain, so that
-/// steps are baked to a fraction of it; the whole is measured, and where it misses the tolerance although
-/// every step met its own, all are baked once more, finer by what was missed. surfaces: 3×n per step, where
-/// the source's vertices are when it begins; faces: the source's. One step is baked as bake does it.
+/// Bakes every step of a chain so that the whole meets the tolerance, the last one first: errors add up along
+/// a chain and later steps may magnify those of earlier ones, so that each step's are measured at the end of
+/// the chain, and held against a fraction of the tolerance. Then the whole is measured. surfaces: 3×n per
+/// step, where the source's vertices are when it begins; faces: the source's. One step is baked as bake does.
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, const Progress& progress = {});
 

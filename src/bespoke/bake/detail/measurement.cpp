@@ -12,9 +12,10 @@ constexpr std::uint64_t error_seed = 3;
 // Points of an error above this share of the tolerance are refined when a round does not meet it: what one
 // sample finds just below, the next will find just above.
 constexpr double refined_share = 0.85;
-// Of BakeOptions::error_points: points on the surface at most, and points of a quick measurement.
-constexpr std::size_t most_surface_points = 8;
-constexpr std::size_t quick_share = 4;
+// Of BakeOptions::error_points: points on the surface that the record counts, and points of a search at most
+// (one a cell where there are fewer cells).
+constexpr std::size_t recorded_surface_points = 2;
+constexpr std::size_t most_searched_points = 5;
 
 // Where detail is: as many in a small leaf as in a large one.
 std::vector<FinestCell> cells_in_all_leaves(const Pyramid& pyramid, std::uint64_t seed) {
@@ -54,19 +55,15 @@ Measurement::Measurement(const ElasticMap& map, const Lattice& band_lattice,
       progress_(progress),
       seed_(error_seed) {}
 
-double Measurement::quickly(Pyramid& pyramid) {
-  const std::vector<FinestCell> cells = surface_cells(pyramid);
-  return measure(pyramid, points_in_cells(pyramid, cells, options_.error_points / quick_share, ++seed_));
-}
+double Measurement::quickly(Pyramid& pyramid) { return search(pyramid, surface_cells(pyramid)); }
 
 double Measurement::near_worst(Pyramid& pyramid) {
-  const std::vector<FinestCell> cells = with_neighbours(pyramid, finest_cells_at(pyramid, worst_));
-  return measure(pyramid, points_in_cells(pyramid, cells, options_.error_points / quick_share, ++seed_));
+  return search(pyramid, with_neighbours(pyramid, finest_cells_at(pyramid, worst_)));
 }
 
 double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
   const std::vector<FinestCell> cells = surface_cells(pyramid);
-  Points x = points_in_cells(pyramid, cells, most_surface_points * options_.error_points, ++seed_);
+  Points x = points_in_cells(pyramid, cells, recorded_surface_points * options_.error_points, ++seed_);
   const Points random = random_points(band_lattice_, band_, options_.error_points, ++seed_);
   summary.surface_cells = cells.size();
   summary.error_surface_points = static_cast<std::size_t>(x.cols());
@@ -82,9 +79,15 @@ std::vector<FinestCell> Measurement::surface_cells(const Pyramid& pyramid) const
   return options_.surface ? finest_cells_on(pyramid, *options_.surface) : cells_in_all_leaves(pyramid, seed_);
 }
 
+// One point a cell, as far as the limit allows.
+double Measurement::search(Pyramid& pyramid, const std::vector<FinestCell>& cells) {
+  const std::size_t count = std::min(cells.size(), most_searched_points * options_.error_points);
+  return measure(pyramid, points_in_cells(pyramid, cells, count, ++seed_));
+}
+
 double Measurement::measure(Pyramid& pyramid, const Points& x) {
   BakedMap baked(map_.affine(), std::move(pyramid));
-  errors_ = displacement_errors(baked, map_, x, progress_);
+  errors_ = displacement_errors(baked, map_, x, progress_, options_.then);
   pyramid = std::move(baked).release();
   std::vector<Eigen::Index> worst;
   for (std::size_t i = 0; i < errors_.size(); ++i)

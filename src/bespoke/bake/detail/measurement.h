@@ -31,6 +31,7 @@ class Measurement {
 
  private:
   std::vector<FinestCell> surface_cells(const Pyramid& pyramid) const;
+  double search(Pyramid& pyramid, const std::vector<FinestCell>& cells);
   double measure(Pyramid& pyramid, const Points& x);
 
   const ElasticMap& map_;
