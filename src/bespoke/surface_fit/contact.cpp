@@ -9,6 +9,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -112,9 +113,11 @@ class SmoothDisplacement {
     const auto count = static_cast<int>(weights.size());
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < count; ++i) {
-      const int begin = adjacency_.start[i], end = adjacency_.start[i + 1];
+      const int begin = adjacency_.start[static_cast<std::size_t>(i)];
+      const int end = adjacency_.start[static_cast<std::size_t>(i) + 1];
       entries.emplace_back(i, i, weights[i] + rest + stiffness * (end - begin));
-      for (int k = begin; k < end; ++k) entries.emplace_back(i, adjacency_.neighbours[k], -stiffness);
+      for (int k = begin; k < end; ++k)
+        entries.emplace_back(i, adjacency_.neighbours[static_cast<std::size_t>(k)], -stiffness);
     }
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
