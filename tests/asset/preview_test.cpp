@@ -8,6 +8,7 @@
 
 #include "asset/small_asset.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/baked_map.h"
 
 namespace bespoke {
 namespace {

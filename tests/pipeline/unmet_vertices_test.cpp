@@ -108,5 +108,30 @@ TEST(UnmetVertices, PrintOneLine) {
   EXPECT_EQ(to_string(unmet), "3 vertices unmet: 2 fitted faces folded, 1 layer gradient limit");
 }
 
+// A ball that is laid into its neighbour: with a gap the map is met elsewhere, and says where and why.
+TEST(UnmetVertices, AreTouchingWhereTheTargetTouchesItself) {
+  const TriangleMesh ball = shapes::icosphere(3);
+  const auto two_balls = [&](double apart) {
+    return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), Vector3(apart, 0.13, -0.07)}));
+  };
+  const TriangleMesh source = two_balls(4), touching = two_balls(1.95);
+  FitOptions options;
+  options.lambda = 0.4;
+  options.fit_tolerance = tolerance;
+  options.contact_gap = 0.02;
+  const FittedMapping fit = fit_mapping_to_fitted(source, touching, {}, options);
+  ASSERT_TRUE(fit.summary.contact.has_value());
+  EXPECT_EQ(fit.summary.contact->left, 0u);
+  const Points wanted = inverse(fit.target_from_source) * touching.vertices;
+  const Points images = (*fit.elastic)(source.vertices);
+  int listed = 0;
+  for (const UnmetVertex& unmet : fit.summary.elastic.unmet) {
+    if (unmet.reason != UnmetReason::touching) continue;
+    ++listed;
+    EXPECT_NEAR(unmet.residual, (images.col(unmet.vertex) - wanted.col(unmet.vertex)).norm(), 1e-12);
+  }
+  EXPECT_GT(listed, 0);
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -73,17 +73,20 @@ std::vector<std::size_t> folded_steps(const BakedSteps& baked) {
   return folded;
 }
 
-/// Bakes the fitted map; steps of a chain that fold are halved once.
+/// Bakes the fitted map; steps of a chain that fold are halved once, and those before them kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  const auto bake_all = [&] {
-    return bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, progress);
+  const auto bake_with = [&](BakedSteps done) {
+    return bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, std::move(done),
+                      progress);
   };
-  BakedSteps baked = bake_all();
+  BakedSteps baked = bake_with({});
   const std::vector<std::size_t> folded = folded_steps(baked);
   if (!fit.plan || folded.empty()) return baked;
   divide_steps(fit, input.source, input.anchors, options.fit, folded, progress);
-  return bake_all();
+  baked.steps.resize(folded.front());
+  baked.summaries.resize(folded.front());
+  return bake_with({std::move(baked.steps), std::move(baked.summaries), {}});
 }
 
 AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
