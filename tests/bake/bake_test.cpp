@@ -283,5 +283,32 @@ TEST(BakeSummary, PrintsOneLine) {
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 
+// With fewer leaves than it needs a bake spends them on the largest errors, and names the places that went
+// without.
+TEST(Bake, KeepsToItsLeavesAndNamesWhereItMissesTheTolerance) {
+  const AnalyticMap map = two_bumps();
+  BakeOptions options;
+  options.tolerance = 1e-4;
+  options.error_points = 50000;
+  const Bake whole = bake(map, options);
+  ASSERT_TRUE(whole.summary.tolerance_met);
+  EXPECT_TRUE(whole.summary.relaxed.empty());
+  options.max_leaves = whole.pyramid.leaf_count() / 2;
+  const Bake limited = bake(map, options);
+  EXPECT_LE(limited.pyramid.leaf_count(), *options.max_leaves);
+  EXPECT_FALSE(limited.summary.tolerance_met);
+  ASSERT_FALSE(limited.summary.relaxed.empty());
+  for (const RelaxedRegion& region : limited.summary.relaxed)
+    EXPECT_GT(region.error, 0.8 * options.tolerance);
+  const BakedMap baked(map.affine(), limited.pyramid);
+  const Points x = 2 * Points::Random(3, 50000);
+  const Points error = baked.displacement(x) - map.displacement(x);
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    if (error.col(i).norm() > 1.5 * options.tolerance) {
+      EXPECT_TRUE(std::any_of(limited.summary.relaxed.begin(), limited.summary.relaxed.end(),
+                              [&](const RelaxedRegion& region) { return region.box.contains(x.col(i)); }));
+    }
+}
+
 }  // namespace
 }  // namespace bespoke

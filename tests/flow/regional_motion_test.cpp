@@ -41,9 +41,9 @@ TEST(RegionalMotion, DoesNotBelieveOneBadFace) {
 TEST(StepCount, IsOneForOnePoseAndGrowsWithTheTurn) {
   EXPECT_EQ(step_count({0, 1}), 1);
   EXPECT_EQ(step_count({45 * degree, 2.4}), 1);
-  EXPECT_EQ(step_count({81 * degree, 1.3}), 5);
-  EXPECT_EQ(step_count({99 * degree, 2.2}), 5);
-  EXPECT_EQ(step_count({270 * degree, 1}), 14);
+  EXPECT_EQ(step_count({81 * degree, 1.3}), 3);
+  EXPECT_EQ(step_count({99 * degree, 2.2}), 4);
+  EXPECT_EQ(step_count({270 * degree, 1}), 9);
   EXPECT_GT(step_count({0, 5}), 1);
 }
 

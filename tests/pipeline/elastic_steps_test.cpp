@@ -35,7 +35,7 @@ TEST(ElasticSteps, MeetTheFittedSourceWhereALimbTurns) {
   const TriangleMesh source = test::tube();
   const FitOptions options = options_of(source);
   const FittedMapping fit = fit_bent(source, 150 * degree, options);
-  EXPECT_GT(fit.elastic->steps().size(), 3u);
+  EXPECT_GT(fit.elastic->steps().size(), 1u);
   EXPECT_EQ(fit.step_sources.size(), fit.elastic->steps().size());
   // Each step starts where the ones before have ended, so that the whole misses no more than one step does.
   EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
@@ -64,17 +64,17 @@ TEST(ElasticSteps, CarryAnchorsOffTheSurfaceWithIt) {
   for (Eigen::Index i = 0; i < q.cols(); ++i)
     anchors.pairs.push_back({"anchor " + std::to_string(i), q.col(i), image.col(i)});
   const FittedMapping fit = fit_bent(source, 120 * degree, options, anchors);
-  EXPECT_GT(fit.elastic->steps().size(), 3u);
+  EXPECT_GT(fit.elastic->steps().size(), 1u);
   EXPECT_GE(fit.summary.elastic.anchors_off_surface, 2u);
   EXPECT_LE(fit.summary.elastic.anchor_residuals.max, 2 * options.fit_tolerance);
 }
 
 TEST(ElasticSteps, CanBeDivided) {
   const TriangleMesh source = test::tube();
-  const FitOptions options = options_of(source);
+  FitOptions options = options_of(source);
+  options.steps = 3;
   FittedMapping fit = fit_bent(source, 90 * degree, options);
   const std::size_t before = fit.elastic->steps().size();
-  ASSERT_GE(before, 3u);
   const auto first = fit.elastic->steps()[0];
   divide_steps(fit, source, {}, options, {1, 2});
   EXPECT_EQ(fit.elastic->steps().size(), before + 2);

@@ -43,6 +43,7 @@ struct FitArguments {
   bool keep_exact = false;
   bool half = false;
   bool require_certified = false;
+  bool strict = false;
   bool add_corners = false;
   bool paper = false;
   RunOptions run;
@@ -87,6 +88,8 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
     options.fit.fit_tolerance = arguments.fit_tolerance->in_mesh_units(source_diagonal);
   if (arguments.contact_gap) options.fit.contact_gap = arguments.contact_gap->in_mesh_units(source_diagonal);
   if (arguments.tolerance) options.bake.tolerance = arguments.tolerance->in_mesh_units(source_diagonal);
+  // Who names a tolerance wants that one.
+  if (arguments.tolerance || arguments.strict) options.bake.max_leaves.reset();
   if (arguments.voxel_size) options.bake.voxel_size = arguments.voxel_size->in_mesh_units(source_diagonal);
   if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
   if (arguments.half) options.bake.precision = ValuePrecision::half;
@@ -147,6 +150,10 @@ std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeS
   if (bake.repaired_cells > 0)
     return "mending " + std::to_string(bake.repaired_cells) +
            " folded cells moved nodes; where the map is that flat, no tolerance is met without folds";
+  if (!bake.relaxed.empty())
+    return "it was relaxed in " + std::to_string(bake.relaxed.size()) +
+           " regions, where the map is too steep for its share of voxels; --strict or --tolerance gives it "
+           "more";
   return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
 }
 
@@ -284,6 +291,11 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
       ->type_name("FILE");
   fit.add_flag("--require-certified", arguments.require_certified,
                "Write nothing unless the map is proved to be a bijection of space");
+  fit.add_flag(
+      "--strict", arguments.strict,
+      "Meet the tolerance everywhere or refuse, for want of memory; by default a map that would take more "
+      "than 4.6 M voxels keeps to these, and the regions where it misses the tolerance are named "
+      "(implied by --tolerance)");
   fit.add_flag("--half", arguments.half, half_help);
   fit.add_flag("--keep-exact", arguments.keep_exact,
                "Store in the asset what `apply --exact` needs to evaluate the map without the grids");

@@ -36,7 +36,13 @@ std::string to_string(const BakeSummary& summary) {
       summary.error.p99, summary.error.max, summary.error.count, summary.tolerance_met ? "met" : "not met",
       summary.refined_folds, summary.repaired_cells, summary.repair_cost, summary.folded_cells,
       summary.seconds, summary.refine_seconds, summary.measure_seconds, summary.mend_seconds);
-  return text;
+  if (summary.relaxed.empty()) return text;
+  std::string line = text;
+  std::snprintf(text, sizeof text, "; relaxed to %.4g in %zu regions, the worst around (%.4g, %.4g, %.4g)",
+                summary.relaxed.front().error, summary.relaxed.size(),
+                summary.relaxed.front().box.center().x(), summary.relaxed.front().box.center().y(),
+                summary.relaxed.front().box.center().z());
+  return line + text;
 }
 
 Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress) {

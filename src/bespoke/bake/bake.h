@@ -18,6 +18,9 @@ struct BakeOptions {
   std::optional<double> voxel_size;  ///< one uniform level of this size (mesh units) instead of the
                                      ///< adaptive pyramid
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
+  /// Leaves that the pyramid may have, where given: the places of the largest errors get them, the others
+  /// miss the tolerance and are named (BakeSummary::relaxed). A tenth is kept for folds. Few more for rims.
+  std::optional<std::size_t> max_leaves;
   /// Random points of the band at which the error is measured; of twice as many the finest cells on the
   /// surface have an equal share, one to 27 each.
   std::size_t error_points = 100'000;
@@ -38,6 +41,12 @@ struct BakeLevelSummary {
   std::size_t voxels = 0;
 };
 
+/// A part of space in which the tolerance was given up.
+struct RelaxedRegion {
+  Box box;           ///< in the frame of the map's points, mesh units
+  double error = 0;  ///< largest that was found there, mesh units
+};
+
 struct BakeSummary {
   std::vector<BakeLevelSummary> levels;
   /// |baked − exact| (after BakeOptions::then), mesh units, over a random sample: no decision of the bake
@@ -47,6 +56,7 @@ struct BakeSummary {
   std::size_t error_surface_points = 0;  ///< of the sample, in finest cells on the surface
   std::size_t surface_cells = 0;         ///< finest cells on the surface
   bool tolerance_met = false;            ///< error.max ≤ tolerance
+  std::vector<RelaxedRegion> relaxed;    ///< to stay within max_leaves; the worst first
   std::size_t refined_folds = 0;   ///< cells that folded though the map does not, mended by finer leaves
   std::size_t repaired_cells = 0;  ///< cells that folded as the map does, mended by moving nodes
   double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
@@ -74,7 +84,8 @@ struct Bake {
 ///
 /// A bake ends. Where u jumps or is steeper than ‖∇u‖ = 2 or so, the tolerance may be missed: voxels stop at
 /// half of it (PyramidBuilder), and the summary says so. Where the whole would take more than max_memory it
-/// throws MemoryLimitError early, from a sample of the map, naming a tolerance or voxel size that would fit.
+/// throws MemoryLimitError early (from a sample of the map, unless max_leaves bounds it), naming a tolerance
+/// or voxel size that would fit.
 /// Throws InvalidInput for values out of range, and for a map that is not finite or exceeds what half
 /// precision holds.
 Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress = {});

@@ -16,7 +16,7 @@ struct RegionalMotion {
 RegionalMotion regional_motion(const TriangleMesh& source, const Points& fitted);
 
 /// Into how many steps a motion is divided so that each is small enough for one elastic map: 1 up to 60° and
-/// threefold stretch, which one map has always done well; beyond, 20° and a 1.5-fold stretch each at most.
+/// threefold stretch, which one map has always done well; beyond, 30° and a 1.5-fold stretch each at most.
 int step_count(const RegionalMotion& motion);
 
 }  // namespace bespoke

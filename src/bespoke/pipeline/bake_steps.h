@@ -19,9 +19,10 @@ void add_step(const BakeSummary& step, BakeSummary& whole);
 
 /// Bakes every step of a chain so that the whole meets the tolerance, the last one first: errors add up along
 /// a chain and later steps may magnify those of earlier ones, so that each step's are measured at the end of
-/// the chain, and held against a fraction of the tolerance. Then the whole is measured. surfaces: 3×n per
-/// step, where the source's vertices are when it begins; faces: the source's. One step is baked as bake does.
-/// done: first steps of the chain as they were baked before, taken as they are.
+/// the chain, and held against a fraction of the tolerance. Then the whole is measured; where it misses the
+/// tolerance although every step met its own, all are baked once more, finer by what was missed. surfaces:
+/// 3×n per step, where the source's vertices are when it begins; faces: the source's. One step is baked as
+/// bake does. done: first steps of the chain as they were baked before, taken as they are.
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, BakedSteps done = {}, const Progress& progress = {});
 

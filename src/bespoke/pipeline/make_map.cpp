@@ -36,6 +36,7 @@ std::string recorded_options(const MakeMapOptions& options, RotationPath path, b
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["contact_gap"] = options.fit.contact_gap;
   json["tolerance"] = options.bake.tolerance;
+  if (options.bake.max_leaves) json["max_voxels"] = *options.bake.max_leaves * leaf_nodes;
   if (options.fit.steps) json["steps"] = *options.fit.steps;
   if (options.bake.precision == ValuePrecision::half) json["half"] = true;
   if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;
@@ -113,6 +114,7 @@ MakeMapOptions default_options(double source_diagonal) {
   options.fit.fit_tolerance = default_fit_tolerance * source_diagonal;
   options.fit.contact_gap = default_contact_gap * source_diagonal;
   options.bake.tolerance = default_tolerance * source_diagonal;
+  options.bake.max_leaves = default_max_leaves;
   return options;
 }
 

@@ -38,18 +38,21 @@ Json to_json(const BakeSummary& summary) {
   Json levels = Json::array();
   for (const BakeLevelSummary& level : summary.levels)
     levels.push_back({{"voxel_size", level.voxel_size}, {"leaves", level.leaves}, {"voxels", level.voxels}});
-  return {{"levels", std::move(levels)},
-          {"error", to_json(summary.error)},
-          {"error_random_points", summary.error_random_points},
-          {"error_surface_points", summary.error_surface_points},
-          {"surface_cells", summary.surface_cells},
-          {"tolerance_met", summary.tolerance_met},
-          {"refined_folds", summary.refined_folds},
-          {"repaired_cells", summary.repaired_cells},
-          {"repair_cost", summary.repair_cost},
-          {"folded_cells", summary.folded_cells},
-          {"evaluated_points", summary.evaluated_points},
-          {"peak_bytes", summary.peak_bytes}};
+  Json json = {{"levels", std::move(levels)},
+               {"error", to_json(summary.error)},
+               {"error_random_points", summary.error_random_points},
+               {"error_surface_points", summary.error_surface_points},
+               {"surface_cells", summary.surface_cells},
+               {"tolerance_met", summary.tolerance_met},
+               {"refined_folds", summary.refined_folds},
+               {"repaired_cells", summary.repaired_cells},
+               {"repair_cost", summary.repair_cost},
+               {"folded_cells", summary.folded_cells},
+               {"evaluated_points", summary.evaluated_points},
+               {"peak_bytes", summary.peak_bytes}};
+  for (const RelaxedRegion& region : summary.relaxed)
+    json["relaxed"].push_back({{"box", to_json(region.box)}, {"error", region.error}});
+  return json;
 }
 
 Json to_json(const Certificate& certificate) {

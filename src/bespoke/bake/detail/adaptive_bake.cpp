@@ -28,7 +28,9 @@ class AdaptiveBake {
         options_(options),
         progress_(progress),
         builder_(std::make_unique<PyramidBuilder>(
-            map, RefinementOptions{options.tolerance, options.max_memory, options.precision}, progress)),
+            map,
+            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves},
+            progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
 
   Bake run() && {

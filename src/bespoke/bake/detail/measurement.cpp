@@ -92,6 +92,10 @@ double Measurement::measure(Pyramid& pyramid, const Points& x) {
   std::vector<Eigen::Index> worst;
   for (std::size_t i = 0; i < errors_.size(); ++i)
     if (!(errors_[i] <= refined_share * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
+  // The largest first, should there not be leaves for all.
+  std::stable_sort(worst.begin(), worst.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return errors_[static_cast<std::size_t>(a)] > errors_[static_cast<std::size_t>(b)];
+  });
   worst_ = x(Eigen::all, worst);
   return errors_.empty() ? 0 : *std::max_element(errors_.begin(), errors_.end());
 }

@@ -37,7 +37,7 @@ void MemoryBudget::require_room_for(std::size_t leaves) {
   const std::size_t needed = bytes_for(leaves);
   const bool small =
       leaves <= leaves_without_forecast && needed <= options_.max_memory / share_without_forecast;
-  const double expected = small ? 0 : expected_leaves();
+  const double expected = small || options_.max_leaves ? 0 : expected_leaves();
   if (std::max(static_cast<double>(needed), fixed_bytes + bytes_per_leaf * expected) >
       static_cast<double>(options_.max_memory))
     refuse(leaves, expected);

@@ -54,7 +54,7 @@ std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<Pyra
     const Points needless = needless_folds(map, bake.pyramid, folds);
     if (needless.cols() == 0) break;
     auto refined = std::make_unique<PyramidBuilder>(*builder);
-    if (refined->refine_at(needless) == 0) break;
+    if (refined->refine_at(needless, PyramidBuilder::Purpose::folds) == 0) break;
     refined->refine();
     Pyramid pyramid = refined->pyramid();
     std::vector<FoldedCell> left = certify_listing_all(pyramid, map.affine(), 1, progress).places;
@@ -88,6 +88,7 @@ void mend_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder> builder, 
   const std::vector<FoldedCell> folds = refine_folds(map, builder, bake, progress);
   bake.summary.evaluated_points = builder->evaluated_points();
   bake.summary.peak_bytes = builder->byte_count();
+  bake.summary.relaxed = builder->relaxed();
   builder.reset();
   repair(map, folds, bake, progress);
 }

@@ -48,8 +48,8 @@ OctantRefinement::OctantRefinement(const ElasticMap& map, const RefinementOption
                                    const Progress& progress)
     : map_(map), support_(map.support()), options_(options), progress_(progress) {}
 
-std::vector<LeafCoordinates> OctantRefinement::failing_octants(const SampledLevels& levels, std::size_t level,
-                                                               std::size_t first) {
+std::vector<FailingOctant> OctantRefinement::failing_octants(const SampledLevels& levels, std::size_t level,
+                                                             std::size_t first) {
   std::vector<LeafCoordinates> octants = octants_in_question(levels, level, first);
   std::erase_if(octants, [&](const LeafCoordinates& octant) { return levels.has(level + 1, octant); });
   std::vector<double> errors(octants.size());
@@ -65,9 +65,9 @@ std::vector<LeafCoordinates> OctantRefinement::failing_octants(const SampledLeve
     });
     evaluated_points_ += count * tested_nodes;
   }
-  std::vector<LeafCoordinates> failing;
+  std::vector<FailingOctant> failing;
   for (std::size_t n = 0; n < octants.size(); ++n)
-    if (!(errors[n] <= test_margin * options_.tolerance)) failing.push_back(octants[n]);
+    if (!(errors[n] <= test_margin * options_.tolerance)) failing.push_back({octants[n], errors[n]});
   return failing;
 }
 

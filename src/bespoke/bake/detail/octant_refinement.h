@@ -11,6 +11,12 @@
 
 namespace bespoke {
 
+/// An octant that needs a leaf of the next level.
+struct FailingOctant {
+  LeafCoordinates leaf{};  ///< the leaf of the next level that would cover it
+  double error = 0;        ///< largest at its tested nodes, mesh units
+};
+
 /// Finds the octants of leaves in which the sum of the levels misses u by more than the tolerance.
 class OctantRefinement {
  public:
@@ -18,8 +24,8 @@ class OctantRefinement {
   OctantRefinement(const ElasticMap& map, const RefinementOptions& options, const Progress& progress);
 
   /// Octants of a level's leaves from number `first` on that need a leaf of the next level and have none.
-  std::vector<LeafCoordinates> failing_octants(const SampledLevels& levels, std::size_t level,
-                                               std::size_t first);
+  std::vector<FailingOctant> failing_octants(const SampledLevels& levels, std::size_t level,
+                                             std::size_t first);
 
   std::size_t evaluated_points() const { return evaluated_points_; }
 

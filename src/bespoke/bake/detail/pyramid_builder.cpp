@@ -1,6 +1,8 @@
 #include "bespoke/bake/detail/pyramid_builder.h"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "bespoke/bake/band.h"
@@ -13,6 +15,8 @@ namespace {
 
 // Voxels of the coarsest level in the radius of the largest ball.
 constexpr double coarsest_voxels_per_radius = 4;
+// One of so many leaves is kept for folds.
+constexpr std::size_t share_for_folds = 10;
 
 double largest_radius(const Support& support) {
   double radius = 0;
@@ -50,8 +54,40 @@ void PyramidBuilder::refine() {
 void PyramidBuilder::refine_level(std::size_t level) {
   const std::size_t first = std::exchange(looked_[level].leaves, levels_[level].leaves.size());
   if (is_finest(level)) return;
-  add(level + 1, octants_.failing_octants(levels_, level, first));
+  add(level + 1, within_budget(level + 1, octants_.failing_octants(levels_, level, first)));
   close_rims();
+}
+
+std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {
+  if (!options_.max_leaves) return std::numeric_limits<std::size_t>::max();
+  const std::size_t most = purpose == Purpose::folds
+                               ? *options_.max_leaves
+                               : *options_.max_leaves - *options_.max_leaves / share_for_folds;
+  return most - std::min(most, levels_.leaf_count());
+}
+
+// The largest errors of a level first; half of what is left is for rims and finer levels.
+std::vector<LeafCoordinates> PyramidBuilder::within_budget(std::size_t level,
+                                                           std::vector<FailingOctant> failing) {
+  const std::size_t most = leaves_left(Purpose::tolerance) / 2;
+  if (failing.size() > most) {
+    std::sort(failing.begin(), failing.end(), [](const FailingOctant& a, const FailingOctant& b) {
+      return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
+    });
+    for (std::size_t n = most; n < failing.size(); ++n)
+      refused_.push_back({level, failing[n].leaf, failing[n].error});
+    failing.resize(most);
+  }
+  std::vector<LeafCoordinates> leaves;
+  for (const FailingOctant& octant : failing) leaves.push_back(octant.leaf);
+  return leaves;
+}
+
+std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {
+  std::vector<RefusedOctant> left;
+  for (const RefusedOctant& octant : refused_)
+    if (!levels_.has(octant.level, octant.leaf)) left.push_back(octant);
+  return relaxed_regions(coarsest_, left);
 }
 
 // Neighbours and the leaves above them may change the rims of every level, so each is looked at again.
@@ -96,10 +132,13 @@ bool PyramidBuilder::is_finest(std::size_t level) const {
   return levels_.lattice(level + 1).voxel_size < least_voxel_of_tolerance * options_.tolerance;
 }
 
-std::size_t PyramidBuilder::refine_at(const Points& x) {
+std::size_t PyramidBuilder::refine_at(const Points& x, Purpose purpose) {
+  const std::size_t most = leaves_left(purpose);
+  std::set<WantedLeaf> known;
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
-  for (Eigen::Index i = 0; i < x.cols(); ++i)
-    for (const WantedLeaf& leaf : leaves_wanted_at(x.col(i))) wanted[leaf.level].push_back(leaf.leaf);
+  for (Eigen::Index i = 0; i < x.cols() && known.size() < most; ++i)
+    for (const WantedLeaf& leaf : leaves_wanted_at(x.col(i)))
+      if (known.insert(leaf).second) wanted[leaf.level].push_back(leaf.leaf);
   const std::size_t before = levels_.leaf_count();
   for (std::size_t level = 1; level < wanted.size(); ++level) add(level, std::move(wanted[level]));
   close_rims();

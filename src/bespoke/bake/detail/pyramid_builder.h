@@ -7,6 +7,7 @@
 #include "bespoke/bake/detail/memory_budget.h"
 #include "bespoke/bake/detail/octant_refinement.h"
 #include "bespoke/bake/detail/refinement_options.h"
+#include "bespoke/bake/detail/relaxed_regions.h"
 #include "bespoke/bake/detail/sampled_levels.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
@@ -20,11 +21,17 @@ namespace bespoke {
 /// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
 ///
+/// With RefinementOptions::max_leaves refinement stops there, the largest errors of a level first, and the
+/// octants that went without are remembered.
+///
 /// Copies share the samples.
 class PyramidBuilder {
  public:
   /// The band at the coarsest level. `map` and `progress` must outlive the builder. Throws MemoryLimitError.
   PyramidBuilder(const ElasticMap& map, const RefinementOptions& options, const Progress& progress);
+
+  /// What the leaves are for: a tenth of max_leaves is kept for folds.
+  enum class Purpose { tolerance, folds };
 
   /// Adds leaves until every octant passes. Throws MemoryLimitError as soon as a forecast says that the
   /// leaves will not fit (MemoryBudget).
@@ -33,7 +40,10 @@ class PyramidBuilder {
   /// Gives the finest leaf around each point one below it, whatever its error; where the point lies in a cell
   /// at a rim, adds the leaves beyond the rim instead. Points outside all leaves are left alone. Returns the
   /// number of leaves added; call refine() afterwards.
-  std::size_t refine_at(const Points& x);
+  std::size_t refine_at(const Points& x, Purpose purpose = Purpose::tolerance);
+
+  /// Where octants that do not pass have no leaf of their own, for want of leaves.
+  std::vector<RelaxedRegion> relaxed() const;
 
   /// Rounded, without empty leaves (stored_pyramid).
   Pyramid pyramid() const;
@@ -53,10 +63,13 @@ class PyramidBuilder {
   struct WantedLeaf {
     std::size_t level;
     LeafCoordinates leaf;
+    auto operator<=>(const WantedLeaf&) const = default;
   };
 
   void add(std::size_t level, std::vector<LeafCoordinates> leaves);
   void refine_level(std::size_t level);
+  std::vector<LeafCoordinates> within_budget(std::size_t level, std::vector<FailingOctant> failing);
+  std::size_t leaves_left(Purpose purpose) const;
   void close_rims();
   std::optional<std::size_t> first_untested_level() const;
   std::optional<std::size_t> first_level_of_unknown_rims() const;
@@ -72,6 +85,7 @@ class PyramidBuilder {
   std::vector<Looked> looked_;  // by level
   OctantRefinement octants_;
   MemoryBudget budget_;
+  std::vector<RefusedOctant> refused_;
   std::size_t sampled_points_ = 0;
 };
 

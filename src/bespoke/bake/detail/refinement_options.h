@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "bespoke/lattice/pyramid.h"
 
@@ -10,6 +11,7 @@ struct RefinementOptions {
   double tolerance = 0;        ///< wanted largest |baked − exact|, > 0, mesh units
   std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
   ValuePrecision precision = ValuePrecision::single;
+  std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
 };
 
 }  // namespace bespoke
