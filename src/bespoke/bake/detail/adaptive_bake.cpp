@@ -29,7 +29,8 @@ class AdaptiveBake {
         progress_(progress),
         builder_(std::make_unique<PyramidBuilder>(
             map,
-            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves},
+            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves,
+                              options.then},
             progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
 

@@ -46,7 +46,7 @@ Points tested_points(const Lattice& lattice, const LeafCoordinates* octants, std
 
 OctantRefinement::OctantRefinement(const ElasticMap& map, const RefinementOptions& options,
                                    const Progress& progress)
-    : map_(map), support_(map.support()), options_(options), progress_(progress) {}
+    : map_(map), affine_(map.affine()), support_(map.support()), options_(options), progress_(progress) {}
 
 std::vector<FailingOctant> OctantRefinement::failing_octants(const SampledLevels& levels, std::size_t level,
                                                              std::size_t first) {
@@ -97,6 +97,7 @@ std::uint8_t OctantRefinement::octants_of_large_residuals(const SampledLevels& l
                                                           std::size_t leaf) const {
   NodeBlock coarse;
   levels.coarse_sum_at(level, levels[level].leaves[leaf], coarse);
+  if (options_.then) return octants_of_errors(levels, level, leaf, coarse);
   const double limit = options_.tolerance * options_.tolerance;
   std::uint8_t octants = 0;
   for (int node = 0; node < leaf_nodes; ++node) {
@@ -104,6 +105,25 @@ std::uint8_t OctantRefinement::octants_of_large_residuals(const SampledLevels& l
     if (!(squared_residual(levels[level].samples[leaf], coarse, place) <= limit))
       octants |= static_cast<std::uint8_t>(1 << octant_of_cell(place));
   }
+  return octants;
+}
+
+// The same where what follows the map takes the errors.
+std::uint8_t OctantRefinement::octants_of_errors(const SampledLevels& levels, std::size_t level,
+                                                 std::size_t leaf, const NodeBlock& coarse) const {
+  const SampledLevel& sampled = levels[level];
+  Points x(3, leaf_nodes), sum(3, leaf_nodes), exact(3, leaf_nodes);
+  for (int node = 0; node < leaf_nodes; ++node) {
+    const LatticeCoordinates place = place_of_number(node);
+    x.col(node) = sampled.lattice(moved(first_node(sampled.leaves[leaf]), place));
+    sum.col(node) = value_at(coarse, number_in_block(place));
+    exact.col(node) = Eigen::Map<const Eigen::Vector3f>(sampled.samples[leaf] + 3 * node).cast<double>();
+  }
+  const Eigen::VectorXd errors = errors_at(x, sum, exact);
+  std::uint8_t octants = 0;
+  for (int node = 0; node < leaf_nodes; ++node)
+    if (!(errors[node] <= options_.tolerance))
+      octants |= static_cast<std::uint8_t>(1 << octant_of_cell(place_of_number(node)));
   return octants;
 }
 
@@ -128,14 +148,25 @@ double OctantRefinement::error_in(const SampledLevels& levels, std::size_t level
   levels.sum_at(level, leaf, sum);
   refine_block(sum, number, refined);
   const std::bitset<8> missing = levels.missing_in_block(level, leaf);
+  Points x(3, tested_nodes), found(3, tested_nodes);
+  for (int test = 0; test < tested_nodes; ++test) {
+    x.col(test) = levels.lattice(level + 1)(moved(first_node(octant), tested_node(test)));
+    found.col(test) = value_at(refined, number_in_block(tested_node(test)));
+  }
+  const Eigen::VectorXd errors = errors_at(x, found, exact);
   double largest = 0;
   for (int test = 0; test < tested_nodes; ++test) {
     if (missing.any() && lies_at_rim(missing, tested_cell(number, test))) continue;
-    const Vector3 u = exact.col(test);
-    const double error = (u - value_at(refined, number_in_block(tested_node(test)))).norm();
-    largest = std::max(largest, error + rounding_at(u));
+    largest = std::max(largest, errors[test] + rounding_at(exact.col(test)));
   }
   return largest;
+}
+
+// |found − exact|, or of where what follows the map takes the points with these displacements.
+Eigen::VectorXd OctantRefinement::errors_at(const Points& x, const Points& found, const Points& exact) const {
+  if (!options_.then) return (exact - found).colwise().norm();
+  const Points images = affine_ * x;
+  return ((*options_.then)(images + exact) - (*options_.then)(images + found)).colwise().norm();
 }
 
 // Rounding error of u as stored where no finer leaf corrects it; that of the quantum is within test_margin.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bespoke/lattice/pyramid.h"
+#include "bespoke/mapping/elastic_map.h"
 
 namespace bespoke {
 
@@ -12,6 +13,7 @@ struct RefinementOptions {
   std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
   ValuePrecision precision = ValuePrecision::single;
   std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
+  const ElasticMap* then = nullptr;       ///< BakeOptions::then
 };
 
 }  // namespace bespoke
