@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "bespoke/bake/band.h"
@@ -45,17 +46,47 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
 }
 
 void PyramidBuilder::refine() {
-  while (const std::optional<std::size_t> level = first_untested_level()) {
-    progress_.check();
-    refine_level(*level);
-  }
+  do {
+    while (const std::optional<std::size_t> level = first_untested_level()) {
+      progress_.check();
+      refine_level(*level);
+    }
+  } while (add_worst_refused());
 }
 
 void PyramidBuilder::refine_level(std::size_t level) {
   const std::size_t first = std::exchange(looked_[level].leaves, levels_[level].leaves.size());
   if (is_finest(level)) return;
-  add(level + 1, within_budget(level + 1, octants_.failing_octants(levels_, level, first)));
+  const std::vector<FailingOctant> failing = octants_.failing_octants(levels_, level, first);
+  // About as many will be added at rims.
+  const bool affordable = refused_.empty() && failing.size() <= leaves_left(Purpose::tolerance) / 2;
+  std::vector<LeafCoordinates> leaves;
+  for (const FailingOctant& octant : failing) {
+    leaves.push_back(octant.leaf);
+    if (!affordable) refused_.push_back({level + 1, octant.leaf, octant.error});
+  }
+  if (!affordable) return;
+  add(level + 1, std::move(leaves));
   close_rims();
+}
+
+// What is left goes to the largest errors, wherever they are: in rounds, of those above half of the largest.
+bool PyramidBuilder::add_worst_refused() {
+  std::erase_if(refused_,
+                [&](const RefusedOctant& octant) { return levels_.has(octant.level, octant.leaf); });
+  const std::size_t left = leaves_left(Purpose::tolerance);
+  if (refused_.empty() || left == 0) return false;
+  std::sort(refused_.begin(), refused_.end(), [](const RefusedOctant& a, const RefusedOctant& b) {
+    return a.error != b.error ? a.error > b.error : std::tie(a.level, a.leaf) < std::tie(b.level, b.leaf);
+  });
+  const double least = refused_.front().error / 2;
+  const std::size_t most = std::max<std::size_t>(1, left / 2);
+  std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
+  for (std::size_t n = 0; n < std::min(most, refused_.size()) && refused_[n].error >= least; ++n)
+    wanted[refused_[n].level].push_back(refused_[n].leaf);
+  for (std::size_t level = 1; level < wanted.size(); ++level) add(level, std::move(wanted[level]));
+  close_rims();
+  return true;
 }
 
 std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {
@@ -64,23 +95,6 @@ std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {
                                ? *options_.max_leaves
                                : *options_.max_leaves - *options_.max_leaves / share_for_folds;
   return most - std::min(most, levels_.leaf_count());
-}
-
-// The largest errors of a level first; half of what is left is for rims and finer levels.
-std::vector<LeafCoordinates> PyramidBuilder::within_budget(std::size_t level,
-                                                           std::vector<FailingOctant> failing) {
-  const std::size_t most = leaves_left(Purpose::tolerance) / 2;
-  if (failing.size() > most) {
-    std::sort(failing.begin(), failing.end(), [](const FailingOctant& a, const FailingOctant& b) {
-      return a.error != b.error ? a.error > b.error : a.leaf < b.leaf;
-    });
-    for (std::size_t n = most; n < failing.size(); ++n)
-      refused_.push_back({level, failing[n].leaf, failing[n].error});
-    failing.resize(most);
-  }
-  std::vector<LeafCoordinates> leaves;
-  for (const FailingOctant& octant : failing) leaves.push_back(octant.leaf);
-  return leaves;
 }
 
 std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {

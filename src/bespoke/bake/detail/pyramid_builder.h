@@ -21,8 +21,8 @@ namespace bespoke {
 /// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
 ///
-/// With RefinementOptions::max_leaves refinement stops there, the largest errors of a level first, and the
-/// octants that went without are remembered.
+/// With RefinementOptions::max_leaves refinement stops there: once they might not suffice for a level, what
+/// is left goes to the largest errors of all levels, and the octants that go without are remembered.
 ///
 /// Copies share the samples.
 class PyramidBuilder {
@@ -68,7 +68,7 @@ class PyramidBuilder {
 
   void add(std::size_t level, std::vector<LeafCoordinates> leaves);
   void refine_level(std::size_t level);
-  std::vector<LeafCoordinates> within_budget(std::size_t level, std::vector<FailingOctant> failing);
+  bool add_worst_refused();
   std::size_t leaves_left(Purpose purpose) const;
   void close_rims();
   std::optional<std::size_t> first_untested_level() const;
