@@ -36,6 +36,7 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
                                const Progress& progress)
     : map_(map),
       options_(options),
+      rim_tolerance_(options.tolerance),
       progress_(progress),
       coarsest_(coarsest_lattice(map.support())),
       band_(band_leaves(map.support(), coarsest_)),
@@ -58,8 +59,8 @@ void PyramidBuilder::refine_level(std::size_t level) {
   const std::size_t first = std::exchange(looked_[level].leaves, levels_[level].leaves.size());
   if (is_finest(level)) return;
   const std::vector<FailingOctant> failing = octants_.failing_octants(levels_, level, first);
-  // About as many will be added at rims.
-  const bool affordable = refused_.empty() && failing.size() <= leaves_left(Purpose::tolerance) / 2;
+  // Several times as many may be added at rims.
+  const bool affordable = refused_.empty() && failing.size() <= leaves_left(Purpose::tolerance) / 8;
   std::vector<LeafCoordinates> leaves;
   for (const FailingOctant& octant : failing) {
     leaves.push_back(octant.leaf);
@@ -80,7 +81,10 @@ bool PyramidBuilder::add_worst_refused() {
     return a.error != b.error ? a.error > b.error : std::tie(a.level, a.leaf) < std::tie(b.level, b.leaf);
   });
   const double least = refused_.front().error / 2;
-  const std::size_t most = std::max<std::size_t>(1, left / 2);
+  // Rims as fine as the tolerance would cover all that fails.
+  rim_tolerance_ = std::max(least, options_.tolerance);
+  for (Looked& looked : looked_) looked.rims_known = false;
+  const std::size_t most = std::max<std::size_t>(1, left / 16);
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
   for (std::size_t n = 0; n < std::min(most, refused_.size()) && refused_[n].error >= least; ++n)
     wanted[refused_[n].level].push_back(refused_[n].leaf);
@@ -108,7 +112,7 @@ std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {
 void PyramidBuilder::close_rims() {
   while (const std::optional<std::size_t> level = first_level_of_unknown_rims()) {
     looked_[*level].rims_known = true;
-    add(*level, rim_neighbours(levels_, *level, options_.tolerance));
+    add(*level, rim_neighbours(levels_, *level, rim_tolerance_));
   }
 }
 

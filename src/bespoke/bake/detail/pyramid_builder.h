@@ -78,6 +78,7 @@ class PyramidBuilder {
 
   const ElasticMap& map_;
   RefinementOptions options_;
+  double rim_tolerance_;  // largest jump at a rim, mesh units: the tolerance, more where leaves are few
   const Progress& progress_;
   Lattice coarsest_;
   std::vector<LeafCoordinates> band_;
