@@ -270,7 +270,7 @@ TEST_F(FitCommand, ReportsEveryStage) {
 }
 
 TEST_F(FitCommand, ListsTheVerticesItMisses) {
-  // Two vertices change places across the body: no map without folds takes them there.
+  // Two vertices change places across the body: no straight way without folds takes them there.
   std::istringstream source(read_text(pair_.file("source.obj")));
   std::vector<std::string> lines;
   for (std::string line; std::getline(source, line);) lines.push_back(line);
@@ -284,8 +284,8 @@ TEST_F(FitCommand, ListsTheVerticesItMisses) {
   for (const std::string& line : lines) fitted << line << '\n';
   fitted.close();
   ASSERT_EQ(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
-                     pair_.file("swapped.obj"), "-o", pair_.file("map.vdb"), "--tolerance", "0.5%",
-                     "--report", pair_.file("report.json")})
+                     pair_.file("swapped.obj"), "-o", pair_.file("map.vdb"), "--tolerance", "0.5%", "--steps",
+                     "1", "--report", pair_.file("report.json")})
                 .exit_code,
             0);
   const json report = read_json("report.json");
@@ -371,7 +371,7 @@ TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {
   ProgramResult fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("and \"twin\" ("));
-  EXPECT_THAT(fit.err, HasSubstr("contradict each other; give those that are not exact a weight"));
+  EXPECT_THAT(fit.err, HasSubstr("contradict each other; give those that are not exact a sigma"));
   anchors["pairs"].back()["weight"] = 1;
   write_text(pair_.file("anchors.json"), anchors.dump());
   fit = pair_.fit("map.vdb", quick);
