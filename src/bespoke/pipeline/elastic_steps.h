@@ -23,6 +23,7 @@ struct StepPlan {
 std::vector<double> equal_times(int steps);
 
 /// Equal steps. pairs: of the source and its fitted vertices, the anchors off the surface at their end.
+/// Throws InvalidInput where these make one a mirror image of the other.
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
 
 /// The plan with these steps halved.
