@@ -91,27 +91,13 @@ std::vector<LeafCoordinates> OctantRefinement::octants_in_question(const Sampled
   return octants;
 }
 
-// One bit an octant: some node's value misses the interpolated sum of the levels above by more than the
+// One bit an octant: at some node the interpolated sum of the levels above misses the value by more than the
 // tolerance.
 std::uint8_t OctantRefinement::octants_of_large_residuals(const SampledLevels& levels, std::size_t level,
                                                           std::size_t leaf) const {
-  NodeBlock coarse;
-  levels.coarse_sum_at(level, levels[level].leaves[leaf], coarse);
-  if (options_.then) return octants_of_errors(levels, level, leaf, coarse);
-  const double limit = options_.tolerance * options_.tolerance;
-  std::uint8_t octants = 0;
-  for (int node = 0; node < leaf_nodes; ++node) {
-    const LatticeCoordinates place = place_of_number(node);
-    if (!(squared_residual(levels[level].samples[leaf], coarse, place) <= limit))
-      octants |= static_cast<std::uint8_t>(1 << octant_of_cell(place));
-  }
-  return octants;
-}
-
-// The same where what follows the map takes the errors.
-std::uint8_t OctantRefinement::octants_of_errors(const SampledLevels& levels, std::size_t level,
-                                                 std::size_t leaf, const NodeBlock& coarse) const {
   const SampledLevel& sampled = levels[level];
+  NodeBlock coarse;
+  levels.coarse_sum_at(level, sampled.leaves[leaf], coarse);
   Points x(3, leaf_nodes), sum(3, leaf_nodes), exact(3, leaf_nodes);
   for (int node = 0; node < leaf_nodes; ++node) {
     const LatticeCoordinates place = place_of_number(node);

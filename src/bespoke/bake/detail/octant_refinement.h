@@ -34,8 +34,6 @@ class OctantRefinement {
                                                    std::size_t first) const;
   std::uint8_t octants_of_large_residuals(const SampledLevels& levels, std::size_t level,
                                           std::size_t leaf) const;
-  std::uint8_t octants_of_errors(const SampledLevels& levels, std::size_t level, std::size_t leaf,
-                                 const NodeBlock& coarse) const;
   LeafTable unresolved_leaves(const SampledLevels& levels, std::size_t level) const;
   double error_in(const SampledLevels& levels, std::size_t level, const LeafCoordinates& octant,
                   const Eigen::Ref<const Points>& exact) const;

@@ -112,8 +112,19 @@ std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {
 void PyramidBuilder::close_rims() {
   while (const std::optional<std::size_t> level = first_level_of_unknown_rims()) {
     looked_[*level].rims_known = true;
-    add(*level, rim_neighbours(levels_, *level, rim_tolerance_));
+    add(*level, rims_within_budget(*level));
   }
+}
+
+// Rims that fold are closed in any case.
+std::vector<LeafCoordinates> PyramidBuilder::rims_within_budget(std::size_t level) {
+  std::vector<LeafCoordinates> leaves = rim_neighbours(levels_, level, rim_tolerance_);
+  while (leaves.size() > leaves_left(Purpose::folds) &&
+         rim_tolerance_ < rim_gradient * levels_.lattice(level).voxel_size) {
+    rim_tolerance_ *= 2;
+    leaves = rim_neighbours(levels_, level, rim_tolerance_);
+  }
+  return leaves;
 }
 
 std::optional<std::size_t> PyramidBuilder::first_untested_level() const {

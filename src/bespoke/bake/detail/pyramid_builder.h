@@ -71,6 +71,7 @@ class PyramidBuilder {
   bool add_worst_refused();
   std::size_t leaves_left(Purpose purpose) const;
   void close_rims();
+  std::vector<LeafCoordinates> rims_within_budget(std::size_t level);
   std::optional<std::size_t> first_untested_level() const;
   std::optional<std::size_t> first_level_of_unknown_rims() const;
   std::vector<WantedLeaf> leaves_wanted_at(const Vector3& x) const;

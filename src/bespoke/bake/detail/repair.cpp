@@ -22,7 +22,7 @@ constexpr double step_fraction = 0.7;
 // along. A sweep smooths over one cell, so a fold that is many cells wide needs coarser ones. These change
 // the map in a wider neighbourhood, so they come last and only for the folds that are left.
 constexpr int rounds_per_level = 10;
-constexpr int levels_upwards = 6;
+constexpr int levels_upwards = 3;
 // A node and its six neighbours.
 constexpr Eigen::Index stencil = 7;
 // A level is given up when so many rounds leave more than this share of its folds.

@@ -8,10 +8,6 @@
 namespace bespoke {
 namespace {
 
-// η: what a rim may add to the gradient. Without the rule 30,877 of 1.1 M cells of the prototype's body pair
-// folded, with it 2.
-constexpr double rim_gradient = 0.3;
-
 // Of a leaf's nodes that touch the neighbour at this step.
 double largest_squared_residual(const float* u, const NodeBlock& coarse, const LatticeCoordinates& step) {
   LatticeCoordinates from, to;
