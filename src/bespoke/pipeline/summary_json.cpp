@@ -119,17 +119,19 @@ Json to_json(const ContactSummary& summary) {
 }
 
 Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
-  return {{"method", entry_of(method).name},
-          {"before", to_json(summary.before)},
-          {"after", to_json(summary.after)},
-          {"iterations", summary.iterations},
-          {"stop_reason", to_string(summary.stop_reason)},
-          {"unmatched_vertices", summary.unmatched_vertices},
-          {"off_surface_anchors", summary.off_surface_anchors},
-          {"stiffness", summary.stiffness},
-          {"similarity_suffices", summary.similarity_suffices},
-          {"matched_boundaries", summary.matched_boundaries},
-          {"mended_vertices", summary.mended_vertices}};
+  Json json = {{"method", entry_of(method).name},
+               {"before", to_json(summary.before)},
+               {"after", to_json(summary.after)},
+               {"iterations", summary.iterations},
+               {"stop_reason", to_string(summary.stop_reason)},
+               {"unmatched_vertices", summary.unmatched_vertices},
+               {"off_surface_anchors", summary.off_surface_anchors},
+               {"stiffness", summary.stiffness},
+               {"similarity_suffices", summary.similarity_suffices},
+               {"matched_boundaries", summary.matched_boundaries},
+               {"mended_vertices", summary.mended_vertices}};
+  if (summary.posed_by_anchors) json["posed_by_anchors_degrees"] = summary.anchor_turn_degrees;
+  return json;
 }
 
 namespace {

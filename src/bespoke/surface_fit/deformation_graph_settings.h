@@ -94,6 +94,30 @@ struct AnchorSettings {
   double most_reinforced = 10;  ///< factor of κ from one iteration to the next. Not varied.
 };
 
+/// The source bent by its anchors alone (anchor_pose.h). Errors are mean distances from the truth, diagonals.
+struct PoseSettings {
+  int nodes = 400;  ///< over the whole surface, as at the first level of the fit. Not varied.
+  /// Weight of the differences between the similarities of neighbouring nodes. Falls geometrically, so that
+  /// far turns spread before they settle at the joints. Last value 1, 0.1, 0.02: 0.639, 0.608, 0.611 % over
+  /// d01, d04, d08 and d10 (geometric mean).
+  double first_smoothness = 100, last_smoothness = 0.1;
+  int iterations = 60;  ///< of places and similarities in turn. Not varied.
+  int sweeps = 3;       ///< over the similarities, an iteration. Not varied.
+  /// Spacings: expected misfit of an edge; with an anchor's accuracy it weighs anchors against shape. 0.1:
+  /// 0.745 % instead of 0.608 %.
+  double edge_misfit = 0.5;
+  double least_sigma = 1e-3;          ///< diagonals: no anchor is taken for more accurate. Not varied.
+  double sigma_of_weight_one = 0.01;  ///< diagonals: the accuracy that a soft anchor's weight of 1 stands for
+  /// Degrees: the bent source replaces the aligned one where some part turns farther. Bent always, d08 (111
+  /// degrees) has 0.271 instead of 0.329 % and 2 instead of 204 flips, but d10 (81) 0.397 instead of 0.318 %
+  /// and d04 (28) 0.530 instead of 0.468 %: the bent source's own distortions stay in it.
+  double least_turn = 90;
+  /// Root mean square misfit of the edges: beyond it anchors contradict each other and bend nothing. Right
+  /// anchors of strong poses 0.07 to 0.15, with two of them swapped 0.21 to 0.91.
+  double most_strain = 0.18;
+  NodeSettings node_settings;
+};
+
 /// One level of nodes.
 struct NodeLevel {
   int nodes = 0;                 ///< aimed at, over the whole surface
@@ -198,6 +222,7 @@ struct DeformationGraphSettings {
   /// stand on and bend edges as well. Not varied since there are 2,500.
   double edges_per_area = 1125;
   SimilaritySettings similarity;
+  PoseSettings pose;
   NodeFitSettings nodes;
   DetailSettings details;
   MendingSettings mending;

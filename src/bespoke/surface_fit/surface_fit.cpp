@@ -68,6 +68,12 @@ std::string to_string(const SurfaceFitSummary& summary) {
   if (summary.off_surface_anchors > 0)
     line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
+  if (summary.posed_by_anchors) {
+    char turn[80];
+    std::snprintf(turn, sizeof turn, ", bent by the anchors first (turns of %.0f degrees)",
+                  summary.anchor_turn_degrees);
+    line += turn;
+  }
   if (summary.matched_boundaries > 0)
     line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
   if (summary.mended_vertices > 0)

@@ -73,8 +73,11 @@ struct SurfaceFitSummary {
   double stiffness = 0;  ///< laplacian: s of Eq. 11
   // deformation-graph:
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
-  int matched_boundaries = 0;        ///< open boundaries of the source taken for the target's cut
-  std::size_t mended_vertices = 0;   ///< drawn to the wrong side of a fold, so they follow their neighbours
+  /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn.
+  double anchor_turn_degrees = 0;
+  bool posed_by_anchors = false;    ///< the anchors alone bent the source before anything else
+  int matched_boundaries = 0;       ///< open boundaries of the source taken for the target's cut
+  std::size_t mended_vertices = 0;  ///< drawn to the wrong side of a fold, so they follow their neighbours
   std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
   double seconds = 0;
 };

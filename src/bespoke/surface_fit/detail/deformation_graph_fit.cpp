@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
+#include "bespoke/surface_fit/detail/anchor_pose.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
 #include "bespoke/surface_fit/detail/node_fit.h"
@@ -139,9 +141,27 @@ struct Scene {
   DetailInput details() const { return {surface, target, exact_sources, exact_targets, diagonal}; }
 };
 
-/// Nodes, layers of space, mending. Returns what the summary says of them.
-SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
+/// Bends the surface by the anchors alone, and carries the anchors along, where that turns a part far.
+void bend_by_anchors(Scene& scene, Points& anchors, const PoseSettings& settings,
+                     SurfaceFitSummary& summary) {
+  const Eigen::VectorXd sigmas =
+      (settings.sigma_of_weight_one * scene.diagonal * scene.anchors.weights.cwiseSqrt().cwiseInverse())
+          .cwiseMax(scene.anchors.sigmas);
+  const AnchorPose pose =
+      pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
+  summary.anchor_turn_degrees = pose.rotation_spread * 180 / std::numbers::pi;
+  summary.posed_by_anchors =
+      summary.anchor_turn_degrees > settings.least_turn && pose.strain <= settings.most_strain;
+  if (!summary.posed_by_anchors) return;
+  scene.surface.vertices = pose.vertices;
+  anchors = pose.anchor_sources;
+}
+
+/// Pose, nodes, layers of space, mending. Returns what the summary says of them.
+SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitOptions& options,
                          const DeformationGraphSettings& settings, const Progress& progress) {
+  SurfaceFitSummary summary;
+  bend_by_anchors(scene, aligned_anchors, settings.pose, summary);
   const NodeFit nodes =
       fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets, scene.anchors.weights,
                  scene.diagonal, options.boundaries, scene.anchors.sigmas},
@@ -156,7 +176,6 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
   scene.surface.vertices = mended.vertices;
 
-  SurfaceFitSummary summary;
   summary.mended_vertices = mended.mended_vertices;
   summary.iterations = nodes.iterations + details.layers;
   summary.matched_boundaries = nodes.matched_boundaries;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
+
+namespace bespoke {
+
+/// A surface bent by its anchors alone.
+struct AnchorPose {
+  Points vertices;        ///< 3×n, mesh units
+  Points anchor_sources;  ///< 3×k, carried along
+  double rotation_spread = 0;  ///< largest angle between a node's rotation and the mean one, radians
+  double strain = 0;           ///< root mean square misfit of the edges between nodes, no unit
+};
+
+struct AnchorPoseInput {
+  const TriangleMesh& rest;       ///< aligned with the targets by one similarity
+  const Points& anchor_sources;   ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_targets;   ///< 3×k
+  const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
+  double diagonal = 0;            ///< of `rest`
+};
+
+/// Bends the surface such that it takes the anchors to their targets and is everywhere as similar as possible
+/// to what it was, with similarities Mᵢ that change little from node to node:
+///   Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ.
+/// where h is the spacing of the nodes. So a limb turns by more than a right angle without shrinking before
+/// any closest point is asked. Alternates between the similarities and the places, from no motion on. Without
+/// anchors nothing moves. Same bytes at any thread count. Throws SolverError.
+AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& settings = {});
+
+}  // namespace bespoke
