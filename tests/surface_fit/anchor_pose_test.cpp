@@ -73,7 +73,9 @@ TEST(PoseByAnchors, TurnsALimbBeyondARightAngleWithoutShrinkingIt) {
   EXPECT_LT((pose.anchor_sources - scene.targets).colwise().norm().maxCoeff(), 0.02);
   for (Eigen::Index i = 0; i < pose.vertices.cols(); ++i) {
     const double way = std::abs(scene.rest.vertices(0, i) - elbow);
-    if (way > 1) EXPECT_LT((pose.vertices.col(i) - bent(scene.rest.vertices.col(i))).norm(), 0.1) << i;
+    if (way > 1) {
+      EXPECT_LT((pose.vertices.col(i) - bent(scene.rest.vertices.col(i))).norm(), 0.1) << i;
+    }
   }
 }
 
