@@ -6,6 +6,7 @@
 
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
+#include "bespoke/statistics.h"
 #include "flow/bent_tube.h"
 
 namespace bespoke {
@@ -78,11 +79,17 @@ TEST(ElasticSteps, CanBeDivided) {
   options.steps = 3;
   FittedMapping fit = fit_bent(source, 90 * degree, options);
   const std::size_t before = fit.elastic->steps().size();
-  const auto first = fit.elastic->steps()[0];
-  divide_steps(fit, source, {}, options, {1, 2});
-  EXPECT_EQ(fit.elastic->steps().size(), before + 2);
-  EXPECT_EQ(fit.elastic->steps()[0], first);
-  EXPECT_EQ(fit.plan->steps(), before + 2);
+  const auto maps = fit.elastic->steps();
+  const Points next = fit.step_sources[2];
+  divide_step(fit, source, {}, options, 1);
+  EXPECT_EQ(fit.elastic->steps().size(), before + 1);
+  EXPECT_EQ(fit.elastic->steps().front(), maps.front());
+  EXPECT_EQ(fit.elastic->steps().back(), maps.back());
+  EXPECT_EQ(fit.plan->steps(), before + 1);
+  // The second half ends where the whole step did.
+  const Points end = (*fit.elastic->steps()[2])(fit.step_sources[2]);
+  const Eigen::VectorXd missed = (end - next).colwise().norm();
+  EXPECT_LE(summarize({missed.begin(), missed.end()}).p95, options.fit_tolerance);
   EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
 }
 

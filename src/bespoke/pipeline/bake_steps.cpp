@@ -1,7 +1,6 @@
 #include "bespoke/pipeline/bake_steps.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "bespoke/bake/error_points.h"
@@ -61,28 +60,27 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const std::
   return bake(exact, options, progress);
 }
 
-/// The last step first; `done` are the first ones.
+/// The last step first, before `done`, until one folds that may be divided.
 BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
-                    const BakeOptions& options, BakedSteps done, const Progress& progress) {
-  BakedSteps baked;
+                    const BakeOptions& options, const std::vector<bool>& divisible, BakedSteps done,
+                    const Progress& progress) {
+  BakedSteps baked = std::move(done);
   std::size_t used = 0;
-  for (const MapStep& step : done.steps) used += step.pyramid.leaf_count();
-  for (std::size_t k = exact.steps().size(); k-- > done.steps.size();) {
+  for (const MapStep& step : baked.steps) used += step.pyramid.leaf_count();
+  for (std::size_t k = exact.steps().size() - baked.steps.size(); k-- > 0;) {
     const ElasticMap& map = *exact.steps()[k];
     BakeOptions step_options = options;
-    // Steps that need less leave it to those before them.
-    const std::size_t steps_left = k + 1 - done.steps.size();
+    // Steps that need less leave it to those before them; a share is kept in case one is divided.
+    const std::size_t shares = k + (k > 0 && !divisible.empty() ? 2 : 1);
     if (options.max_leaves)
-      step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / steps_left;
+      step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
     Bake step = bake_step(map, {surfaces[k], faces}, baked.steps, step_options, progress);
     used += step.pyramid.leaf_count();
     Certificate certificate = certify(step.pyramid, map.affine(), 1, progress);
     baked.steps.insert(baked.steps.begin(), {map.affine(), std::move(step.pyramid), std::move(certificate)});
     baked.summaries.insert(baked.summaries.begin(), std::move(step.summary));
+    if (is_to_be_divided(baked, divisible)) break;
   }
-  baked.steps.insert(baked.steps.begin(), std::make_move_iterator(done.steps.begin()),
-                     std::make_move_iterator(done.steps.end()));
-  baked.summaries.insert(baked.summaries.begin(), done.summaries.begin(), done.summaries.end());
   return baked;
 }
 
@@ -96,6 +94,12 @@ bool finer_steps_help(const BakedSteps& baked, const BakeOptions& options) {
 }
 
 }  // namespace
+
+bool is_to_be_divided(const BakedSteps& baked, const std::vector<bool>& divisible) {
+  if (baked.steps.empty() || divisible.empty()) return false;
+  const std::size_t first = divisible.size() - baked.steps.size();
+  return divisible[first] && !baked.steps.front().certificate.is_bijection();
+}
 
 void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.levels.insert(whole.levels.end(), step.levels.begin(), step.levels.end());
@@ -115,9 +119,10 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
 }
 
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
-                      const BakeOptions& options, BakedSteps done, const Progress& progress) {
+                      const BakeOptions& options, const std::vector<bool>& divisible, BakedSteps done,
+                      const Progress& progress) {
   if (exact.steps().size() == 1) {
-    BakedSteps baked = bake_all(exact, surfaces, faces, options, std::move(done), progress);
+    BakedSteps baked = bake_all(exact, surfaces, faces, options, divisible, std::move(done), progress);
     baked.whole = baked.summaries.front();
     return baked;
   }
@@ -127,7 +132,9 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
   step_options.error_points = std::max<std::size_t>(1, options.error_points / share_of_a_step);
   BakedSteps baked;
   for (const bool again : {false, true}) {
-    baked = bake_all(exact, surfaces, faces, step_options, again ? BakedSteps{} : std::move(done), progress);
+    baked = bake_all(exact, surfaces, faces, step_options, again ? std::vector<bool>{} : divisible,
+                     again ? BakedSteps{} : std::move(done), progress);
+    if (!again && is_to_be_divided(baked, divisible)) return baked;
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
     const Stopwatch measure;
     baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, options.error_points, progress);

@@ -19,6 +19,57 @@ Points with_loose(const Points& vertices, const Points& pairs, std::size_t loose
   return all;
 }
 
+/// Fits one step after the other, from where the points have come to.
+class StepFitter {
+ public:
+  StepFitter(const TriangleMesh& source, const ElasticPairs& pairs, ElasticMethod method,
+             const ElasticOptions& options, const Progress& progress)
+      : source_(source),
+        vertices_(source.vertices),
+        places_(pairs.sources),
+        loose_(pairs.anchors_off_surface),
+        method_(elastic_method(method)),
+        options_(options),
+        progress_(progress) {
+    options_.affine_part = AffinePart::similarity;
+  }
+
+  void move_by(const ElasticMap& map) {
+    vertices_ = map(vertices_);
+    places_ = map(places_);
+  }
+
+  /// Where a map would take vertices and loose points, one after the other.
+  Points moved_by(const ElasticMap& map) const { return map(with_loose(vertices_, places_, loose_)); }
+
+  /// next: vertices and loose points.
+  void fit_to(const Points& next) {
+    const auto loose = static_cast<Eigen::Index>(loose_);
+    const Points fitted = next.leftCols(vertices_.cols());
+    const TriangleMesh here{vertices_, source_.faces};
+    Points targets = places_;
+    targets.leftCols(places_.cols() - loose) = elastic_pairs(source_, fitted).targets;
+    targets.rightCols(loose) = next.rightCols(loose);
+    ElasticFit fit = method_.fit({here, fitted, places_, targets}, options_, progress_);
+    steps_.sources.push_back(vertices_);
+    steps_.found.push_back(std::move(fit.found));
+    move_by(*fit.map);
+    steps_.maps.push_back(std::move(fit.map));
+  }
+
+  ElasticSteps steps() && { return std::move(steps_); }
+
+ private:
+  const TriangleMesh& source_;
+  Points vertices_;
+  Points places_;
+  std::size_t loose_;
+  const ElasticMethodRow& method_;
+  ElasticOptions options_;
+  const Progress& progress_;
+  ElasticSteps steps_;
+};
+
 /// Similarities in between would hide a mirror image, which no path without folds reaches.
 void require_unmirrored(const ElasticPairs& pairs) {
   const AffineMap whole =
@@ -49,42 +100,34 @@ std::vector<double> equal_times(int steps) {
   return times;
 }
 
-StepPlan halved(const StepPlan& plan, const std::vector<std::size_t>& steps) {
+StepPlan halved(const StepPlan& plan, std::size_t step) {
   StepPlan finer = plan;
-  for (const std::size_t step : steps) finer.times.push_back((plan.times[step] + plan.times[step + 1]) / 2);
-  std::sort(finer.times.begin(), finer.times.end());
+  const double middle = (plan.times[step] + plan.times[step + 1]) / 2;
+  finer.times.insert(finer.times.begin() + static_cast<std::ptrdiff_t>(step) + 1, middle);
   return finer;
 }
 
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                               ElasticMethod method, const ElasticOptions& options, ElasticSteps done,
+                               ElasticMethod method, const ElasticOptions& options,
                                const Progress& progress) {
-  ElasticSteps steps = std::move(done);
-  ElasticOptions step_options = options;
-  step_options.affine_part = AffinePart::similarity;
-  Points vertices = source.vertices;
-  Points places = pairs.sources;
-  const auto move_on = [&](const ElasticMap& map) {
-    vertices = map(vertices);
-    places = map(places);
-  };
-  for (const auto& map : steps.maps) move_on(*map);
-  const auto loose = static_cast<Eigen::Index>(pairs.anchors_off_surface);
-  for (std::size_t k = steps.maps.size(); k < plan.steps(); ++k) {
+  StepFitter fitter(source, pairs, method, options, progress);
+  for (std::size_t k = 0; k < plan.steps(); ++k) {
     progress.step("elastic", k, plan.steps());
-    const Points next = plan.path->at(plan.times[k + 1]);
-    const Points fitted = next.leftCols(source.vertices.cols());
-    Points targets = places;
-    targets.leftCols(places.cols() - loose) = elastic_pairs(source, fitted).targets;
-    targets.rightCols(loose) = next.rightCols(loose);
-    const TriangleMesh here{vertices, source.faces};
-    ElasticFit fit = elastic_method(method).fit({here, fitted, places, targets}, step_options, progress);
-    steps.sources.push_back(vertices);
-    steps.found.push_back(std::move(fit.found));
-    move_on(*fit.map);
-    steps.maps.push_back(std::move(fit.map));
+    fitter.fit_to(plan.path->at(plan.times[k + 1]));
   }
-  return steps;
+  return std::move(fitter).steps();
+}
+
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
+                        const ElasticChain& chain, std::size_t step, ElasticMethod method,
+                        const ElasticOptions& options, const Progress& progress) {
+  StepFitter fitter(source, pairs, method, options, progress);
+  for (std::size_t k = 0; k < step; ++k) fitter.move_by(*chain.steps()[k]);
+  const bool last = step + 1 == chain.steps().size();
+  const Points end = last ? plan.path->at(1) : fitter.moved_by(*chain.steps()[step]);
+  fitter.fit_to(plan.path->at(plan.times[step + 1]));
+  fitter.fit_to(end);
+  return std::move(fitter).steps();
 }
 
 }  // namespace bespoke

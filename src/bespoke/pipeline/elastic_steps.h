@@ -26,8 +26,8 @@ std::vector<double> equal_times(int steps);
 /// Throws InvalidInput where these make one a mirror image of the other.
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
 
-/// The plan with these steps halved.
-StepPlan halved(const StepPlan& plan, const std::vector<std::size_t>& steps);
+/// The plan with a step halved.
+StepPlan halved(const StepPlan& plan, std::size_t step);
 
 struct ElasticSteps {
   std::vector<std::shared_ptr<const ElasticMap>> maps;
@@ -37,9 +37,15 @@ struct ElasticSteps {
 
 /// One elastic map per step. Each starts from where the maps before it have left the points, so that what
 /// they missed is made good by those after them, and its affine part is a similarity: least-squares affine
-/// maps of a changing pose shear the space around the model. `done`: steps to begin with, taken as they are.
+/// maps of a changing pose shear the space around the model.
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                               ElasticMethod method, const ElasticOptions& options, ElasticSteps done = {},
+                               ElasticMethod method, const ElasticOptions& options,
                                const Progress& progress = {});
+
+/// Two maps for one: of step `step` of a plan that was `halved` there. `chain`: the maps of the plan before.
+/// The second ends where that of the whole step did, so that the steps after it remain as they are.
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
+                        const ElasticChain& chain, std::size_t step, ElasticMethod method,
+                        const ElasticOptions& options, const Progress& progress = {});
 
 }  // namespace bespoke

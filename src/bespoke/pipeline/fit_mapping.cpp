@@ -153,7 +153,7 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
     summary.motion = result.plan->path->motion();
     if (!options.steps) result.plan->times = equal_times(std::max(count, step_count(summary.motion)));
     steps = fit_elastic_steps(source, result.pairs, *result.plan, options.elastic, elastic_options(options),
-                              {}, progress);
+                              progress);
   } else {
     ElasticFit fit = elastic_method(options.elastic)
                          .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
@@ -167,22 +167,28 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
 
 }  // namespace
 
-void divide_steps(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
-                  const FitOptions& options, const std::vector<std::size_t>& steps,
-                  const Progress& progress) {
-  if (!fitted.plan || steps.empty()) throw InvalidInput("there are no steps to divide");
+void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                 const FitOptions& options, std::size_t step, const Progress& progress) {
+  if (!fitted.plan || step >= fitted.plan->steps()) throw InvalidInput("there is no such step to divide");
   const Stopwatch watch;
+  const std::vector<std::shared_ptr<const ElasticMap>>& maps = fitted.elastic->steps();
+  fitted.plan = halved(*fitted.plan, step);
+  ElasticSteps halves = fit_halves(source, fitted.pairs, *fitted.plan, *fitted.elastic, step, options.elastic,
+                                   elastic_options(options), progress);
   ElasticSummary& summary = fitted.summary.elastic;
-  const std::size_t kept = *std::min_element(steps.begin(), steps.end());
-  ElasticSteps done;
-  for (std::size_t k = 0; k < kept; ++k) {
-    done.maps.push_back(fitted.elastic->steps()[k]);
-    done.found.push_back(k == 0 ? summary.found : summary.later_steps[k - 1]);
-    done.sources.push_back(fitted.step_sources[k]);
+  ElasticSteps steps;
+  for (std::size_t k = 0; k < maps.size(); ++k) {
+    for (std::size_t half = 0; half < (k == step ? 2 : 0); ++half) {
+      steps.maps.push_back(std::move(halves.maps[half]));
+      steps.found.push_back(std::move(halves.found[half]));
+      steps.sources.push_back(std::move(halves.sources[half]));
+    }
+    if (k == step) continue;
+    steps.maps.push_back(maps[k]);
+    steps.found.push_back(k == 0 ? summary.found : summary.later_steps[k - 1]);
+    steps.sources.push_back(fitted.step_sources[k]);
   }
-  fitted.plan = halved(*fitted.plan, steps);
-  take_steps(fitted, fit_elastic_steps(source, fitted.pairs, *fitted.plan, options.elastic,
-                                       elastic_options(options), std::move(done), progress));
+  take_steps(fitted, std::move(steps));
   judge(fitted, source, anchors, options);
   summary.seconds += watch.seconds();
 }

@@ -38,11 +38,10 @@ struct FittedMapping {
   std::optional<StepPlan> plan;  ///< of a chain of several steps
 };
 
-/// A chain with some of its steps halved, by index, and all from the first of these on fitted again.
-/// `fitted` must have a plan; options as before.
-void divide_steps(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
-                  const FitOptions& options, const std::vector<std::size_t>& steps,
-                  const Progress& progress = {});
+/// A chain with a step, by index, halved; the others stay as they are. `fitted` must have a plan; options as
+/// before.
+void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                 const FitOptions& options, std::size_t step, const Progress& progress = {});
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
 /// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact

@@ -66,28 +66,24 @@ RotationPath path_of(const FittedMapping& fit, const MakeMapOptions& options) {
   return path == RotationPath::flow ? RotationPath::geodesic : path;
 }
 
-/// Steps that folded although they were mended.
-std::vector<std::size_t> folded_steps(const BakedSteps& baked) {
-  std::vector<std::size_t> folded;
-  for (std::size_t k = 0; k < baked.steps.size(); ++k)
-    if (!baked.steps[k].certificate.is_bijection()) folded.push_back(k);
-  return folded;
-}
-
-/// Bakes the fitted map; steps of a chain that fold are halved once, and those before them kept.
+/// Bakes the fitted map; a step of a chain that folds although it was mended is halved once, and the steps
+/// after it kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  const auto bake_with = [&](BakedSteps done) {
-    return bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, std::move(done),
-                      progress);
-  };
-  BakedSteps baked = bake_with({});
-  const std::vector<std::size_t> folded = folded_steps(baked);
-  if (!fit.plan || folded.empty()) return baked;
-  divide_steps(fit, input.source, input.anchors, options.fit, folded, progress);
-  baked.steps.resize(folded.front());
-  baked.summaries.resize(folded.front());
-  return bake_with({std::move(baked.steps), std::move(baked.summaries), {}});
+  std::vector<bool> divisible(fit.elastic->steps().size(), fit.plan.has_value());
+  BakedSteps last;
+  for (;;) {
+    BakedSteps baked = bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, divisible,
+                                  std::move(last), progress);
+    if (!is_to_be_divided(baked, divisible)) return baked;
+    const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
+    divide_step(fit, input.source, input.anchors, options.fit, folded, progress);
+    divisible[folded] = false;
+    divisible.insert(divisible.begin() + static_cast<std::ptrdiff_t>(folded), false);
+    baked.steps.erase(baked.steps.begin());
+    baked.summaries.erase(baked.summaries.begin());
+    last = std::move(baked);
+  }
 }
 
 AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
