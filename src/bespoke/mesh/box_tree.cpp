@@ -160,6 +160,14 @@ class Builder {
 
 }  // namespace
 
+std::vector<Box> face_boxes(const TriangleMesh& mesh) {
+  std::vector<Box> boxes(static_cast<std::size_t>(mesh.faces.cols()));
+  for (std::size_t face = 0; face < boxes.size(); ++face)
+    for (const int vertex : mesh.faces.col(static_cast<Eigen::Index>(face)))
+      boxes[face].extend(mesh.vertices.col(vertex));
+  return boxes;
+}
+
 BoxTree build_box_tree(const std::vector<Box>& boxes) {
   assert(!boxes.empty());
   return Builder(boxes).build();

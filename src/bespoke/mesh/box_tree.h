@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "bespoke/types.h"
+#include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
 
@@ -28,6 +28,9 @@ struct BoxTree {
   std::vector<Node> nodes;
   std::vector<int> order;  ///< the boxes' indices, leaf by leaf
 };
+
+/// One per face. Indices of faces must be valid.
+std::vector<Box> face_boxes(const TriangleMesh& mesh);
 
 /// Splits by the surface-area heuristic over bins, and in halves below a depth of 24, so that 2^31 boxes need
 /// at most 40 levels of three waiting nodes. `boxes` must not be empty, nor any of its elements.

@@ -111,13 +111,9 @@ struct ClosestPointTree::Tree {
 
 namespace {
 
-std::vector<Box> face_boxes(const TriangleMesh& mesh) {
+std::vector<Box> valid_face_boxes(const TriangleMesh& mesh) {
   require_valid(mesh, "the mesh of a closest-point tree");
-  std::vector<Box> boxes(static_cast<std::size_t>(mesh.faces.cols()));
-  for (std::size_t face = 0; face < boxes.size(); ++face)
-    for (const int vertex : mesh.faces.col(static_cast<Eigen::Index>(face)))
-      boxes[face].extend(mesh.vertices.col(vertex));
-  return boxes;
+  return face_boxes(mesh);
 }
 
 }  // namespace
@@ -141,10 +137,10 @@ ClosestPointTree::ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh) {
 }
 
 ClosestPointTree::ClosestPointTree(const TriangleMesh& mesh)
-    : ClosestPointTree(build_box_tree(face_boxes(mesh)), mesh) {}
+    : ClosestPointTree(build_box_tree(valid_face_boxes(mesh)), mesh) {}
 
 ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh) const {
-  const std::vector<Box> places = face_boxes(mesh);
+  const std::vector<Box> places = valid_face_boxes(mesh);
   if (places.size() != tree_->boxes.order.size())
     throw InvalidInput("a closest-point tree over " + std::to_string(tree_->boxes.order.size()) +
                        " faces cannot move to a mesh of " + std::to_string(places.size()));

@@ -118,6 +118,15 @@ struct PoseSettings {
   NodeSettings node_settings;
 };
 
+/// Cavities of the source that the target lacks (cavities.h).
+struct CavitySettings {
+  double reach = 0.1;       ///< diagonals: how far walls face each other, as counterparts may be apart.
+  double min_cosine = 0.3;  ///< as NodeFitSettings::min_cosine, between walls that face each other too.
+  /// Of the vertex's distance from a point of the target: where another place of the source is nearer, the
+  /// point is that place's counterpart. 0.9 instead: errors of d01 to d10 within 0.3 %, one flip more.
+  double much_nearer = 0.7;
+};
+
 /// One level of nodes.
 struct NodeLevel {
   int nodes = 0;                 ///< aimed at, over the whole surface
@@ -164,6 +173,7 @@ struct NodeFitSettings {
   BendingSettings bending;
   BoundarySettings boundaries;
   AnchorSettings anchors;
+  CavitySettings cavities;
 };
 
 /// Layers of space (detail_layers.h).

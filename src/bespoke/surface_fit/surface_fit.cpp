@@ -76,6 +76,9 @@ std::string to_string(const SurfaceFitSummary& summary) {
   }
   if (summary.matched_boundaries > 0)
     line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
+  if (!summary.cavity_vertices.empty())
+    line +=
+        ", " + std::to_string(summary.cavity_vertices.size()) + " vertices in cavities that the target lacks";
   if (summary.mended_vertices > 0)
     line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn over a fold taken back";
   return line;

@@ -75,8 +75,10 @@ struct SurfaceFitSummary {
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
   /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn.
   double anchor_turn_degrees = 0;
-  bool posed_by_anchors = false;    ///< the anchors alone bent the source before anything else
-  int matched_boundaries = 0;       ///< open boundaries of the source taken for the target's cut
+  bool posed_by_anchors = false;  ///< the anchors alone bent the source before anything else
+  int matched_boundaries = 0;     ///< open boundaries of the source taken for the target's cut
+  /// By index: in cavities that the target lacks (detail/cavities.h), so they follow their neighbours.
+  std::vector<int> cavity_vertices;
   std::size_t mended_vertices = 0;  ///< drawn to the wrong side of a fold, so they follow their neighbours
   std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
   double seconds = 0;

@@ -7,8 +7,8 @@ namespace bespoke {
 
 /// A surface bent by its anchors alone.
 struct AnchorPose {
-  Points vertices;        ///< 3×n, mesh units
-  Points anchor_sources;  ///< 3×k, carried along
+  Points vertices;             ///< 3×n, mesh units
+  Points anchor_sources;       ///< 3×k, carried along
   double rotation_spread = 0;  ///< largest angle between a node's rotation and the mean one, radians
   double strain = 0;           ///< root mean square misfit of the edges between nodes, no unit
 };

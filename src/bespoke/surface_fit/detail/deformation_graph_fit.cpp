@@ -1,5 +1,6 @@
 #include "bespoke/surface_fit/detail/deformation_graph_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -137,8 +138,9 @@ struct Scene {
   Points exact_sources;  // 3×k, carried with the surface
   Points exact_targets;  // 3×k
   double diagonal;
+  std::vector<char> hidden;  // n: in a cavity that the target lacks
 
-  DetailInput details() const { return {surface, target, exact_sources, exact_targets, diagonal}; }
+  DetailInput details() const { return {surface, target, exact_sources, exact_targets, diagonal, hidden}; }
 };
 
 /// Bends the surface by the anchors alone, and carries the anchors along, where that turns a part far.
@@ -167,6 +169,7 @@ SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitO
                  scene.diagonal, options.boundaries, scene.anchors.sigmas},
                 settings.nodes, progress);
   scene.surface.vertices = nodes.vertices;
+  scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
   const MendedSurface mended =
@@ -213,7 +216,8 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
               anchors,
               aligned * anchors.exact_sources(),
               anchors.exact_targets(),
-              aligned.scale * diagonal(input.source.vertices)};
+              aligned.scale * diagonal(input.source.vertices),
+              {}};
 
   SurfaceFit fit;
   if (suffices)
@@ -224,6 +228,11 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
       meet_anchors(scene.details(), settings.details).vertices.leftCols(input.source.vertices.cols());
   fit.confidence =
       confidences({fit.vertices, input.source.faces}, target, scene.diagonal, settings.confidence);
+  for (std::size_t i = 0; i < std::min(scene.hidden.size(), fit.confidence.size()); ++i)
+    if (scene.hidden[i]) {
+      fit.confidence[i] = 0;
+      fit.summary.cavity_vertices.push_back(static_cast<int>(i));
+    }
 
   fit.summary.similarity_suffices = suffices;
   fit.summary.off_surface_anchors =

@@ -203,7 +203,9 @@ double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchor
 }  // namespace
 
 DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress) {
-  const Eigen::VectorXd areas = vertex_areas(input.surface);
+  Eigen::VectorXd areas = vertex_areas(input.surface);
+  for (std::size_t i = 0; i < input.hidden.size(); ++i)
+    if (input.hidden[i]) areas[static_cast<Eigen::Index>(i)] = 0;
   const int layers = settings.scales * settings.steps_per_scale;
   TriangleMesh moved = input.surface;
   DetailFit fit;

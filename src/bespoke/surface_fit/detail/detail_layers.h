@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bespoke/progress.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
@@ -10,9 +12,10 @@ namespace bespoke {
 struct DetailInput {
   const TriangleMesh& surface;  ///< the source as fitted so far
   const TargetSurface& target;
-  const Points& anchor_sources;  ///< 3×k: exact anchors, where they are now
-  const Points& anchor_targets;  ///< 3×k
-  double diagonal = 0;           ///< of the aligned source
+  const Points& anchor_sources;   ///< 3×k: exact anchors, where they are now
+  const Points& anchor_targets;   ///< 3×k
+  double diagonal = 0;            ///< of the aligned source
+  std::vector<char> hidden = {};  ///< n: vertices without counterpart; empty where all may have one
 };
 
 struct DetailFit {

@@ -7,6 +7,7 @@
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/anchor_limits.h"
 #include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/cavities.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
 #include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/plane_pairs.h"
@@ -68,7 +69,7 @@ std::vector<double> next_limits(const NodeFitInput& input, const std::vector<Nod
 
 NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress) {
   const TargetSurface rest(input.rest);
-  const Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
+  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
   const Eigen::VectorXd target_areas = informative_areas(input.target, input.diagonal, settings.areas);
   const std::vector<NodeAnchor> anchors = node_anchors(input, rest);
   BoundaryMatcher boundaries({rest, input.anchor_sources, input.target, input.boundaries},
@@ -79,7 +80,13 @@ NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, co
   NodeFit fit;
   fit.vertices = input.rest.vertices;
   for (const NodeLevel& level : settings.levels) {
-    if (&level == &settings.levels[1]) fit.coarse_vertices = fit.vertices;
+    if (&level == &settings.levels[1]) {
+      fit.coarse_vertices = fit.vertices;
+      fit.hidden = vertices_in_lacking_cavities(rest.moved(fit.vertices), input.target, input.diagonal,
+                                                settings.cavities);
+      for (std::size_t i = 0; i < fit.hidden.size(); ++i)
+        if (fit.hidden[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+    }
     const double spacing = node_spacing(node_surface.area, level.nodes, settings.nodes);
     NodeSystem system(node_surface, make_deformation_nodes(input.rest, spacing, settings.nodes), anchors,
                       settings);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bespoke/progress.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
@@ -22,9 +24,10 @@ struct NodeFitInput {
 };
 
 struct NodeFit {
-  Points vertices;         ///< 3×n, of the deformed `rest`
-  Points coarse_vertices;  ///< 3×n, as the few nodes of the first level left them
-  Points anchor_sources;   ///< 3×k, carried along
+  Points vertices;           ///< 3×n, of the deformed `rest`
+  Points coarse_vertices;    ///< 3×n, as the few nodes of the first level left them
+  Points anchor_sources;     ///< 3×k, carried along
+  std::vector<char> hidden;  ///< n: in a cavity that the target lacks (cavities.h), without any pair
   int iterations = 0;
   int matched_boundaries = 0;
 };
@@ -34,7 +37,8 @@ struct NodeFit {
 /// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
 /// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
-/// from the target that bends least. Where the target has nothing to offer, the last two extrapolate. Throws
+/// from the target that bends least. After the first level vertices in cavities that the target lacks have
+/// no more pairs. Where the target has nothing to offer, the last two extrapolate. Throws
 /// SolverError.
 NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
 

@@ -12,6 +12,7 @@ struct Search {
   const TargetSurface& asking;
   const TargetSurface& answering;
   const Eigen::VectorXd& areas;
+  const Eigen::VectorXd& source_areas;
   MatchLimits limits;
   std::size_t samples;
   double share;
@@ -35,7 +36,7 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
     }
   });
   for (const PlanePair& pair : found)
-    if (pair.weight > 0) pairs.push_back(pair);
+    if (pair.weight > 0 && search.source_areas[pair.vertex] > 0) pairs.push_back(pair);
 }
 
 }  // namespace
@@ -46,15 +47,16 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
                            settings.normal_length * surfaces.diagonal};
   std::vector<PlanePair> pairs;
   append_pairs(
-      {surfaces.source, surfaces.target, surfaces.source_areas, limits, level.samples, 1},
+      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits, level.samples,
+       1},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
       pairs);
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
-      {surfaces.target, surfaces.source, surfaces.target_areas, limits, level.back_samples,
-       settings.back_share},
+      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
+       level.back_samples, settings.back_share},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);

@@ -21,7 +21,8 @@ struct PlanePair {
 struct PairSurfaces {
   const TargetSurface& source;  ///< where the source is now
   const TargetSurface& target;
-  const Eigen::VectorXd& source_areas;  ///< n: what each vertex speaks for (informative_areas.h)
+  /// n: what each vertex speaks for (informative_areas.h); 0 leaves it out, as a counterpart too
+  const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
   double diagonal = 0;  ///< of the aligned source, mesh units
 };
