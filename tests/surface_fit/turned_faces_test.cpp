@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -49,6 +50,29 @@ TEST(MendTurnedFaces, TakesBackAVertexDrawnAcrossItsNeighbours) {
   EXPECT_TRUE(mended.vertices.isApprox(Points(grid.vertices.colwise() + shift), 1e-6));
   EXPECT_GT(mended.mended_vertices, 0u);
   EXPECT_LT(mended.mended_vertices, 60u);
+}
+
+TEST(MendTurnedFaces, TakesBackWhatWasStretchedOrSqueezedTooFar) {
+  const TriangleMesh grid = shapes::square_grid(side);
+  const int drawn = vertex_at(grid, 0.5, 0.5);
+  // Up: edges grow. Aside, nearly onto an edge beyond: faces shrink, and none turns.
+  for (const Vector3& way : {Vector3(0, 0, 1), Vector3(0.97, 0, 0)}) {
+    Points after = grid.vertices;
+    after.col(drawn) += square * way;
+    const auto released = [&](double most) {
+      MendingSettings settings;
+      settings.most_degrees = 180;
+      settings.most_stretch = most;
+      return mend_turned_faces(grid, after, settings);
+    };
+    const MendedSurface mended = released(1.3);
+    EXPECT_TRUE(mended.vertices.isApprox(grid.vertices, 1e-6));
+    EXPECT_TRUE(
+        std::binary_search(mended.stretched_vertices.begin(), mended.stretched_vertices.end(), drawn));
+    EXPECT_LE(mended.stretched_vertices.size(), mended.mended_vertices);
+    EXPECT_EQ(released(1000).vertices, after);
+    EXPECT_TRUE(released(1000).stretched_vertices.empty());
+  }
 }
 
 TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {

@@ -30,6 +30,7 @@ struct FitArguments {
   std::string report;
   std::optional<SurfaceFitMethod> surface_fit;
   std::optional<BoundaryRule> boundaries;
+  std::optional<double> max_stretch;
   std::optional<ElasticMethod> elastic;
   std::optional<RotationPath> path;
   std::optional<int> steps;
@@ -80,6 +81,7 @@ MakeMapOptions make_options(const FitArguments& arguments, double source_diagona
   }
   if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
   if (arguments.boundaries) options.fit.surface_fit.boundaries = *arguments.boundaries;
+  if (arguments.max_stretch) options.fit.surface_fit.max_stretch = *arguments.max_stretch;
   if (arguments.elastic) options.fit.elastic = *arguments.elastic;
   if (arguments.path) options.path = *arguments.path;
   if (arguments.steps) options.fit.steps = *arguments.steps;
@@ -221,6 +223,12 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
           "deformation-graph: whether open boundaries of the source meet the target's; free when the "
           "models were cut at different places",
           name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
+  fit.add_option("--max-stretch", arguments.max_stretch,
+                 with_default("deformation-graph: where a length on the source would grow or shrink by a "
+                              "larger factor, its vertices follow their neighbours instead",
+                              CLI::detail::to_string(defaults.fit.surface_fit.max_stretch)))
+      ->check(CLI::Range(1.01, 1e6))
+      ->type_name("FACTOR");
   CLI::Option* elastic = add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));

@@ -26,6 +26,7 @@ std::string recorded_options(const MakeMapOptions& options, RotationPath path, b
   if (!given_fitted) {
     json["surface_fit"] = name_of(surface_fits, options.fit.surface_fit.method);
     json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
+    json["max_stretch"] = options.fit.surface_fit.max_stretch;
     json["max_iterations"] = options.fit.surface_fit.max_iterations;
     json["epsilon"] = options.fit.surface_fit.epsilon;
     if (options.fit.surface_fit.method == SurfaceFitMethod::laplacian)

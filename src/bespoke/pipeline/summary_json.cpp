@@ -130,6 +130,7 @@ Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
                {"similarity_suffices", summary.similarity_suffices},
                {"matched_boundaries", summary.matched_boundaries},
                {"cavity_vertices", summary.cavity_vertices},
+               {"stretched_vertices", summary.stretched_vertices},
                {"mended_vertices", summary.mended_vertices}};
   if (summary.posed_by_anchors) json["posed_by_anchors_degrees"] = summary.anchor_turn_degrees;
   return json;

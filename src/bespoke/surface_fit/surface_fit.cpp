@@ -79,8 +79,10 @@ std::string to_string(const SurfaceFitSummary& summary) {
   if (!summary.cavity_vertices.empty())
     line +=
         ", " + std::to_string(summary.cavity_vertices.size()) + " vertices in cavities that the target lacks";
+  if (!summary.stretched_vertices.empty())
+    line += ", " + std::to_string(summary.stretched_vertices.size()) + " vertices stretched too far";
   if (summary.mended_vertices > 0)
-    line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn over a fold taken back";
+    line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn too far taken back";
   return line;
 }
 

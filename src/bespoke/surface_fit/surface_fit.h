@@ -52,6 +52,9 @@ struct SurfaceFitOptions {
   std::optional<double> stiffness;
   LaplacianAdditions laplacian;
   BoundaryRule boundaries = BoundaryRule::automatic;  ///< deformation-graph only
+  /// > 1, deformation-graph only: where a length on the surface would grow or shrink by a larger factor
+  /// against the coarse deformation, the vertices follow their neighbours instead of being drawn.
+  double max_stretch = 10;
 };
 
 enum class StopReason {
@@ -79,7 +82,9 @@ struct SurfaceFitSummary {
   int matched_boundaries = 0;     ///< open boundaries of the source taken for the target's cut
   /// By index: in cavities that the target lacks (detail/cavities.h), so they follow their neighbours.
   std::vector<int> cavity_vertices;
-  std::size_t mended_vertices = 0;  ///< drawn to the wrong side of a fold, so they follow their neighbours
+  std::size_t mended_vertices = 0;  ///< drawn over a fold or stretched, so they follow their neighbours
+  std::vector<int>
+      stretched_vertices;  ///< of those, by index: stretched beyond SurfaceFitOptions::max_stretch
   std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
   double seconds = 0;
 };

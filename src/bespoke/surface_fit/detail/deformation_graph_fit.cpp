@@ -172,14 +172,17 @@ SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitO
   scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
-  const MendedSurface mended =
-      mend_turned_faces({nodes.coarse_vertices, scene.surface.faces}, details.vertices, settings.mending);
+  MendingSettings mending = settings.mending;
+  mending.most_stretch = options.max_stretch;
+  MendedSurface mended =
+      mend_turned_faces({nodes.coarse_vertices, scene.surface.faces}, details.vertices, mending);
   scene.exact_sources = details.anchor_sources;
   if (mended.mended_vertices > 0)
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
   scene.surface.vertices = mended.vertices;
 
   summary.mended_vertices = mended.mended_vertices;
+  summary.stretched_vertices = std::move(mended.stretched_vertices);
   summary.iterations = nodes.iterations + details.layers;
   summary.matched_boundaries = nodes.matched_boundaries;
   summary.stop_reason = details.last_step <= options.epsilon * scene.diagonal ? StopReason::converged
@@ -205,6 +208,9 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
                                          const Progress& progress) {
   progress.check();
   const Stopwatch watch;
+  if (!(options.max_stretch > 1))
+    throw InvalidInput("a largest stretch of " + std::to_string(options.max_stretch) +
+                       "; it must be above 1");
   const DeformationGraphSettings settings;
   TriangleMesh surface = refined_source(input.source, settings.edges_per_area);
   const TargetSurface target(input.target);
@@ -234,6 +240,9 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
       fit.summary.cavity_vertices.push_back(static_cast<int>(i));
     }
 
+  // Not those that refinement has added.
+  std::erase_if(fit.summary.stretched_vertices,
+                [&](int vertex) { return vertex >= input.source.vertices.cols(); });
   fit.summary.similarity_suffices = suffices;
   fit.summary.off_surface_anchors =
       static_cast<std::size_t>(input.anchor_sources.cols() - anchors.sources.cols());

@@ -1,5 +1,6 @@
 #include "bespoke/surface_fit/detail/turned_faces.h"
 
+#include <Eigen/LU>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -17,17 +18,66 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
-/// Faces whose normals are farther apart; a face without area has not turned.
-std::vector<Eigen::Index> turned_faces(const Points& before_normals, const TriangleMesh& after,
-                                       double least_cosine) {
-  const Points normals = face_normals(after);
-  std::vector<Eigen::Index> turned;
-  for (Eigen::Index face = 0; face < normals.cols(); ++face)
-    if (normals.col(face).squaredNorm() * before_normals.col(face).squaredNorm() > 0 &&
-        normals.col(face).dot(before_normals.col(face)) < least_cosine)
-      turned.push_back(face);
-  return turned;
-}
+/// What became of a surface, face by face.
+class FaceChanges {
+ public:
+  FaceChanges(const TriangleMesh& before, const MendingSettings& settings)
+      : before_(before),
+        normals_(face_normals(before)),
+        least_cosine_(std::cos(settings.most_degrees * std::numbers::pi / 180)),
+        most_stretch_(settings.most_stretch) {}
+
+  struct Bad {
+    std::vector<Eigen::Index> turned, stretched;  // a face that turned is not called stretched as well
+    bool empty() const { return turned.empty() && stretched.empty(); }
+    std::vector<Eigen::Index> all() const {
+      std::vector<Eigen::Index> faces = turned;
+      faces.insert(faces.end(), stretched.begin(), stretched.end());
+      return faces;
+    }
+  };
+
+  /// A face without area has not turned.
+  Bad bad(const Points& after) const {
+    const Points normals = face_normals({after, before_.faces});
+    Bad found;
+    for (Eigen::Index face = 0; face < normals.cols(); ++face) {
+      if (normals.col(face).squaredNorm() * normals_.col(face).squaredNorm() > 0 &&
+          normals.col(face).dot(normals_.col(face)) < least_cosine_)
+        found.turned.push_back(face);
+      else if (stretch(after, face) > most_stretch_)
+        found.stretched.push_back(face);
+    }
+    return found;
+  }
+
+ private:
+  /// The larger of the largest factor by which a length in the face grew, and by which one shrank.
+  double stretch(const Points& after, Eigen::Index face) const {
+    const Matrix2 from = metric(before_.vertices, face), to = metric(after, face);
+    if (!(from.determinant() > 0)) return 1;
+    // Squared factors are the eigenvalues of from⁻¹ to.
+    const Matrix2 squared = from.inverse() * to;
+    const double half = squared.trace() / 2, product = squared.determinant();
+    const double largest = half + std::sqrt(std::max(0.0, half * half - product));
+    return std::sqrt(std::max(largest, largest / std::max(product, tiny)));
+  }
+
+  using Matrix2 = Eigen::Matrix2d;
+  static constexpr double tiny = 1e-300;
+
+  /// Products of the face's edges at its first corner.
+  Matrix2 metric(const Points& vertices, Eigen::Index face) const {
+    Eigen::Matrix<double, 3, 2> edges;
+    for (int k = 0; k < 2; ++k)
+      edges.col(k) = vertices.col(before_.faces(k + 1, face)) - vertices.col(before_.faces(0, face));
+    return edges.transpose() * edges;
+  }
+
+  const TriangleMesh& before_;
+  Points normals_;
+  double least_cosine_, most_stretch_;
+};
 
 /// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
 /// weighted by inverse length, so that displacements change as fast across short edges as across long ones.
@@ -86,31 +136,44 @@ std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacen
   return patch;
 }
 
+/// Each once, by index, and only those that were released.
+void keep_released(const std::vector<char>& is_free, std::vector<int>& vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::erase_if(vertices, [&](int vertex) { return !is_free[vertex]; });
+}
+
 }  // namespace
 
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
                                 const MendingSettings& settings) {
-  const double least_cosine = std::cos(settings.most_degrees * std::numbers::pi / 180);
-  const Points before_normals = face_normals(before);
+  const FaceChanges changes(before, settings);
   const VertexAdjacency adjacency = vertex_adjacency(before);
-  TriangleMesh mended{after, before.faces};
-  std::vector<Eigen::Index> turned = turned_faces(before_normals, mended, least_cosine);
+  Points mended = after;
+  FaceChanges::Bad bad = changes.bad(after);
+  MendedSurface result;
+  for (const Eigen::Index face : bad.stretched)
+    for (const int vertex : before.faces.col(face)) result.stretched_vertices.push_back(vertex);
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
   const auto most_free = std::max(settings.released_at_least,
                                   static_cast<std::size_t>(settings.most_released * double(is_free.size())));
-  for (int rings = 0; rings < settings.most_rings && !turned.empty(); ++rings) {
+  for (int rings = 0; rings < settings.most_rings && !bad.empty(); ++rings) {
     std::vector<int> released;
-    for (const int vertex : around(before, adjacency, turned, rings))
+    for (const int vertex : around(before, adjacency, bad.all(), rings))
       if (!is_free[vertex]) released.push_back(vertex);
     if (free.size() + released.size() > most_free) break;
     for (const int vertex : released) is_free[vertex] = 1;
     free.insert(free.end(), released.begin(), released.end());
-    mended.vertices = before.vertices + spread_harmonically(before.vertices, adjacency, free,
-                                                            after - before.vertices, settings);
-    turned = turned_faces(before_normals, mended, least_cosine);
+    mended = before.vertices +
+             spread_harmonically(before.vertices, adjacency, free, after - before.vertices, settings);
+    bad = changes.bad(mended);
   }
-  return {std::move(mended.vertices), free.size(), turned.size()};
+  keep_released(is_free, result.stretched_vertices);
+  result.vertices = std::move(mended);
+  result.mended_vertices = free.size();
+  result.turned_faces = bad.turned.size();
+  return result;
 }
 
 }  // namespace bespoke

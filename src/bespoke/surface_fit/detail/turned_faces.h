@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
@@ -9,16 +10,17 @@ namespace bespoke {
 
 /// A surface whose turned faces were taken back.
 struct MendedSurface {
-  Points vertices;                  ///< 3×n, mesh units
-  std::size_t mended_vertices = 0;  ///< vertices that follow their neighbours
-  std::size_t turned_faces = 0;     ///< faces still turned
+  Points vertices;                      ///< 3×n, mesh units
+  std::size_t mended_vertices = 0;      ///< vertices that follow their neighbours
+  std::vector<int> stretched_vertices;  ///< of those, by index: corners of faces that were stretched too far
+  std::size_t turned_faces = 0;         ///< faces still turned
 };
 
 /// `before`: a surface that a smooth deformation has brought here; `after` (3×n, mesh units): where its
-/// vertices were drawn then. Where a face turned by more than the limit of the settings, its vertices give up
-/// their displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings
-/// around the face as it takes and the settings allow, and as long as that is a small part of the vertices:
-/// where more has turned, mending would undo the fit. Throws SolverError.
+/// vertices were drawn then. Where a face turned or was stretched or squeezed by more than the limits of the
+/// settings, its vertices give up their displacements and take the mean of their neighbours' (harmonic along
+/// the edges), in as many rings around the face as it takes and the settings allow, and as long as that is a
+/// small part of the vertices: where more has turned, mending would undo the fit. Throws SolverError.
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
                                 const MendingSettings& settings = {});
 
