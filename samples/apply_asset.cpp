@@ -10,7 +10,7 @@ int main(int argc, char** argv) try {
     return 1;
   }
   const bespoke::Asset asset = bespoke::read_asset(argv[1]);
-  const bespoke::ElasticChain map = bespoke::baked_chain(asset.steps);
+  const bespoke::ElasticChain map = bespoke::loaded_chain(asset.steps);
 
   bespoke::Points points(3, 2);
   points.col(0) = asset.record.source.box.center();

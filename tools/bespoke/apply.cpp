@@ -100,7 +100,7 @@ std::shared_ptr<const ElasticMap> inverse_map(const ApplyArguments& arguments, A
 std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
   if (arguments.inverse) return inverse_map(arguments, asset);
   if (arguments.exact) return stored_exact_map(arguments.map, asset);
-  return std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
+  return std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));
 }
 
 /// The asset's own path, but for orders that do not know it.

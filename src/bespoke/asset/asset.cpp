@@ -7,6 +7,7 @@
 
 #include "bespoke/asset/detail/preview.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/atlas_map.h"
 #include "bespoke/lattice/baked_map.h"
 
 namespace bespoke {
@@ -87,6 +88,12 @@ ElasticChain baked_chain(std::vector<MapStep> steps) {
   std::vector<std::shared_ptr<const ElasticMap>> maps;
   for (MapStep& step : steps)
     maps.push_back(std::make_shared<const BakedMap>(step.affine, std::move(step.pyramid)));
+  return ElasticChain(std::move(maps));
+}
+
+ElasticChain loaded_chain(std::vector<MapStep> steps) {
+  std::vector<std::shared_ptr<const ElasticMap>> maps;
+  for (MapStep& step : steps) maps.push_back(loaded_map(step.affine, std::move(step.pyramid)));
   return ElasticChain(std::move(maps));
 }
 

@@ -70,6 +70,9 @@ struct Asset {
 /// E as stored, without further copies of the steps' pyramids.
 ElasticChain baked_chain(std::vector<MapStep> steps);
 
+/// The same for carrying products: every step in its fastest form (loaded_map), which rounds sums to floats.
+ElasticChain loaded_chain(std::vector<MapStep> steps);
+
 /// Of the whole: counts add up, determinants (lower bounds, where certified) multiply, and places follow one
 /// another, each in the frame of its own step. A bijection exactly when every step is one.
 Certificate whole_certificate(const Asset& asset);

@@ -8,6 +8,9 @@
 
 namespace bespoke {
 
+/// Where the sum of the levels may be nonzero.
+Support support_of(const Pyramid& pyramid);
+
 /// An elastic map whose u is the sum of a pyramid's levels, each looked up trilinearly. Exactly affine where
 /// no level has a leaf within one cell. Gradients are those of the cell that holds the point (on a face
 /// shared by two cells, of the upper one).

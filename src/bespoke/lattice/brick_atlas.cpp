@@ -1,0 +1,211 @@
+#include "bespoke/lattice/brick_atlas.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "bespoke/lattice/finest_cells.h"
+#include "bespoke/lattice/pyramid_index.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int octant_nodes_edge = BrickAtlas::octant_edge + 1;
+constexpr std::size_t octant_floats = 3 * octant_nodes_edge * octant_nodes_edge * octant_nodes_edge;
+constexpr std::size_t whole_floats = 3 * block_nodes;
+
+// From so many octants on, one brick of the whole leaf takes fewer bytes than theirs.
+constexpr int octants_of_a_whole = static_cast<int>((whole_floats + octant_floats - 1) / octant_floats);
+
+// Of the values' bytes: what the grid of the table may take, and what it may always take. A finer grid saves
+// steps of the walk and costs cache: 1/64, 1/32, … 1/4 were tried.
+constexpr double grid_share = 1.0 / 32;
+constexpr double least_grid_bytes = 1 << 14;
+
+constexpr double largest_place = 1 << 30;
+
+// The bricks of an entry.
+struct EntryBricks {
+  int octants = 0;          // bit o: octant o has a brick, or a part in the whole one
+  std::uint32_t first = 0;  // number of the first brick among those of its kind
+  bool whole() const { return std::popcount(static_cast<unsigned>(octants)) >= octants_of_a_whole; }
+};
+
+// Octants of an entry in which its level is not zero: those that one of the leaves reaches.
+int touched_octants(const PyramidEntry& entry) {
+  int touched = 0;
+  for (int octant = 0; octant < 8; ++octant)
+    for (int leaf = 0; leaf < 8; ++leaf)
+      if (entry.blocks[leaf] != absent_leaf() &&
+          cell_reaches(moved(first_place_of_octant(octant), {3, 3, 3}), leaf))
+        touched |= 1 << octant;
+  return touched;
+}
+
+// Those of them that deeper levels do not take over altogether.
+int wanted_octants(const PyramidIndex& index, std::size_t level, const PyramidEntry& entry) {
+  constexpr int all = 255;
+  int wanted = touched_octants(entry);
+  for (int octant = 0; octant < 8; ++octant) {
+    const std::int32_t child = entry.children[octant];
+    if (child != no_leaf && touched_octants(index.levels[level + 1][static_cast<std::size_t>(child)]) == all)
+      wanted &= ~(1 << octant);
+  }
+  return wanted;
+}
+
+// Which bricks there are, and what they take.
+struct Plan {
+  explicit Plan(const PyramidIndex& index) : bricks(index.levels.size()) {
+    for (std::size_t level = 0; level < bricks.size(); ++level)
+      for (const PyramidEntry& entry : index.levels[level]) add(level, wanted_octants(index, level, entry));
+  }
+
+  void add(std::size_t level, int wanted) {
+    EntryBricks added{wanted, 0};
+    added.first = static_cast<std::uint32_t>(added.whole() ? wholes : octants);
+    (added.whole() ? wholes : octants) +=
+        added.whole() ? 1 : static_cast<std::size_t>(std::popcount(static_cast<unsigned>(wanted)));
+    bricks[level].push_back(added);
+  }
+
+  std::size_t floats() const { return octants * octant_floats + wholes * whole_floats + 1; }
+
+  std::vector<std::vector<EntryBricks>> bricks;  // by level and entry
+  std::size_t octants = 1;                       // the first is of zeros
+  std::size_t wholes = 0;
+};
+
+// Places of the leaves of level 0, all within reach of an int.
+bool has_small_places(const PyramidIndex& index) {
+  const double places = std::ldexp(2.0, static_cast<int>(index.levels.size()) - 1);
+  for (const PyramidEntry& entry : index.levels.front())
+    for (const int coordinate : entry.leaf)
+      if (!(places * (std::abs(static_cast<double>(coordinate)) + 1) < largest_place)) return false;
+  return true;
+}
+
+class AtlasMaker {
+ public:
+  AtlasMaker(const Pyramid& pyramid, const PyramidIndex& index)
+      : index_(index), plan_(index), deepest_(static_cast<int>(index.levels.size()) - 1) {
+    atlas_.origin = pyramid.origin;
+    atlas_.places_per_unit =
+        std::ldexp(1.0 / BrickAtlas::octant_edge, deepest_) / pyramid.levels[0].voxel_size;
+    for (int level = 0; level <= deepest_; ++level) set_shapes(level, pyramid.lattice(level).voxel_size);
+    fill_table(sizeof(float) * pyramid.voxel_count() * 3);
+  }
+
+  bool is_small(double bytes) const {
+    return plan_.octants <= std::size_t{1} << BrickAtlas::number_bits &&
+           static_cast<double>(sizeof(float) * plan_.floats() + atlas_.table.byte_count()) <= bytes;
+  }
+
+  BrickAtlas make() && {
+    atlas_.values.resize(plan_.floats());
+    parallel_for(index_.levels.front().size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t root = begin; root < end; ++root)
+        visit_finest_cells(index_, root, [&](const EntryCells& cells) { copy_values(cells); });
+    });
+    return std::move(atlas_);
+  }
+
+ private:
+  void set_shapes(int level, double voxel_size) {
+    const int finer = deepest_ - level;
+    BrickShape shape;
+    shape.cells_per_place = std::ldexp(BrickAtlas::octant_edge, -finer);
+    shape.inverse_voxel_size = 1 / voxel_size;
+    shape.corner_mask = -(1 << finer);
+    shape.last_cell = BrickAtlas::octant_edge - 1;
+    shape.stride_y = 3 * octant_nodes_edge;
+    shape.stride_x = octant_nodes_edge * shape.stride_y;
+    shape.floats = octant_floats;
+    atlas_.shapes[static_cast<std::size_t>(2 * level)] = shape;
+    shape.corner_mask *= 2;
+    shape.last_cell = leaf_edge - 1;
+    shape.stride_y = 3 * block_edge;
+    shape.stride_x = block_edge * shape.stride_y;
+    shape.first = plan_.octants * octant_floats;
+    shape.floats = whole_floats;
+    atlas_.shapes[static_cast<std::size_t>(2 * level + 1)] = shape;
+  }
+
+  void fill_table(std::size_t value_bytes) {
+    LatticeCoordinates low = index_.levels[0].front().leaf, high = low;
+    for (const PyramidEntry& entry : index_.levels[0])
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], entry.leaf[axis]);
+        high[axis] = std::max(high[axis], entry.leaf[axis]);
+      }
+    const int leaf_places = 2 << deepest_;
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] *= leaf_places;
+      high[axis] = (high[axis] + 1) * leaf_places;
+    }
+    const double grid_bytes = std::max(least_grid_bytes, grid_share * static_cast<double>(value_bytes));
+    atlas_.table =
+        BrickTable(low, high, static_cast<std::size_t>(grid_bytes / sizeof(BrickTable::Reference)));
+    std::copy_n(atlas_.table.low().begin(), 3, atlas_.low.begin());
+    std::copy_n(atlas_.table.high().begin(), 3, atlas_.high.begin());
+    for (std::size_t level = 0; level < index_.levels.size(); ++level)
+      for (std::size_t entry = 0; entry < index_.levels[level].size(); ++entry) enter(level, entry);
+  }
+
+  void enter(std::size_t level, std::size_t entry) {
+    const EntryBricks& bricks = plan_.bricks[level][entry];
+    const std::size_t shape = 2 * level + (bricks.whole() ? 1 : 0);
+    auto reference = static_cast<BrickTable::Reference>(shape << BrickAtlas::number_bits | bricks.first);
+    for (int octant = 0; octant < 8; ++octant) {
+      if (!(bricks.octants >> octant & 1)) continue;
+      atlas_.table.set(child_of(index_.levels[level][entry].leaf, octant), deepest_ - static_cast<int>(level),
+                       reference);
+      if (!bricks.whole()) ++reference;
+    }
+  }
+
+  void copy_values(const EntryCells& cells) {
+    const auto level = static_cast<std::size_t>(cells.level);
+    const EntryBricks& bricks = plan_.bricks[level][static_cast<std::size_t>(cells.entry)];
+    const BrickShape& shape = atlas_.shapes[2 * level + (bricks.whole() ? 1 : 0)];
+    float* to = atlas_.values.data() + shape.first + bricks.first * shape.floats;
+    if (bricks.whole()) return copy_box(*cells.sum, {0, 0, 0}, block_edge, to);
+    for (int octant = 0; octant < 8; ++octant) {
+      if (!(bricks.octants >> octant & 1)) continue;
+      copy_box(*cells.sum, first_place_of_octant(octant), octant_nodes_edge, to);
+      to += shape.floats;
+    }
+  }
+
+  static void copy_box(const NodeBlock& sum, const LatticeCoordinates& first, int edge, float* to) {
+    for (int i = 0; i < edge; ++i)
+      for (int j = 0; j < edge; ++j) {
+        const int from = number_in_block(moved(first, {i, j, 0}));
+        for (int k = 0; k < edge; ++k, to += 3)
+          for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(sum[c][from + k]);
+      }
+  }
+
+  const PyramidIndex& index_;
+  Plan plan_;
+  int deepest_;
+  BrickAtlas atlas_;
+};
+
+}  // namespace
+
+std::optional<BrickAtlas> make_brick_atlas(const Pyramid& pyramid, double largest_share) {
+  if (pyramid.levels.empty() || pyramid.levels.size() > BrickAtlas::most_levels) return std::nullopt;
+  if (!(largest_sum(pyramid) <= std::numeric_limits<float>::max())) return std::nullopt;
+  const PyramidIndex index(pyramid);
+  if (!has_small_places(index)) return std::nullopt;
+  AtlasMaker maker(pyramid, index);
+  const double value_bytes = sizeof(float) * static_cast<double>(leaf_floats * pyramid.leaf_count());
+  if (!maker.is_small(largest_share * value_bytes)) return std::nullopt;
+  return std::move(maker).make();
+}
+
+}  // namespace bespoke
