@@ -53,7 +53,7 @@ TEST(BrickAtlas, OfLevelsThatCoverOneAnotherHoldsTheLast) {
   const auto atlas_of_one = make_brick_atlas(one), atlas_of_three = make_brick_atlas(three);
   ASSERT_TRUE(atlas_of_one && atlas_of_three);
   // The coarser levels reach one cell farther down, where they have a rim of their own.
-  EXPECT_LT(atlas_of_three->values.size(), atlas_of_one->values.size() * 5 / 4);
+  EXPECT_LT(atlas_of_three->value_count, atlas_of_one->value_count * 5 / 4);
   EXPECT_LT(static_cast<double>(atlas_of_one->byte_count()), 2.2 * static_cast<double>(value_bytes(one)));
 }
 

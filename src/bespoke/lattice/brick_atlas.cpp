@@ -21,7 +21,7 @@ constexpr std::size_t whole_floats = 3 * block_nodes;
 constexpr int octants_of_a_whole = static_cast<int>((whole_floats + octant_floats - 1) / octant_floats);
 
 // Of the values' bytes: what the grid of the table may take, and what it may always take. A finer grid saves
-// steps of the walk and costs cache: 1/64, 1/32, … 1/4 were tried.
+// steps of the walk and takes room in the cache.
 constexpr double grid_share = 1.0 / 32;
 constexpr double least_grid_bytes = 1 << 14;
 
@@ -72,6 +72,7 @@ struct Plan {
     bricks[level].push_back(added);
   }
 
+  // One more than the nodes take: the last node is read as four floats.
   std::size_t floats() const { return octants * octant_floats + wholes * whole_floats + 1; }
 
   std::vector<std::vector<EntryBricks>> bricks;  // by level and entry
@@ -105,10 +106,17 @@ class AtlasMaker {
   }
 
   BrickAtlas make() && {
-    atlas_.values.resize(plan_.floats());
+    // Not cleared first: the threads that write the values also fetch the pages.
+    atlas_.value_count = plan_.floats();
+    atlas_.values = std::make_unique_for_overwrite<float[]>(atlas_.value_count);
+    std::fill_n(atlas_.values.get(), octant_floats, 0.0f);
+    atlas_.values[atlas_.value_count - 1] = 0;
     parallel_for(index_.levels.front().size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t root = begin; root < end; ++root)
-        visit_finest_cells(index_, root, [&](const EntryCells& cells) { copy_values(cells); });
+      std::vector<NodeBlock> sums(index_.levels.size());
+      for (std::size_t root = begin; root < end; ++root) {
+        for (auto& component : sums[0]) component.fill(0);
+        write_values(0, root, sums);
+      }
     });
     return std::move(atlas_);
   }
@@ -167,15 +175,26 @@ class AtlasMaker {
     }
   }
 
-  void copy_values(const EntryCells& cells) {
-    const auto level = static_cast<std::size_t>(cells.level);
-    const EntryBricks& bricks = plan_.bricks[level][static_cast<std::size_t>(cells.entry)];
+  // Of an entry and of all below it; sums[level] holds the sum of the coarser levels.
+  void write_values(std::size_t level, std::size_t number, std::vector<NodeBlock>& sums) {
+    const PyramidEntry& entry = index_.levels[level][number];
+    add_leaves(entry, sums[level]);
+    copy_bricks(level, plan_.bricks[level][number], sums[level]);
+    for (int octant = 0; octant < 8; ++octant) {
+      const std::int32_t child = entry.children[octant];
+      if (child == no_leaf) continue;
+      refine_block(sums[level], octant, sums[level + 1]);
+      write_values(level + 1, static_cast<std::size_t>(child), sums);
+    }
+  }
+
+  void copy_bricks(std::size_t level, const EntryBricks& bricks, const NodeBlock& sum) {
     const BrickShape& shape = atlas_.shapes[2 * level + (bricks.whole() ? 1 : 0)];
-    float* to = atlas_.values.data() + shape.first + bricks.first * shape.floats;
-    if (bricks.whole()) return copy_box(*cells.sum, {0, 0, 0}, block_edge, to);
+    float* to = atlas_.values.get() + shape.first + bricks.first * shape.floats;
+    if (bricks.whole()) return copy_box(sum, {0, 0, 0}, block_edge, to);
     for (int octant = 0; octant < 8; ++octant) {
       if (!(bricks.octants >> octant & 1)) continue;
-      copy_box(*cells.sum, first_place_of_octant(octant), octant_nodes_edge, to);
+      copy_box(sum, first_place_of_octant(octant), octant_nodes_edge, to);
       to += shape.floats;
     }
   }

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
-#include <vector>
 
 #include "bespoke/lattice/brick_table.h"
 #include "bespoke/lattice/pyramid.h"
@@ -40,9 +40,10 @@ struct BrickAtlas {
   std::array<double, 3> low{}, high{};  ///< box of the table, in places; `high` is not part of it
   BrickTable table;                     ///< by place; 0 is the brick of zeros, for where u is zero
   std::array<BrickShape, 2 * most_levels> shapes{};  ///< 2·level, plus one for bricks of a whole leaf
-  std::vector<float> values;                         ///< three a node, mesh units; one float more at the end
+  std::unique_ptr<float[]> values;                   ///< three a node, mesh units
+  std::size_t value_count = 0;
 
-  std::size_t byte_count() const { return sizeof(float) * values.size() + table.byte_count(); }
+  std::size_t byte_count() const { return sizeof(float) * value_count + table.byte_count(); }
 };
 
 /// Values are the pyramid's sums rounded to float: where they differ from the sum, it is by at most 2⁻²⁴ of

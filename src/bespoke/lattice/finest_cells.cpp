@@ -51,14 +51,6 @@ CellMask split_cells(int octant, const GroupMask& groups) {
   return cells;
 }
 
-void add_leaves(const PyramidEntry& entry, NodeBlock& sum) {
-  for (int node = 0; node < block_nodes; ++node) {
-    const BlockValue from = block_values[node];
-    const float* value = entry.blocks[from.leaf] + from.offset;
-    for (int c = 0; c < 3; ++c) sum[c][node] += value[c];
-  }
-}
-
 using Enter = std::function<bool(int level, const LeafCoordinates& leaf)>;
 using Visit = std::function<void(const EntryCells&)>;
 
@@ -113,6 +105,14 @@ void visit_finest_cells(const PyramidIndex& index, std::size_t root, const Visit
 
 void visit_finest_cells(const PyramidIndex& index, std::size_t root, const Enter& enter, const Visit& visit) {
   Visitor(index, enter, visit).visit_root(root);
+}
+
+void add_leaves(const PyramidEntry& entry, NodeBlock& sum) {
+  for (int node = 0; node < block_nodes; ++node) {
+    const BlockValue from = block_values[node];
+    const float* value = entry.blocks[from.leaf] + from.offset;
+    for (int c = 0; c < 3; ++c) sum[c][node] += value[c];
+  }
 }
 
 void refine_block(const NodeBlock& coarse, int octant, NodeBlock& fine) {

@@ -51,6 +51,9 @@ void visit_finest_cells(const PyramidIndex& index, std::size_t root,
                         const std::function<bool(int level, const LeafCoordinates& leaf)>& enter,
                         const std::function<void(const EntryCells&)>& visit);
 
+/// Adds the values of an entry's own level at its nodes.
+void add_leaves(const PyramidEntry& entry, NodeBlock& sum);
+
 /// The upper half (octant bit set) or lower half of a block along each axis, interpolated onto nodes of half
 /// the size.
 void refine_block(const NodeBlock& coarse, int octant, NodeBlock& fine);
