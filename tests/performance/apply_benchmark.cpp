@@ -1,57 +1,184 @@
 #include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <random>
+#include <stdexcept>
+#include <string>
 
+#include "bespoke/apply/apply_points.h"
+#include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/parallel.h"
+#include "lookup_rivals.h"
+
+// Look-ups through all levels of a stored map: BESPOKE_MAP names the file, as `bespoke fit` writes it.
 
 namespace bespoke {
 namespace {
 
-// Leaves that fill a cube of the given edge (in leaves) at every level; values that vary.
-Pyramid full_cube(int level_count, int finest_edge) {
-  Pyramid pyramid;
-  for (int level = 0; level < level_count; ++level) {
-    PyramidLevel filled;
-    filled.voxel_size = std::ldexp(1.0, level_count - 1 - level);
-    const int edge = finest_edge >> (level_count - 1 - level);
-    for (int i = 0; i < edge; ++i)
-      for (int j = 0; j < edge; ++j)
-        for (int k = 0; k < edge; ++k) filled.leaves.push_back({i, j, k});
-    filled.values.resize(3 * leaf_nodes * filled.leaves.size());
-    for (std::size_t i = 0; i < filled.values.size(); ++i)
-      filled.values[i] = static_cast<float>(std::sin(0.001 * static_cast<double>(i)));
-    pyramid.levels.push_back(std::move(filled));
-  }
-  return pyramid;
+constexpr Eigen::Index coherent_count = 4'000'000;
+constexpr Eigen::Index random_count = 1'000'000;
+constexpr std::size_t points_per_chunk = 4096;
+
+const Asset& asset() {
+  static const Asset stored = [] {
+    const char* path = std::getenv("BESPOKE_MAP");
+    if (path == nullptr) throw std::runtime_error("set BESPOKE_MAP to a map that `bespoke fit` wrote");
+    return read_asset(path);
+  }();
+  return stored;
+}
+
+const Pyramid& pyramid() { return asset().steps.front().pyramid; }
+
+// A tenth wider than the source, so that a part lies outside the band, as of a product.
+Box region() {
+  Box box = asset().record.source.box;
+  const Vector3 margin = 0.1 * box.sizes();
+  return {box.min() - margin, box.max() + margin};
 }
 
 // A walk along rows of points, as a scanned mesh or a subdivided surface is stored.
-Points coherent_points(Eigen::Index count, double edge) {
-  Points x(3, count);
-  const auto side = static_cast<Eigen::Index>(std::cbrt(static_cast<double>(count))) + 1;
-  for (Eigen::Index i = 0; i < count; ++i)
-    x.col(i) = edge / static_cast<double>(side) *
-               Vector3(static_cast<double>(i / side / side), static_cast<double>(i / side % side),
-                       static_cast<double>(i % side));
-  return x;
+Points coherent_points() {
+  Points x(3, coherent_count);
+  const auto side = static_cast<Eigen::Index>(std::cbrt(static_cast<double>(coherent_count))) + 1;
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    x.col(i) = Vector3(static_cast<double>(i / side / side), static_cast<double>(i / side % side),
+                       static_cast<double>(i % side)) /
+               static_cast<double>(side);
+  return region().sizes().asDiagonal() * x + region().min().replicate(1, x.cols());
 }
 
-void Apply(benchmark::State& state, Eigen::Index count, bool coherent) {
-  const int finest_edge = 16;
-  const BakedMap map(AffineMap{}, full_cube(static_cast<int>(state.range(0)), finest_edge));
-  const double edge = finest_edge * leaf_edge;
-  const Points x =
-      coherent ? coherent_points(count, edge) : Points((Points::Random(3, count).array() * 0.5 + 0.5) * edge);
-  for (auto _ : state) benchmark::DoNotOptimize(map.displacement(x));
-  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * count);
+Points random_points() {
+  std::mt19937_64 engine(1);
+  std::uniform_real_distribution<double> fraction(0, 1);
+  const Points x = Points::NullaryExpr(3, random_count, [&] { return fraction(engine); });
+  return region().sizes().asDiagonal() * x + region().min().replicate(1, x.cols());
 }
 
-void ApplyCoherent(benchmark::State& state) { Apply(state, 10'000'000, true); }
-void ApplyRandom(benchmark::State& state) { Apply(state, 1'000'000, false); }
+const Points& points(bool coherent) {
+  static const Points in_rows = coherent_points(), anywhere = random_points();
+  return coherent ? in_rows : anywhere;
+}
 
-// Points per second of one core: the time is what all threads together took.
-BENCHMARK(ApplyCoherent)->Arg(1)->Arg(5)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK(ApplyRandom)->Arg(1)->Arg(5)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+// Times look_up(x, count, u) over chunks of points, with one thread or as many as the argument says. Points
+// per second of CPU time are those of one core; of wall-clock time, of all.
+template <class LookUp>
+void measure(benchmark::State& state, const LookUp& look_up, int threads = 1) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(threads));
+  const Points& x = points(state.range(0) == 0);
+  Points u = Points::Zero(3, x.cols());
+  for (auto _ : state)
+    parallel_for(static_cast<std::size_t>(x.cols()), points_per_chunk,
+                 [&](std::size_t begin, std::size_t end) {
+                   look_up(x.data() + 3 * begin, end - begin, u.data() + 3 * begin);
+                 });
+  benchmark::DoNotOptimize(u.data());
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * x.cols());
+  state.SetLabel(state.range(0) == 0 ? "in rows" : "in random order");
+}
+
+void measure_rival(benchmark::State& state, const std::shared_ptr<const LookUpRival>& rival) {
+  if (rival == nullptr) return state.SkipWithError("not built with this library");
+  measure(state, [&](const double* x, std::size_t count, double* u) { rival->look_up(x, count, u); });
+}
+
+const BrickAtlas& atlas() {
+  static const std::optional<BrickAtlas> made = make_brick_atlas(pyramid());
+  if (!made) throw std::runtime_error("this map has no atlas");
+  return *made;
+}
+
+void look_up_chunk(const double* x, std::size_t count, double* u) {
+  look_up(atlas(), {x, 3 * count}, {u, 3 * count});
+}
+
+void Atlas(benchmark::State& state) { measure(state, look_up_chunk, static_cast<int>(state.range(1))); }
+
+void AtlasGradient(benchmark::State& state) {
+  std::vector<double> gradient(9 * points_per_chunk);
+  measure(state, [&](const double* x, std::size_t count, double*) {
+    look_up_gradient(atlas(), {x, 3 * count}, std::span(gradient).first(9 * count));
+  });
+}
+
+void Levels(benchmark::State& state) {
+  static const BakedMap map({}, pyramid());
+  measure(state, [&](const double* x, std::size_t count, double* u) {
+    const Points at = Eigen::Map<const Points>(x, 3, static_cast<Eigen::Index>(count));
+    Eigen::Map<Points>(u, 3, at.cols()) = map.displacement(at);
+  });
+}
+
+void DenseArray(benchmark::State& state) {
+  static const auto rival = dense_array(pyramid(), region());
+  measure_rival(state, rival);
+}
+
+void OpenVdbBoxSampler(benchmark::State& state) {
+  static const auto rival = openvdb_box_sampler(pyramid());
+  measure_rival(state, rival);
+}
+
+void NanoVdbCachedSampler(benchmark::State& state) {
+  static const auto rival = nanovdb_cached_sampler(pyramid());
+  measure_rival(state, rival);
+}
+
+// The whole of the library's call: look-up, affine and rigid part, counts.
+void ApplyPoints(benchmark::State& state) {
+  static const ElasticChain map = loaded_chain(asset().steps);
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(1)));
+  const Points& x = points(state.range(0) == 0);
+  Points image(3, x.cols());
+  const auto size = static_cast<std::size_t>(x.size());
+  for (auto _ : state)
+    apply_points(map, asset().target_from_source, {{x.data(), size}, {image.data(), size}});
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()) * x.cols());
+  state.SetLabel(state.range(0) == 0 ? "in rows" : "in random order");
+}
+
+void MakeAtlas(benchmark::State& state) {
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(0)));
+  std::size_t bytes = 0;
+  for (auto _ : state) bytes = make_brick_atlas(pyramid())->byte_count();
+  const auto value_bytes = static_cast<double>(sizeof(float) * leaf_floats * pyramid().leaf_count());
+  state.counters["MB"] = 1e-6 * static_cast<double>(bytes);
+  state.counters["of_values"] = static_cast<double>(bytes) / value_bytes;
+}
+
+void OpenMap(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(read_asset(std::getenv("BESPOKE_MAP")));
+}
+
+void configure(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+void one_thread(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+}
+void one_and_two_threads(benchmark::internal::Benchmark* benchmark) {
+  for (const int order : {0, 1})
+    for (const int threads : {1, 2}) benchmark->Args({order, threads});
+  configure(benchmark);
+}
+
+BENCHMARK(Atlas)->Apply(one_and_two_threads);
+BENCHMARK(AtlasGradient)->Apply(one_thread);
+BENCHMARK(ApplyPoints)->Apply(one_and_two_threads);
+BENCHMARK(Levels)->Apply(one_thread);
+BENCHMARK(DenseArray)->Apply(one_thread);
+BENCHMARK(OpenVdbBoxSampler)->Apply(one_thread);
+BENCHMARK(NanoVdbCachedSampler)->Apply(one_thread);
+BENCHMARK(MakeAtlas)->Arg(1)->Arg(2)->Apply(configure);
+BENCHMARK(OpenMap)->Apply(configure);
 
 }  // namespace
 }  // namespace bespoke
