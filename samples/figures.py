@@ -146,7 +146,8 @@ def space(name, panels):
 def main():
     trail("fig01", [("linear blending, (1-t) x + t Psi(1)(x)", "linear"),
                     ("rigid and elastic part apart, Eq. 1", "elastic-first")])
-    trail("fig04", [("elastic part first, Eq. 1", "elastic-first"), ("rigid part first, Eq. 19", "rigid-first")])
+    trail("fig04", [("elastic part first, Eq. 1", "elastic-first"), ("rigid part first, elastic change read at x", "rigid-first"),
+                    ("rigid part first, E at the moving point, Eq. 19", "moving-point")])
     space("fig05", [("a plane of space around the source", "source"), ("anchors on the surfaces", "surface"),
                     ("and the corners of the boxes", "corners"), ("and four pulled outwards", "pulled")])
     row_of_views("fig06a", Pair("dress"), ("dress",), 3.2, (-25, 155), 1.6, 700, 340)
