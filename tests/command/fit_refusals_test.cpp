@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/mesh/mesh_io.h"
 #include "command/fit_command.h"
+#include "support/shapes.h"
 
 namespace bespoke::test {
 namespace {
@@ -15,10 +17,18 @@ using testing::Not;
 
 using FitRefusals = FitCommand;
 
-TEST_F(FitRefusals, NeedsAnchorsOrAFittedSource) {
+TEST_F(FitRefusals, SaysThatModelsWithoutAnchorsCannotBeAligned) {
+  write_triangle_mesh(pair_.file("ball.obj"), shapes::icosphere(3));
+  write_triangle_mesh(pair_.file("other_ball.obj"), shapes::icosphere(2));
   expect_refusal(
-      bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o", pair_.file("map.vdb")}), 1,
-      "--anchors");
+      bespoke({"fit", pair_.file("ball.obj"), pair_.file("other_ball.obj"), "-o", pair_.file("map.vdb")}), 3,
+      "give at least 4 anchors");
+}
+
+TEST_F(FitRefusals, NeedsAnchorsForWhatIsMadeOfThem) {
+  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
+                          pair_.file("map.vdb"), "--paper"}),
+                 1, "--anchors");
   expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
                           pair_.file("map.vdb"), "--fitted", pair_.file("source.obj"), "--add-corners"}),
                  1, "--add-corners");

@@ -51,8 +51,8 @@ struct FitArguments {
 };
 
 void require_consistent(const FitArguments& arguments) {
-  if (arguments.anchors.empty() && arguments.fitted.empty())
-    throw CLI::ValidationError("--anchors", "is required unless --fitted gives the fitted source");
+  if (arguments.paper && arguments.anchors.empty() && arguments.fitted.empty())
+    throw CLI::ValidationError("--paper", "has no alignment without anchors; it needs --anchors");
   if (arguments.add_corners && arguments.anchors.empty())
     throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
   if (arguments.anchor_sigma && arguments.anchors.empty())
@@ -121,7 +121,8 @@ void print_stages(const MadeMap& made, const Anchors& anchors) {
   for (const StageLine& stage : stage_lines(made.fit.summary, anchors))
     std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
   std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(made.asset)).c_str());
-  std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
+  if (!anchors.pairs.empty())
+    std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
 }
 
@@ -286,7 +287,9 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
                  "Reference model that products are designed around: OBJ, PLY, STL, OFF")
       ->required();
   fit.add_option("TARGET", arguments.target, "Reference model that products shall fit")->required();
-  fit.add_option("--anchors", arguments.anchors, "Pairs of corresponding points, JSON or CSV")
+  fit.add_option("--anchors", arguments.anchors,
+                 "Pairs of corresponding points, JSON or CSV (default: models in similar pose are aligned by "
+                 "their surfaces, or refused)")
       ->type_name("FILE");
   fit.add_option("-o,--output", arguments.output, "Asset to write")->required()->type_name("MAP.vdb");
   fit.add_option("--fitted", arguments.fitted,
@@ -334,6 +337,7 @@ void add_fit_command(CLI::App& app) {
   fit->footer(
       "Examples:\n"
       "  bespoke fit woman.obj man.obj --anchors pairs.json -o map.vdb\n"
+      "  bespoke fit woman.obj man.obj -o map.vdb\n"
       "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --paper --lambda 5%\n"
       "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb --report report.json");
   fit->callback([arguments] {

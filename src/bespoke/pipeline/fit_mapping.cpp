@@ -165,6 +165,55 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.seconds = watch.seconds();
 }
 
+/// Γ and H'_a by anchors. Returns these as the fit took them.
+Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                       const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  FitSummary& summary = result.summary;
+  RatedAnchors rated = rate_anchors(anchors, source, target);
+  summary.accuracy = std::move(rated.accuracy);
+  result.anchor_sigma = std::move(rated.sigmas);
+  Pairs pairs = pairs_of(rated.anchors);
+
+  // IV.A: Γ. From here on everything is in the source frame.
+  const Stopwatch rigid_watch;
+  progress.step("rigid", 0, 0);
+  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
+  const RigidTransform source_from_target = inverse(result.target_from_source);
+  pairs.targets = (source_from_target * pairs.targets).eval();
+  const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
+  summary.rigid = {false, rotation_angle(result.target_from_source),
+                   summarize(distances(pairs.sources, pairs.targets)), rigid_watch.seconds()};
+
+  // IV.B: Ẽ.
+  progress.step("coarse", 0, 0);
+  const Points warped = warp_coarsely(source, pairs, anchors, summary.coarse.emplace());
+
+  // IV.C: H'_a.
+  SurfaceFit fit = fit_surface(
+      {source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights, pairs.sigmas},
+      options.surface_fit, progress);
+  result.fitted_vertices = std::move(fit.vertices);
+  result.confidence = std::move(fit.confidence);
+  summary.surface = std::move(fit.summary);
+  summary.surface_method = options.surface_fit.method;
+  return rated.anchors;
+}
+
+/// Γ and H'_a by the two surfaces alone.
+void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                     const FitOptions& options, const Progress& progress) {
+  UnanchoredFit fit = fit_unanchored(source, target, options.surface_fit, progress);
+  FitSummary& summary = result.summary;
+  result.target_from_source = fit.target_from_source;
+  result.fitted_vertices = std::move(fit.surface.vertices);
+  result.confidence = std::move(fit.surface.confidence);
+  summary.rigid = {true, rotation_angle(fit.target_from_source),
+                   summarize(distances(source.vertices, fit.start)), 0};
+  summary.surface = std::move(fit.surface.summary);
+  summary.surface_method = options.surface_fit.method;
+  summary.unanchored = std::move(fit.summary);
+}
+
 }  // namespace
 
 void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
@@ -198,39 +247,15 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   require_usable(source, anchors, options);
   require_valid(target, "target");
   FittedMapping result;
-  FitSummary& summary = result.summary;
-  RatedAnchors rated = rate_anchors(anchors, source, target);
-  summary.accuracy = std::move(rated.accuracy);
-  result.anchor_sigma = std::move(rated.sigmas);
-  Pairs pairs = pairs_of(rated.anchors);
-
-  // IV.A: Γ. From here on everything is in the source frame.
-  const Stopwatch rigid_watch;
-  progress.step("rigid", 0, 0);
-  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
-  const RigidTransform source_from_target = inverse(result.target_from_source);
-  pairs.targets = (source_from_target * pairs.targets).eval();
-  const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
-  summary.rigid = {false, rotation_angle(result.target_from_source),
-                   summarize(distances(pairs.sources, pairs.targets)), rigid_watch.seconds()};
-
-  // IV.B: Ẽ.
-  progress.step("coarse", 0, 0);
-  const Points warped = warp_coarsely(source, pairs, anchors, summary.coarse.emplace());
-
-  // IV.C: H'_a.
-  SurfaceFit fit = fit_surface(
-      {source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights, pairs.sigmas},
-      options.surface_fit, progress);
-  result.fitted_vertices = std::move(fit.vertices);
-  result.confidence = std::move(fit.confidence);
-  summary.surface = std::move(fit.summary);
-  summary.surface_method = options.surface_fit.method;
-
+  Anchors rated;
+  if (anchors.pairs.empty())
+    lay_by_surfaces(result, source, target, options, progress);
+  else
+    rated = lay_by_anchors(result, source, target, anchors, options, progress);
   hold_parts_apart(result, source, options, progress);
 
   // IV.D, IV.E: E.
-  fit_elastic_map(result, source, rated.anchors, options, progress);
+  fit_elastic_map(result, source, rated, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
   return result;
 }

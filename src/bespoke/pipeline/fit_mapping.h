@@ -46,7 +46,9 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
 /// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact
 /// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
-/// which knows faces only, leaves them out). Throws InvalidInput, SolverError, MemoryLimitError.
+/// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
+/// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with
+/// certainty), MemoryLimitError.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 

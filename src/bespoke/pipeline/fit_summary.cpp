@@ -62,6 +62,7 @@ std::string to_string(const ElasticSummary& summary) {
 
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageLine> lines;
+  if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});
   lines.push_back({"rigid", to_string(summary.rigid)});

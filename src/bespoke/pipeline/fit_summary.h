@@ -10,6 +10,7 @@
 #include "bespoke/bake/bake.h"
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/flow/regional_motion.h"
+#include "bespoke/pipeline/fit_unanchored.h"
 #include "bespoke/pipeline/unmet_vertices.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/contact.h"
@@ -49,9 +50,10 @@ struct ElasticSummary {
 
 /// What every stage of a fit found.
 struct FitSummary {
-  AnchorAccuracy accuracy;  ///< of anchors that came without
+  std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
+  AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
-  std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given
+  std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given, or no anchors
   std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
@@ -67,11 +69,12 @@ std::string to_string(const ElasticSummary& summary);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic", "bake"
+  std::string
+      name;  ///< "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic", "bake"
   std::string line;
 };
 
-/// In their order; "accuracy" only where it found something.
+/// In their order; "alignment" without anchors only, "accuracy" only where it found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

@@ -69,6 +69,28 @@ Json to_json(const Certificate& certificate) {
           {"places", std::move(places)}};
 }
 
+Json to_json(const UnanchoredSummary& summary) {
+  const AlignmentSummary& alignment = summary.alignment;
+  Json json = {{"anchors", "none"},
+               {"confidence", alignment.confidence()},
+               {"misfit", alignment.misfit},
+               {"scale", alignment.scale},
+               {"residual", alignment.residual},
+               {"bending", alignment.bending},
+               {"matched", alignment.matched},
+               {"asymmetry", alignment.asymmetry},
+               {"same_boundaries", alignment.same_boundaries},
+               {"start", summary.from_deformed ? "deformed" : "similarity"},
+               {"both_directions", summary.of_both_directions},
+               {"disagreement", summary.disagreement},
+               {"distance", summary.placement.distance},
+               {"distortion", summary.placement.distortion},
+               {"covered", summary.placement.covered}};
+  if (alignment.next_misfit) json["next_misfit"] = *alignment.next_misfit;
+  if (alignment.mirror_misfit) json["mirror_misfit"] = *alignment.mirror_misfit;
+  return json;
+}
+
 Json to_json(const RigidSummary& summary) {
   return {{"pairs_of", summary.by_vertices ? "vertices" : "anchors"},
           {"pairs", summary.residuals.count},
@@ -180,6 +202,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     json.update(found);
     stages.push_back({std::move(json), seconds});
   };
+  if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);
   add("rigid", to_json(summary.rigid), summary.rigid.seconds);

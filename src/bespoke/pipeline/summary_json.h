@@ -22,6 +22,7 @@ Json to_json(const Statistics& statistics);
 Json to_json(const MeshFindings& findings);
 Json to_json(const BakeSummary& summary);
 Json to_json(const Certificate& certificate);
+Json to_json(const UnanchoredSummary& summary);
 Json to_json(const RigidSummary& summary);
 Json to_json(const CoarseSummary& summary, const Anchors& anchors);
 Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method);

@@ -1,0 +1,64 @@
+#include "bespoke/alignment/placement.h"
+
+#include <cmath>
+#include <string>
+
+#include "bespoke/alignment/detail/patch_deformation.h"
+#include "bespoke/alignment/detail/surface_patches.h"
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int patches = 600;        // as the alignment deforms
+constexpr double reach = 0.01;      // of the target's diagonal: farther parts were not found
+constexpr std::size_t grain = 256;  // vertices
+
+/// n: distances of points from a surface, mesh units.
+Eigen::VectorXd distances_from(const TriangleMesh& surface, const Points& points) {
+  const ClosestPointTree tree(surface);
+  Eigen::VectorXd distances(points.cols());
+  parallel_for(static_cast<std::size_t>(points.cols()), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      distances[i] = std::sqrt(tree.closest(points.col(i))->squared_distance);
+    }
+  });
+  return distances;
+}
+
+double distortion_of(const TriangleMesh& source, const Points& placed) {
+  const RefinedMesh fine = refine_long_edges(source, longest_edge_of_patches(source, patches));
+  Points fine_placed(3, fine.mesh.vertices.cols());
+  fine_placed.leftCols(placed.cols()) = placed;
+  for (Eigen::Index k = 0; k < fine.parents.cols(); ++k)
+    fine_placed.col(placed.cols() + k) =
+        (fine_placed.col(fine.parents(0, k)) + fine_placed.col(fine.parents(1, k))) / 2;
+  return distortion(fine.mesh, make_surface_patches(fine.mesh, patches), fine_placed);
+}
+
+}  // namespace
+
+PlacementFigures judge_placement(const TriangleMesh& source, const Points& placed,
+                                 const TriangleMesh& target) {
+  if (placed.cols() != source.vertices.cols())
+    throw InvalidInput(std::to_string(placed.cols()) + " places for " +
+                       std::to_string(source.vertices.cols()) + " vertices");
+  const TriangleMesh moved{placed, source.faces};
+  const Eigen::VectorXd areas = vertex_areas(moved), target_areas = vertex_areas(target);
+  const Eigen::VectorXd there = distances_from(target, placed);
+  const Eigen::VectorXd back = distances_from(moved, target.vertices);
+  const double unit = diagonal(target.vertices);
+  PlacementFigures figures;
+  figures.distance =
+      (there.dot(areas) / areas.sum() + back.dot(target_areas) / target_areas.sum()) / 2 / unit;
+  const Eigen::VectorXd near = (back.array() <= reach * unit).cast<double>();
+  figures.covered = near.dot(target_areas) / target_areas.sum();
+  figures.distortion = distortion_of(source, placed);
+  return figures;
+}
+
+}  // namespace bespoke

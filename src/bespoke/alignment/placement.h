@@ -1,0 +1,23 @@
+#pragma once
+
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// How well a source laid onto a target explains it; to choose among placements of one source by.
+struct PlacementFigures {
+  double distance =
+      0;  ///< mean of both surfaces' distances from the other, fraction of the target's diagonal
+  double distortion = 0;  ///< root mean square deviation from local similarities over some patches, fraction
+  double covered = 0;     ///< share of the target's area within 1 % of its diagonal of the source
+
+  /// Lower is better: as in an alignment's misfit, a likelihood whose variances are not known.
+  double misfit() const { return distance * distortion; }
+};
+
+/// `placed`: 3×n, where the source's vertices lie on the target, mesh units. Throws InvalidInput for unusable
+/// meshes or another number of vertices.
+PlacementFigures judge_placement(const TriangleMesh& source, const Points& placed,
+                                 const TriangleMesh& target);
+
+}  // namespace bespoke

@@ -1,0 +1,175 @@
+#include "bespoke/pipeline/fit_unanchored.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/rigid/rigid_alignment.h"
+#include "bespoke/statistics.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+/// Of the target's area that the fitted source must reach. Right fits of eleven pairs reach 0.9998 and more;
+/// where fingers or arms were left behind, 0.85 to 0.98 are reached.
+constexpr double least_covered = 0.99;
+
+/// Vertices at which the two directions lead: each some tenth of the diagonal from the next.
+constexpr std::size_t leading_vertices = 100;
+/// Of the diagonal: no anchor is taken for more accurate, as for those that people pick.
+constexpr double least_sigma = 1e-3;
+
+struct Candidate {
+  SurfaceFit surface;
+  PlacementFigures placement;
+};
+
+/// Anchors of limited accuracy.
+struct Leads {
+  std::vector<int> vertices;  // of the source
+  Points targets;             // 3×k, source frame
+  Eigen::VectorXd sigmas;     // k, mesh units
+};
+
+struct Scene {
+  const TriangleMesh& source;
+  const TriangleMesh& target;  // in the source frame
+  SurfaceFitOptions options;
+  const TriangleMesh& target_in_place;
+};
+
+SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, const TriangleMesh& fixed,
+                            const Leads& leads, const SurfaceFitOptions& options, const Progress& progress) {
+  const TriangleMesh started{start, moving.faces};
+  const Points sources = start(Eigen::all, leads.vertices);
+  // Where σ is not asked for, each counts like one per cent of the surface.
+  const Eigen::VectorXd weights = Eigen::VectorXd::Ones(sources.cols());
+  return fit_surface({started, start, fixed, sources, leads.targets, weights, leads.sigmas}, options,
+                     progress);
+}
+
+Candidate fit_from(const Points& start, const Scene& scene, const Leads& leads, const Progress& progress) {
+  Candidate candidate;
+  candidate.surface = fit_surface_from(start, scene.source, scene.target, leads, scene.options, progress);
+  candidate.placement = judge_placement(scene.source, candidate.surface.vertices, scene.target);
+  return candidate;
+}
+
+/// Vertices in faces, each the farthest from those before it.
+std::vector<int> spread_vertices(const TriangleMesh& mesh, std::size_t count) {
+  const Eigen::VectorXd areas = vertex_areas(mesh);
+  Eigen::VectorXd nearest =
+      (areas.array() > 0)
+          .select(std::numeric_limits<double>::infinity(), Eigen::VectorXd::Zero(areas.size()));
+  std::vector<int> chosen;
+  Eigen::Index next = 0;
+  while (chosen.size() < count && nearest.maxCoeff(&next) > 0) {
+    chosen.push_back(static_cast<int>(next));
+    nearest = nearest.cwiseMin(
+        (mesh.vertices.colwise() - mesh.vertices.col(next)).colwise().squaredNorm().transpose());
+  }
+  return chosen;
+}
+
+/// The middle between where a fit of the source takes some vertices and where a fit of the target comes from;
+/// half of the distance between the two is the accuracy. `back`: the target's vertices on the source.
+Leads leads_of(const Scene& scene, const Points& forward, const Points& back) {
+  const ClosestPointTree laid_back({back, scene.target.faces});
+  Leads leads;
+  leads.vertices = spread_vertices(scene.source, leading_vertices);
+  leads.targets = forward(Eigen::all, leads.vertices);
+  leads.sigmas.resize(leads.targets.cols());
+  const double least = least_sigma * diagonal(scene.source.vertices);
+  for (Eigen::Index k = 0; k < leads.targets.cols(); ++k) {
+    const int vertex = leads.vertices[static_cast<std::size_t>(k)];
+    const SurfacePoint foot = *laid_back.closest(scene.source.vertices.col(vertex));
+    Vector3 other = Vector3::Zero();
+    for (int corner = 0; corner < 3; ++corner)
+      other += foot.barycentric[corner] * scene.target.vertices.col(scene.target.faces(corner, foot.face));
+    const double apart = (other - leads.targets.col(k)).norm();
+    leads.targets.col(k) = (leads.targets.col(k) + other) / 2;
+    leads.sigmas[k] = std::max(apart / 2, least);
+  }
+  return leads;
+}
+
+/// Keeps the better of two; whether that is the other.
+bool take_better(Candidate& best, Candidate other) {
+  const bool better = other.placement.misfit() < best.placement.misfit();
+  if (better) best = std::move(other);
+  return better;
+}
+
+/// The best fit of all starts, which `summary` then names. `similar`, `deformed`: 3×n, source frame.
+Candidate best_fit(const Points& similar, const Points& deformed, const Alignment& alignment,
+                   const Scene& scene, UnanchoredSummary& summary, const Progress& progress) {
+  Candidate best = fit_from(similar, scene, {}, progress);
+  if (best.surface.summary.similarity_suffices) return best;
+  summary.from_deformed = take_better(best, fit_from(deformed, scene, {}, progress));
+
+  const Points back_start = summary.from_deformed
+                                ? alignment.target_deformed
+                                : Points(alignment.source_from_target * scene.target_in_place.vertices);
+  const SurfaceFit back =
+      fit_surface_from(back_start, scene.target, scene.source, {}, scene.options, progress);
+  const Leads leads = leads_of(scene, best.surface.vertices, back.vertices);
+  const std::vector<double> sigmas(leads.sigmas.begin(), leads.sigmas.end());
+  summary.disagreement = 2 * summarize(sigmas).median / diagonal(scene.target.vertices);
+  const Points& start = summary.from_deformed ? deformed : similar;
+  summary.of_both_directions = take_better(best, fit_from(start, scene, leads, progress));
+  return best;
+}
+
+void require_covered(const UnanchoredSummary& summary) {
+  if (summary.placement.covered >= least_covered) return;
+  throw SolverError(
+      "without anchors: the source does not reach all of the target, so parts of it went elsewhere; give at "
+      "least 4 anchors (--anchors): " +
+      to_string(summary));
+}
+
+}  // namespace
+
+std::string to_string(const UnanchoredSummary& summary) {
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "; fitted from the %s%s: %.2f %% of the target reached, distance %.3f %%, distortion %.1f %%",
+                summary.from_deformed ? "coarse deformation" : "similarity",
+                summary.of_both_directions ? ", in both directions" : "", 100 * summary.placement.covered,
+                100 * summary.placement.distance, 100 * summary.placement.distortion);
+  return to_string(summary.alignment) + text;
+}
+
+UnanchoredFit fit_unanchored(const TriangleMesh& source, const TriangleMesh& target,
+                             const SurfaceFitOptions& options, const Progress& progress) {
+  const Stopwatch watch;
+  const Alignment alignment = align_models(source, target, progress);
+  require_certain(alignment.summary);
+
+  UnanchoredFit fit;
+  fit.target_from_source =
+      align_rigidly(source.vertices, alignment.deformed, Eigen::VectorXd::Ones(source.vertices.cols()));
+  const RigidTransform source_from_target = inverse(fit.target_from_source);
+  const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
+  fit.start = source_from_target * alignment.deformed;
+  SurfaceFitOptions rules = options;
+  if (rules.boundaries == BoundaryRule::automatic)
+    rules.boundaries = alignment.summary.same_boundaries ? BoundaryRule::matched : BoundaryRule::free;
+
+  const Points similar = source_from_target * (alignment.target_from_source * source.vertices);
+  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target},
+                            fit.summary, progress);
+  fit.surface = std::move(best.surface);
+  fit.summary.alignment = alignment.summary;
+  fit.summary.placement = best.placement;
+  fit.summary.seconds = watch.seconds() - fit.surface.summary.seconds;
+  require_covered(fit.summary);
+  return fit;
+}
+
+}  // namespace bespoke

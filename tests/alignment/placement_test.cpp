@@ -1,0 +1,52 @@
+#include "bespoke/alignment/placement.h"
+
+#include <gtest/gtest.h>
+
+#include "bespoke/error.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+TriangleMesh ellipsoid() {
+  TriangleMesh mesh = shapes::icosphere(3);
+  mesh.vertices = Vector3(2, 1, 0.7).asDiagonal() * mesh.vertices;
+  return mesh;
+}
+
+TEST(JudgePlacement, FindsNothingWrongWithASimilarCopy) {
+  const TriangleMesh source = ellipsoid();
+  const Matrix3 rotation = Eigen::AngleAxisd(1.2, Vector3(1, -1, 2).normalized()).toRotationMatrix();
+  const TriangleMesh target{(3 * rotation * source.vertices).colwise() + Vector3(5, 6, 7), source.faces};
+  const PlacementFigures figures = judge_placement(source, target.vertices, target);
+  EXPECT_LT(figures.distance, 1e-9);
+  EXPECT_LT(figures.distortion, 1e-9);
+  EXPECT_NEAR(figures.covered, 1, 1e-12);
+}
+
+TEST(JudgePlacement, MeasuresTheDistanceOfAShiftedPlane) {
+  const TriangleMesh plane = shapes::square_grid(10);
+  const double offset = 0.002 * diagonal(plane.vertices);
+  const Points placed = plane.vertices.colwise() + Vector3(0, 0, offset);
+  const PlacementFigures figures = judge_placement(plane, placed, plane);
+  EXPECT_NEAR(figures.distance, 0.002, 1e-9);
+  EXPECT_LT(figures.distortion, 1e-9);
+}
+
+TEST(JudgePlacement, SeesThatHalfOfTheTargetIsLeftOut) {
+  const TriangleMesh plane = shapes::square_grid(40);
+  Points half = plane.vertices;
+  half.row(0) /= 2;
+  const PlacementFigures figures = judge_placement(plane, half, plane);
+  // What lies within 1 % of the diagonal beside the half counts too.
+  EXPECT_GT(figures.covered, 0.5);
+  EXPECT_LT(figures.covered, 0.55);
+  EXPECT_GT(figures.distortion, 0.1);
+}
+
+TEST(JudgePlacement, RejectsAnotherNumberOfVertices) {
+  EXPECT_THROW(judge_placement(shapes::cube(), Points::Zero(3, 2), shapes::cube()), InvalidInput);
+}
+
+}  // namespace
+}  // namespace bespoke

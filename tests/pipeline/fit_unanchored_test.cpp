@@ -1,0 +1,114 @@
+#include "bespoke/pipeline/fit_unanchored.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "samples.h"
+#include "support/random_points.h"
+
+namespace bespoke {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// Made once: the generator takes seconds.
+const Sample& glove() {
+  static const Sample sample = make_sample("glove");
+  return sample;
+}
+
+const Sample& shoe() {
+  static const Sample sample = make_sample("shoe");
+  return sample;
+}
+
+TriangleMesh mirror_image(TriangleMesh mesh) {
+  mesh.vertices.row(0) *= -1;
+  mesh.faces.row(0).swap(mesh.faces.row(1));
+  return mesh;
+}
+
+/// Mean distance of the anchors' counterparts from where the fit takes them, % of the target's diagonal.
+double anchor_error(const UnanchoredFit& fit, const TriangleMesh& source, const SampleTarget& target) {
+  const ClosestPointTree tree(source);
+  const Points placed = fit.target_from_source * fit.surface.vertices;
+  double sum = 0;
+  for (const AnchorPair& pair : target.anchors) {
+    const SurfacePoint foot = *tree.closest(pair.a);
+    Vector3 place = Vector3::Zero();
+    for (int k = 0; k < 3; ++k) place += foot.barycentric[k] * placed.col(source.faces(k, foot.face));
+    sum += (place - pair.b).norm();
+  }
+  return 100 * sum / double(target.anchors.size()) / diagonal(target.mesh.vertices);
+}
+
+TEST(FitUnanchored, FindsAHandWhereverItLies) {
+  const SampleTarget& target = glove().targets.front();
+  SampleTarget moved = target;
+  const Matrix3 turn = test::random_rotation(5);
+  const auto move = [&](const Vector3& x) -> Vector3 { return 2.5 * turn * x + Vector3(10, -4, 7); };
+  for (auto&& vertex : moved.mesh.vertices.colwise()) vertex = move(vertex);
+  for (AnchorPair& pair : moved.anchors) pair.b = move(pair.b);
+
+  const UnanchoredFit here = fit_unanchored(glove().source, target.mesh, {});
+  const UnanchoredFit there = fit_unanchored(glove().source, moved.mesh, {});
+  EXPECT_LT(anchor_error(here, glove().source, target), 2);
+  EXPECT_LT(anchor_error(there, glove().source, moved), 2);
+  EXPECT_EQ(here.summary.from_deformed, there.summary.from_deformed);
+  EXPECT_NEAR(there.summary.alignment.misfit, here.summary.alignment.misfit,
+              0.01 * here.summary.alignment.misfit);
+}
+
+TEST(FitUnanchored, RefusesAMirroredHand) {
+  EXPECT_THROW(fit_unanchored(glove().source, mirror_image(glove().targets.front().mesh), {}), SolverError);
+}
+
+TEST(FitUnanchored, RefusesAHandOnAFootAndSaysWhatToDo) {
+  try {
+    fit_unanchored(glove().source, shoe().targets.front().mesh, {});
+    FAIL() << "a hand was laid onto a foot";
+  } catch (const SolverError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("give at least 4 anchors"));
+  }
+}
+
+/// Real pairs whose true correspondence is known.
+class UnanchoredSharedCase : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(UnanchoredSharedCase, IsRightOrRefused) {
+  const fs::path folder = fs::path(BESPOKE_SHARED_DIR) / "cases" / GetParam();
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent";
+  const TriangleMesh source = read_triangle_mesh(folder / "reference_a.obj");
+  const TriangleMesh target = read_triangle_mesh(folder / "reference_b.obj");
+  Points truth(3, source.vertices.cols());
+  std::ifstream file(folder / "gt_a_on_b.xyz");
+  for (Eigen::Index i = 0; i < truth.size(); ++i) file >> truth(i);
+  ASSERT_TRUE(file);
+  UnanchoredFit fit;
+  try {
+    fit = fit_unanchored(source, target, {});
+  } catch (const SolverError& error) {
+    GTEST_SKIP() << "refused: " << error.what();
+  }
+  const Points off = fit.target_from_source * fit.surface.vertices - truth;
+  const double mean = 100 * off.colwise().norm().mean() / diagonal(source.vertices);
+  // The table without anchors in the repository's README.
+  std::cout << GetParam() << ": mean error " << mean << " %, " << to_string(fit.summary) << "\n";
+  EXPECT_LT(mean, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, UnanchoredSharedCase,
+                         ::testing::Values("d00_similarity_head", "d01_body_dress", "d02_body_suit",
+                                           "d03_head_glasses", "d04_hand_glove", "d05_foot_shoe",
+                                           "d06_head_hat", "d07_hard_toddler", "d08_pose_body",
+                                           "d10_hand_curl"));
+
+}  // namespace
+}  // namespace bespoke
