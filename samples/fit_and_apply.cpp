@@ -1,8 +1,7 @@
 // Maps the space around one model onto the space around another and carries a product across.
-#include <bespoke/apply/apply_mapping.h>
+#include <bespoke/apply/apply_to_product.h>
 #include <bespoke/asset/asset_io.h>
 #include <bespoke/mesh/mesh_io.h>
-#include <bespoke/mesh/product_io.h>
 #include <bespoke/pipeline/make_map.h>
 
 #include <cstdio>
@@ -21,12 +20,9 @@ int main(int argc, char** argv) try {
       bespoke::make_map({source, target, anchors}, bespoke::default_options(diagonal));
   bespoke::write_asset(argv[5], made.asset);
 
-  bespoke::Product product = bespoke::read_product(argv[4]);
-  const bespoke::AppliedPoints moved = bespoke::apply_mapping(*made.fit.elastic, made.fit.target_from_source,
-                                                              product.vertices, /*times=*/{1.0});
-  product.vertices = moved.frames[0];
-  bespoke::write_product(argv[6], product);
-  std::printf("%s\n", to_string(moved.summary).c_str());
+  const bespoke::ProductSummary moved = bespoke::apply_to_product(
+      argv[4], {argv[6]}, *made.fit.elastic, made.fit.target_from_source, /*times=*/{1.0});
+  std::printf("%s\n", to_string(moved.points).c_str());
 } catch (const bespoke::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

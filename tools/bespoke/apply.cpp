@@ -3,10 +3,12 @@
 #include <memory>
 #include <optional>
 
+#include "bespoke/apply/apply_to_product.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mesh/product_io.h"
+#include "bespoke/product/carry_product.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "name_option.h"
@@ -51,6 +53,27 @@ std::vector<fs::path> frame_paths(const fs::path& path, std::optional<int> frame
   return paths;
 }
 
+std::string ending(const fs::path& path) {
+  std::string text = path.extension().string();
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
+bool keeps_kind(const fs::path& product, const fs::path& output) { return ending(product) == ending(output); }
+
+void require_known_endings(const fs::path& product, const fs::path& output) {
+  if (keeps_kind(product, output)) {
+    if (!has_product_ending(output))
+      throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
+    return;
+  }
+  if (has_product_ending(output) && !is_mesh_ending(output))
+    throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
+  require_mesh_ending("apply", output);
+  require_mesh_ending("apply", product);
+}
+
 /// One list of frames a product.
 std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments) {
   if (arguments.output.empty() == arguments.out_dir.empty())
@@ -63,7 +86,7 @@ std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments)
   for (const std::string& product : arguments.products) {
     const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
                                                    : fs::path(arguments.output);
-    require_mesh_ending("apply", path);
+    require_known_endings(product, path);
     plan.push_back(frame_paths(path, arguments.frames));
     outputs.insert(outputs.end(), plan.back().begin(), plan.back().end());
   }
@@ -112,15 +135,22 @@ MotionOptions motion_options(const ApplyArguments& arguments, const Asset& asset
   return {path, order};
 }
 
-/// Throws InvalidInput, with the product's name, for products that cannot be moved.
-AppliedPoints apply_to(const std::string& name, const Product& product, const ElasticMap& elastic,
+/// Writes the faces of a product as another kind of file.
+ProductSummary convert(const std::string& name, const std::vector<fs::path>& paths, const ElasticMap& elastic,
                        const Asset& asset, const std::vector<double>& times, const MotionOptions& motion) {
-  if (product.vertices.cols() == 0) throw InvalidInput(name + ": has no vertices");
+  Product product = read_product(name);
+  AppliedPoints moved;
   try {
-    return apply_mapping(elastic, asset.target_from_source, product.vertices, times, motion);
+    moved = apply_mapping(elastic, asset.target_from_source, product.vertices, times, motion);
   } catch (const InvalidInput& error) {
     throw InvalidInput(name + ": " + error.what());
   }
+  for (std::size_t k = 0; k < paths.size(); ++k) {
+    product.vertices = std::move(moved.frames[k]);
+    write_product(paths[k], product);
+  }
+  return {
+      moved.summary, {"written as another kind of file: only faces and texture coordinates were kept"}, {}};
 }
 
 void run(const ApplyArguments& arguments, const Progress& progress) {
@@ -135,14 +165,14 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
   std::vector<AppliedProduct> applied;
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
     progress.step("apply", i, arguments.products.size());
-    Product product = read_product(arguments.products[i]);
-    AppliedPoints moved = apply_to(arguments.products[i], product, *elastic, asset, times(arguments), motion);
-    for (std::size_t k = 0; k < plan[i].size(); ++k) {
-      progress.check();
-      product.vertices = std::move(moved.frames[k]);
-      outputs.write(plan[i][k], [&](const fs::path& path) { write_product(path, product); });
-    }
-    applied.push_back({fs::path(arguments.products[i]).filename().string(), moved.summary});
+    const std::string& name = arguments.products[i];
+    ProductSummary summary = keeps_kind(name, plan[i].front())
+                                 ? apply_to_product(name, plan[i], *elastic, asset.target_from_source,
+                                                    times(arguments), motion, progress)
+                                 : convert(name, plan[i], *elastic, asset, times(arguments), motion);
+    outputs.add(plan[i]);
+    outputs.add(summary.companions);
+    applied.push_back({fs::path(name).filename().string(), std::move(summary)});
   }
   progress.step("apply", arguments.products.size(), arguments.products.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -151,8 +181,11 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
   outputs.keep();
 
   if (arguments.run.quiet) return;
-  for (std::size_t i = 0; i < applied.size(); ++i)
-    std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary).c_str());
+  for (std::size_t i = 0; i < applied.size(); ++i) {
+    std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary.points).c_str());
+    for (const std::string& warning : applied[i].summary.warnings)
+      std::fprintf(stderr, "bespoke: warning: %s: %s\n", arguments.products[i].c_str(), warning.c_str());
+  }
 }
 
 }  // namespace
@@ -163,7 +196,7 @@ void add_apply_command(CLI::App& app) {
   apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
   apply
       ->add_option("PRODUCT", arguments->products,
-                   "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+                   "Meshes or point sets around the source, by their endings: " + product_endings())
       ->required();
   apply->add_option("-o,--output", arguments->output, "File to write, for one product")->type_name("OUT");
   apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")

@@ -42,12 +42,16 @@ void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector
   }
 }
 
-void require_mesh_ending(const std::string& option, const fs::path& path) {
+bool is_mesh_ending(const fs::path& path) {
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   constexpr std::array known{".obj", ".ply", ".stl", ".off"};
-  if (std::find(known.begin(), known.end(), ending) == known.end())
+  return std::find(known.begin(), known.end(), ending) != known.end();
+}
+
+void require_mesh_ending(const std::string& option, const fs::path& path) {
+  if (!is_mesh_ending(path))
     throw CLI::ValidationError(option, path.string() + " must end in .obj, .ply, .stl or .off");
 }
 
@@ -59,6 +63,10 @@ OutputFiles::~OutputFiles() {
 void OutputFiles::write(const fs::path& path, const std::function<void(const fs::path&)>& writer) {
   writer(path);
   written_.push_back(path);
+}
+
+void OutputFiles::add(const std::vector<fs::path>& paths) {
+  written_.insert(written_.end(), paths.begin(), paths.end());
 }
 
 void OutputFiles::write_text(const fs::path& path, const std::string& text) {

@@ -12,6 +12,9 @@ namespace bespoke::command {
 void require_safe_outputs(const std::vector<std::filesystem::path>& inputs,
                           const std::vector<std::filesystem::path>& outputs);
 
+/// Whether the ending is that of a mesh format.
+bool is_mesh_ending(const std::filesystem::path& path);
+
 /// Refuses an ending that is not that of a mesh format. Throws CLI::ValidationError.
 void require_mesh_ending(const std::string& option, const std::filesystem::path& path);
 
@@ -26,6 +29,8 @@ class OutputFiles {
 
   void write(const std::filesystem::path& path,
              const std::function<void(const std::filesystem::path&)>& writer);
+  /// Files that have been written.
+  void add(const std::vector<std::filesystem::path>& paths);
   void write_text(const std::filesystem::path& path, const std::string& text);
   void keep() { written_.clear(); }
 

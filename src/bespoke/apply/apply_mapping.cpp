@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "bespoke/apply/detail/followed_chain.h"
 #include "bespoke/error.h"
-#include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -23,15 +23,6 @@ void require_finite(const Points& x, const std::vector<double>& times) {
   for (std::size_t i = 0; i < times.size(); ++i)
     if (!std::isfinite(times[i]))
       throw InvalidInput("time " + std::to_string(i) + " is not finite: " + std::to_string(times[i]));
-}
-
-/// The map as a chain whose steps the motion follows; null where it goes straight.
-const ElasticChain* followed_chain(const ElasticMap& elastic, const MotionOptions& motion) {
-  if (motion.path != RotationPath::flow) return nullptr;
-  if (motion.order != MappingOrder::elastic_first)
-    throw InvalidInput("the flow of a map has one order: the elastic part first");
-  const auto* chain = dynamic_cast<const ElasticChain*>(&elastic);
-  return chain != nullptr && chain->steps().size() > 1 ? chain : nullptr;
 }
 
 /// Whether elastic_argument answers x itself.

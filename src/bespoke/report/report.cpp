@@ -71,10 +71,11 @@ std::string apply_report(const std::vector<AppliedProduct>& products, const std:
   Json entries = Json::array();
   for (const AppliedProduct& product : products)
     entries.push_back({{"name", product.name},
-                       {"points", product.summary.points},
-                       {"in_band", product.summary.in_band},
-                       {"affine_only", product.summary.affine_only},
-                       {"seconds", product.summary.seconds}});
+                       {"points", product.summary.points.points},
+                       {"in_band", product.summary.points.in_band},
+                       {"affine_only", product.summary.points.affine_only},
+                       {"seconds", product.summary.points.seconds},
+                       {"warnings", product.summary.warnings}});
   const Json json = {{"command", "apply"},
                      {"times", times},
                      {"products", std::move(entries)},

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/apply/apply_mapping.h"
+#include "bespoke/apply/apply_to_product.h"
 #include "bespoke/pipeline/make_map.h"
 
 namespace bespoke {
@@ -18,7 +18,7 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
 
 struct AppliedProduct {
   std::string name;  ///< of the file, without its directory
-  ApplySummary summary;
+  ProductSummary summary;
 };
 
 /// What was applied at which times, as a JSON object.

@@ -1,0 +1,77 @@
+#include "bespoke/apply/apply_to_product.h"
+
+#include <algorithm>
+#include <atomic>
+#include <system_error>
+
+#include "bespoke/apply/motion_jacobian.h"
+#include "bespoke/error.h"
+#include "bespoke/product/carry_product.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+// A file that is open and a block of text in memory each; further frames look up and read once more.
+constexpr std::size_t frames_at_a_time = 16;
+
+/// The files of the groups of frames that are done; gone with the object unless all are.
+class Written {
+ public:
+  ~Written() {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : paths_) std::filesystem::remove(path, ignored);
+  }
+  void add(const std::vector<std::filesystem::path>& paths) {
+    paths_.insert(paths_.end(), paths.begin(), paths.end());
+  }
+  void keep() { paths_.clear(); }
+
+ private:
+  std::vector<std::filesystem::path> paths_;
+};
+
+}  // namespace
+
+ProductSummary apply_to_product(const std::filesystem::path& input,
+                                const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
+                                const RigidTransform& target_from_source, const std::vector<double>& times,
+                                const MotionOptions& motion, const Progress& progress) {
+  if (outputs.size() != times.size())
+    throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
+                       " times; the numbers must be equal");
+  const Stopwatch watch;
+  ProductSummary summary;
+  Written written;
+  for (std::size_t begin = 0; begin < times.size(); begin += frames_at_a_time) {
+    const std::size_t end = std::min(times.size(), begin + frames_at_a_time);
+    const auto first = static_cast<std::ptrdiff_t>(begin), last = static_cast<std::ptrdiff_t>(end);
+    const std::vector<double> own_times(times.begin() + first, times.begin() + last);
+    std::atomic<std::size_t> points = 0, in_band = 0;
+    PointMotion point_motion;
+    point_motion.frames = own_times.size();
+    point_motion.images = [&](const Points& x) {
+      AppliedPoints applied = apply_mapping(elastic, target_from_source, x, own_times, motion);
+      points += applied.summary.points;
+      in_band += applied.summary.in_band;
+      return std::move(applied.frames);
+    };
+    point_motion.jacobians = [&](const Points& x) {
+      return motion_jacobian(elastic, target_from_source, x, own_times, motion);
+    };
+    const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
+    CarrySummary carried = carry_product(input, own_outputs, point_motion, progress);
+    written.add(own_outputs);
+    written.add(carried.companions);
+    summary.warnings = std::move(carried.warnings);
+    summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
+    summary.points.points = points;
+    summary.points.in_band = in_band;
+  }
+  written.keep();
+  summary.points.affine_only = summary.points.points - summary.points.in_band;
+  summary.points.seconds = watch.seconds();
+  return summary;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "bespoke/parallel.h"
+#include "bespoke/product/detail/product_file.h"
+#include "bespoke/progress.h"
+
+namespace bespoke {
+
+/// Bytes of a file from `offset` on.
+struct Window {
+  std::string_view bytes;
+  std::uint64_t offset = 0;
+  bool is_last = false;  ///< the file ends here
+};
+
+/// Goes through a file from `begin` to its end in waves of blocks, so that reading a wave, working on the one
+/// before and merging the one before that go on at the same time.
+/// - cut(window) returns the whole blocks that the window begins with, each with its `bytes`, one behind the
+///   other; what they leave over is shown again with more behind it. Without any the window grows; of a last
+///   window nothing may be left over. Called in the order of the file.
+/// - work(block) returns a result; called on all threads.
+/// - merge(block, result) is called in the order of the file.
+/// Of several exceptions the one of the first block is thrown on, whatever the number of threads.
+template <class Cut, class Work, class Merge>
+void walk_blocks(const InputFile& file, std::uint64_t begin, const Cut& cut, const Work& work,
+                 const Merge& merge, const Progress& progress) {
+  using Block = typename std::invoke_result_t<Cut, const Window&>::value_type;
+  using Result = std::invoke_result_t<Work, const Block&>;
+  struct Wave {
+    std::unique_ptr<char[]> buffer;
+    std::uint64_t offset = 0;  ///< in the file, of the first byte behind the blocks
+    std::string_view rest;
+    std::vector<Block> blocks;
+    std::vector<std::optional<Result>> results;
+    std::vector<std::exception_ptr> failures;
+    std::exception_ptr failure;  ///< of reading and cutting, behind the blocks
+  };
+  constexpr std::size_t wave_size = std::size_t{1} << 24;
+
+  const auto read_after = [&](const Wave& before) {
+    Wave wave;
+    wave.offset = before.offset;
+    try {
+      for (std::size_t size = wave_size;; size *= 2) {
+        const std::uint64_t left = file.size() - before.offset;
+        const std::size_t whole =
+            static_cast<std::size_t>(std::min<std::uint64_t>(left, before.rest.size() + size));
+        if (whole == 0) {
+          cut(Window{{}, before.offset, true});  // which may miss something
+          break;
+        }
+        wave.buffer = std::make_unique_for_overwrite<char[]>(whole);
+        std::copy(before.rest.begin(), before.rest.end(), wave.buffer.get());
+        file.read(before.offset + before.rest.size(), wave.buffer.get() + before.rest.size(),
+                  whole - before.rest.size());
+        const std::string_view bytes(wave.buffer.get(), whole);
+        wave.blocks = cut(Window{bytes, before.offset, whole == left});
+        std::size_t used = 0;
+        for (const Block& block : wave.blocks) used += block.bytes.size();
+        wave.rest = bytes.substr(used);
+        wave.offset = before.offset + used;
+        if (used > 0 || whole == left) break;
+      }
+    } catch (...) {
+      wave.failure = std::current_exception();
+    }
+    wave.results.resize(wave.blocks.size());
+    wave.failures.resize(wave.blocks.size());
+    return wave;
+  };
+  const auto merge_all = [&](Wave& wave) {
+    for (std::size_t i = 0; i < wave.blocks.size(); ++i) {
+      if (wave.failures[i]) std::rethrow_exception(wave.failures[i]);
+      merge(wave.blocks[i], std::move(*wave.results[i]));
+    }
+    if (wave.failure) std::rethrow_exception(wave.failure);
+  };
+
+  Wave before, now;
+  before.offset = begin;
+  now = read_after(before);
+  before = Wave();
+  while (true) {
+    progress.check();
+    const bool is_last = now.blocks.empty() || now.failure;
+    Wave next;
+    parallel_for(now.blocks.size() + 1, 1, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        if (i == 0) {
+          merge_all(before);
+          if (!is_last) next = read_after(now);
+          continue;
+        }
+        try {
+          now.results[i - 1] = work(now.blocks[i - 1]);
+        } catch (...) {
+          now.failures[i - 1] = std::current_exception();
+        }
+      }
+    });
+    if (is_last) break;
+    before = std::move(now);
+    now = std::move(next);
+  }
+  merge_all(now);
+}
+
+}  // namespace bespoke

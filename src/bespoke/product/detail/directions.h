@@ -1,0 +1,15 @@
+#pragma once
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// Normals (3×n) where the motion has these Jacobians (3×3n): cof(J) n, as long as n. The cofactor matrix is
+/// the inverse transpose times the determinant, so that a normal stays on the side from which its faces are
+/// seen counter-clockwise. A normal that is zero or not finite stays as it is.
+Points moved_normals(const Points& normals, const Points& jacobians);
+
+/// Tangents: J t, as long as t.
+Points moved_tangents(const Points& tangents, const Points& jacobians);
+
+}  // namespace bespoke

@@ -1,0 +1,76 @@
+#include "bespoke/product/detail/obj_statements.h"
+
+namespace bespoke {
+
+ObjStatement obj_statement(std::string_view keyword) {
+  if (keyword.size() == 1) {
+    switch (keyword[0]) {
+      case 'v':
+        return ObjStatement::position;
+      case 'f':
+        return ObjStatement::face;
+      case 'l':
+        return ObjStatement::line;
+      case 'p':
+        return ObjStatement::point;
+    }
+    return ObjStatement::other;
+  }
+  if (keyword == "vt") return ObjStatement::texture;
+  if (keyword == "vn") return ObjStatement::normal;
+  if (keyword == "fo") return ObjStatement::face;  // what old programs call a face
+  if (keyword == "vp" || keyword == "curv" || keyword == "curv2" || keyword == "surf")
+    return ObjStatement::free_form;
+  return ObjStatement::other;
+}
+
+void count_obj(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
+  TextBlock block;
+  block.bytes = lines;
+  const std::filesystem::path unnamed;
+  TextWords words(block, unnamed, obj_syntax);
+  while (words.next_line()) {
+    if (*words.line_begin() != 'v') continue;
+    switch (obj_statement(words.word())) {
+      case ObjStatement::position:
+        ++sums[0];
+        break;
+      case ObjStatement::texture:
+        ++sums[1];
+        break;
+      case ObjStatement::normal:
+        ++sums[2];
+        break;
+      default:
+        break;
+    }
+  }
+}
+
+std::optional<ObjCorner> read_corner(std::string_view word) {
+  ObjCorner corner;
+  const char* at = word.data();
+  const char* const end = at + word.size();
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    const char* const begin = at;
+    while (at != end && *at != '/') ++at;
+    if (at != begin) {
+      if (!read_integer(begin, at, corner.index[kind]) || corner.index[kind] == 0) return std::nullopt;
+      if (kind == 2) corner.normal = {begin, static_cast<std::size_t>(at - begin)};
+    } else if (kind != 1) {
+      return std::nullopt;
+    }
+    if (at == end) {
+      // "v/" has neither texture coordinate nor normal.
+      return kind == 1 && begin == end ? std::nullopt : std::optional(corner);
+    }
+    ++at;
+  }
+  return std::nullopt;
+}
+
+NumberTriple read_triple(TextWords& words) {
+  return {words.number("x"), words.number("y"), words.number("z")};
+}
+
+}  // namespace bespoke

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace bespoke {
+
+/// A product's file, read by position, from several threads.
+class InputFile {
+ public:
+  /// Throws FileError when the file cannot be opened or is none, FormatError when it is empty.
+  explicit InputFile(std::filesystem::path path);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+
+  /// Throws FileError, also when the file has become shorter.
+  void read(std::uint64_t offset, char* to, std::size_t size) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_ = 0;
+};
+
+/// A file that is being written from its beginning to its end.
+class OutputFile {
+ public:
+  /// `name` is what messages call it. Throws FileError.
+  OutputFile(const std::filesystem::path& path, std::filesystem::path name);
+  ~OutputFile();
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&&) = delete;
+
+  const std::filesystem::path& name() const { return name_; }
+  void write(std::string_view bytes);
+
+ private:
+  std::filesystem::path name_;
+  int descriptor_;
+};
+
+/// Opens all of the files, gives them to `write`, and puts them into their places once it returns: all of
+/// them or, when it throws, none. Throws FileError, and what `write` throws.
+void write_outputs(const std::vector<std::filesystem::path>& paths,
+                   const std::function<void(std::vector<OutputFile>&)>& write);
+
+}  // namespace bespoke

@@ -1,0 +1,104 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "bespoke/product/carry_product.h"
+#include "support/scratch_directory.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int side = 1400;  // about 2 M vertices, 4 M triangles
+
+float height(int i, int j) { return static_cast<float>(std::sin(0.01 * i) * std::cos(0.013 * j)); }
+
+template <class Value>
+void append(std::string& text, Value value) {
+  text.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string obj_grid() {
+  std::string text;
+  char line[100];
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j) {
+      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", 0.1 * i, 0.1 * j,
+                    static_cast<double>(height(i, j)));
+      text += line;
+    }
+  for (int i = 1; i < side; ++i)
+    for (int j = 1; j < side; ++j) {
+      const int a = (i - 1) * side + j, b = a + 1, c = a + side, d = c + 1;
+      std::snprintf(line, sizeof line, "f %d %d %d\nf %d %d %d\n", a, c, b, b, c, d);
+      text += line;
+    }
+  return text;
+}
+
+std::string ply_grid() {
+  std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(side * side) +
+                     "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                     std::to_string(2 * (side - 1) * (side - 1)) +
+                     "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (int i = 0; i < side; ++i)
+    for (int j = 0; j < side; ++j)
+      for (const float value : {0.1f * static_cast<float>(i), 0.1f * static_cast<float>(j), height(i, j)})
+        append(text, value);
+  for (int i = 1; i < side; ++i)
+    for (int j = 1; j < side; ++j) {
+      const int a = (i - 1) * side + j - 1;
+      for (const int corners : {0, 1}) {
+        append(text, std::uint8_t{3});
+        append(text, corners == 0 ? a : a + 1);
+        append(text, a + side);
+        append(text, corners == 0 ? a + 1 : a + side + 1);
+      }
+    }
+  return text;
+}
+
+/// A turn and a shift: what is measured is the file, not the look-up.
+PointMotion affine_motion() {
+  const Matrix3 turn = Eigen::AngleAxisd(0.3, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  PointMotion motion;
+  motion.images = [turn](const Points& x) {
+    return std::vector<Points>{(turn * x).colwise() + Vector3(1, 2, 3)};
+  };
+  motion.jacobians = [turn](const Points& x) { return std::vector<Points>{turn.replicate(1, x.cols())}; };
+  return motion;
+}
+
+void Carry(benchmark::State& state, const char* name, const std::string& content) {
+  const test::ScratchDirectory directory;
+  const auto in = directory / name, out = directory / (std::string("out_") + name);
+  std::ofstream(in, std::ios::binary) << content;
+  for (auto _ : state) carry_product(in, {out}, affine_motion());
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * content.size()));
+}
+
+void Copy(benchmark::State& state, const std::string& content) {
+  const test::ScratchDirectory directory;
+  const auto in = directory / "in", out = directory / "out";
+  std::ofstream(in, std::ios::binary) << content;
+  for (auto _ : state) {
+    std::string bytes(content.size(), '\0');
+    std::ifstream(in, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(out, std::ios::binary) << bytes;
+  }
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * content.size()));
+}
+
+void CarryObj(benchmark::State& state) { Carry(state, "a.obj", obj_grid()); }
+void CarryPly(benchmark::State& state) { Carry(state, "a.ply", ply_grid()); }
+void CopyObj(benchmark::State& state) { Copy(state, obj_grid()); }
+
+// Bytes of the input per second on all cores.
+BENCHMARK(CarryObj)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(CarryPly)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(CopyObj)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace bespoke

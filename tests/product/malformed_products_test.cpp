@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <random>
+#include <vector>
+
+#include "product/product_files.h"
+
+namespace bespoke {
+namespace {
+
+using MalformedProducts = test::ProductFiles;
+using test::bytes;
+using test::identity_motion;
+using ::testing::HasSubstr;
+
+struct GoodFile {
+  std::string name, content;
+};
+
+std::string ply_body(const std::string& format) {
+  std::string text =
+      "ply\nformat " + format +
+      " 1.0\nelement vertex 40\nproperty float x\nproperty float y\nproperty double z\n"
+      "property float nx\nproperty float ny\nproperty float nz\nproperty list uchar short tags\n"
+      "element face 38\nproperty list uchar int vertex_indices\nend_header\n";
+  const bool big = format == "binary_big_endian", is_text = format == "ascii";
+  for (int i = 0; i < 40; ++i) {
+    if (is_text)
+      text +=
+          std::to_string(0.1 * i) + " 0.25 " + std::to_string(i * i) + " 0 0 1 1 " + std::to_string(i) + "\n";
+    else
+      text += bytes(0.1f * static_cast<float>(i), big) + bytes(0.25f, big) + bytes(1.0 * i * i, big) +
+              bytes(0.0f, big) + bytes(0.0f, big) + bytes(1.0f, big) + bytes(std::uint8_t{1}) +
+              bytes(static_cast<short>(i), big);
+  }
+  for (int i = 0; i < 38; ++i)
+    text += is_text
+                ? "3 " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n"
+                : bytes(std::uint8_t{3}) + bytes(i, big) + bytes(i + 1, big) + bytes(i + 2, big);
+  return text;
+}
+
+std::vector<GoodFile> good_files() {
+  std::string obj = "mtllib a.mtl\r\no thing\n", off = "NOFF\n30 28 0\n", xyz, csv = "id,x,y,z\n";
+  std::string stl = "solid s\n", binary_stl = std::string(80, 's') + bytes(20u);
+  for (int i = 1; i <= 30; ++i) {
+    const std::string x = std::to_string(0.5 * i) + " " + std::to_string(-1.0 * i * i) + " 1e-3";
+    obj += "v " + x + "\nvn 0 0 1\nvt 0.5 0.5\n";
+    off += x + " 0 0 1\n";
+    xyz += x + "\n";
+    csv += std::to_string(i) + "," + std::to_string(0.5 * i) + ",\"2\",3\n";
+  }
+  for (int i = 1; i <= 28; ++i) {
+    obj += "f " + std::to_string(i) + "/1/1 " + std::to_string(i + 1) + "/2/" + std::to_string(i) +
+           " -1/-1/-1\n";
+    off += "3 " + std::to_string(i - 1) + " " + std::to_string(i) + " " + std::to_string(i + 1) +
+           " 0.5 0.5 0.5\n";
+  }
+  for (int i = 0; i < 20; ++i) {
+    stl += "facet normal 0 0 1\nouter loop\nvertex 0 0 " + std::to_string(i) +
+           "\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    for (int k = 0; k < 12; ++k) binary_stl += bytes(static_cast<float>(i + k));
+    binary_stl += bytes(std::uint16_t{1});
+  }
+  return {{"a.obj", obj},
+          {"a.off", off},
+          {"a.xyz", xyz},
+          {"a.csv", csv},
+          {"a.stl", stl + "endsolid s\n"},
+          {"b.stl", binary_stl},
+          {"a.ply", ply_body("ascii")},
+          {"b.ply", ply_body("binary_little_endian")},
+          {"c.ply", ply_body("binary_big_endian")}};
+}
+
+/// One of the ways in which files are damaged.
+std::string damaged(const std::string& good, int way, std::mt19937& random) {
+  std::string text = good;
+  const auto somewhere = [&](std::size_t size) { return std::size_t{random()} % size; };
+  const std::size_t at = somewhere(text.size());
+  switch (way % 6) {
+    case 0:
+      return text.substr(0, at);
+    case 1:
+      text[at] = static_cast<char>(text[at] ^ (1 << somewhere(8)));
+      return text;
+    case 2: {  // a word less
+      const std::size_t begin = text.find_last_of(" \n,", at);
+      if (begin == std::string::npos) return text.substr(at);
+      return text.erase(begin, text.find_first_of(" \n,", begin + 1) - begin);
+    }
+    case 3: {  // a huge count or index
+      const std::size_t begin = text.find_first_of("0123456789", at);
+      if (begin == std::string::npos) return text.substr(0, at);
+      return text.replace(begin, 1, way % 2 ? "99999999999999999999" : "4000000000");
+    }
+    case 4:  // a piece twice
+      return text.insert(at, text.substr(at, 1 + somewhere(60)));
+    default:  // a piece of nothing
+      return text.replace(at, 1 + somewhere(16), std::string(1 + somewhere(16), way % 2 ? '\0' : '\xff'));
+  }
+}
+
+// The identity shows what was carried: a file that is accepted comes out whole.
+TEST_F(MalformedProducts, AreRefusedByNameOrCarriedWhole) {
+  std::mt19937 random(20);
+  int refused = 0, files = 0;
+  for (const GoodFile& good : good_files()) {
+    EXPECT_EQ(carried(good.name, good.content, identity_motion()), good.content);
+    for (int way = 0; way < 24; ++way, ++files) {
+      const std::string bad = damaged(good.content, way, random);
+      const auto start = std::chrono::steady_clock::now();
+      try {
+        EXPECT_EQ(carried(good.name, bad, identity_motion()), bad) << good.name << way;
+      } catch (const FormatError& error) {
+        EXPECT_THAT(error.what(), HasSubstr(good.name));
+        ++refused;
+      } catch (const InvalidInput& error) {
+        EXPECT_THAT(error.what(), HasSubstr(good.name));
+        ++refused;
+      }
+      EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << good.name << way;
+    }
+  }
+  EXPECT_GT(refused, files / 2);
+}
+
+}  // namespace
+}  // namespace bespoke
