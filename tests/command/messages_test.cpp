@@ -191,9 +191,9 @@ TEST(BadProducts, CannotBeWrittenInTheWantedFormat) {
   };
   expect_refusal(apply("v 0 0 0\nv 1 0 0\n", "out.stl"), 2, "STL holds triangles only, and there are none");
   // The map turns the axes, so that the largest float leaves its range.
-  expect_refusal(apply("v 3.4e38 3.4e38 3.4e38\n", "out.obj"), 2, "not finite in single precision");
+  expect_refusal(apply("v 3.4e38 3.4e38 3.4e38\n", "out.ply"), 2, "not finite in single precision");
   EXPECT_FALSE(pair.has("out.stl"));
-  EXPECT_FALSE(pair.has("out.obj"));
+  EXPECT_FALSE(pair.has("out.ply"));
 }
 
 // ---- assets

@@ -109,7 +109,7 @@ TEST_F(CarryObj, OfManyBlocksIsThatOfOne) {
   for (int i = 1; i <= count; ++i) {
     const std::string n = std::to_string(i);
     text += "v " + n + " 0 1.0000000\nvn 0 0 1\n";
-    doubled += "v " + std::to_string(2 * i) + ".0000000 0 2.0000000\nvn 0 0 1\n";
+    doubled += "v " + std::to_string(2 * i) + ".000 0 2.0000000\nvn 0 0 1\n";
     const std::string face = "f -1//-1 1//1 " + std::to_string(count) + "//" + n + "\n";
     text += face + comment;
     doubled += face + comment;

@@ -27,7 +27,7 @@ struct CarrySummary {
 /// back as it was keeps its characters.
 ///
 /// Blocks of a file are read, moved and written on all threads; memory does not grow with the file but for
-/// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending and for images
+/// the normals of OBJ files. Throws FileError, InvalidInput for an unknown ending and for images
 /// that the file's numbers cannot hold, FormatError naming the line, the byte or the element at fault, and
 /// what the motion throws. Each output is complete or untouched.
 CarrySummary carry_product(const std::filesystem::path& input,

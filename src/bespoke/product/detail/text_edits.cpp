@@ -26,7 +26,6 @@ Points values(const std::vector<NumberTriple>& triples) {
 
 void add_edits(const std::vector<NumberTriple>& triples, const Points& moved, int decimals,
                std::vector<NumberEdit>& edits) {
-  edits.reserve(edits.size() + 3 * triples.size());
   for (std::size_t i = 0; i < triples.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const NumberText& number = triples[i][axis];
