@@ -160,8 +160,6 @@ TEST(FitMapping, LeavesOutLooseAndMergesDuplicateVertices) {
 TEST(FitMapping, NamesWhatTheAnchorsLack) {
   Pair pair;
   const std::vector<AnchorPair> all = pair.anchors.pairs;
-  pair.anchors.pairs = {};
-  EXPECT_THAT(pair.message(), HasSubstr("3"));
   pair.anchors.pairs = {all[0], all[1]};
   EXPECT_THAT(pair.message(), HasSubstr("3"));
   pair.anchors.pairs = {all[0], all[1], all[2]};

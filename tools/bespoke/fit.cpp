@@ -7,6 +7,7 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/error.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"
@@ -178,6 +179,11 @@ void run(const FitArguments& arguments, const Progress& progress) {
   if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  if (!arguments.anchors.empty() && anchors.pairs.empty() && arguments.fitted.empty())
+    throw InvalidInput(
+        arguments.anchors +
+        ": the fit needs 3 anchor pairs that are not collinear; there are 0; without --anchors "
+        "models in similar pose are aligned by their surfaces");
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
   warn_of_contradictions(anchors);
