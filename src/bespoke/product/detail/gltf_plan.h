@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/product/detail/gltf_model.h"
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// What an accessor holds that is carried.
+enum class GltfRole { position, normal, tangent };
+
+/// One accessor to be carried.
+struct GltfTask {
+  GltfRole role = GltfRole::position;
+  std::size_t positions = 0;              ///< accessor of the vertices
+  std::size_t base = 0;                   ///< accessor of the role's values
+  std::optional<std::size_t> difference;  ///< accessor of a morph target: differences from the base
+  std::optional<std::size_t> difference_of_positions;  ///< of the same morph target, where it has one
+  std::size_t transform = 0;                           ///< in the plan
+  std::size_t result = 0;                              ///< accessor that the carried values belong to
+
+  std::size_t source() const { return difference.value_or(base); }
+  bool is_copy() const { return result != source(); }
+};
+
+/// Which accessors are carried, and under which transforms of the nodes that show them.
+struct GltfPlan {
+  std::vector<AffineMap> transforms;  ///< from a mesh into the scene
+  std::vector<GltfTask> tasks;
+  GltfJson json;  ///< with copies of meshes and accessors where one is shown in several places
+  std::vector<std::string> warnings;
+};
+
+/// Throws FormatError naming the JSON pointer at fault.
+GltfPlan plan_gltf(const GltfModel& model);
+
+}  // namespace bespoke
