@@ -58,58 +58,62 @@ ObjNormals::ObjNormals(const InputFile& file, const ObjContent& content, const P
   if (!content.more_uses.empty()) decide(all.normals, progress);
 }
 
-Points ObjNormals::use_positions(std::uint32_t normal) const {
-  const std::size_t begin = more_start_[normal], end = more_start_[normal + 1];
-  Points x(3, static_cast<Eigen::Index>(1 + end - begin));
-  x.col(0) = positions_.col(content_.first_use[normal]);
-  for (std::size_t use = begin; use < end; ++use)
-    x.col(static_cast<Eigen::Index>(1 + use - begin)) = positions_.col(content_.more_uses[use].second);
-  return x;
+void ObjNormals::add_uses(std::uint32_t normal, const Vector3& direction, Uses& uses) const {
+  uses.positions.push_back(positions_.col(content_.first_use[normal]));
+  for (std::size_t use = more_start_[normal]; use < more_start_[normal + 1]; ++use)
+    uses.positions.push_back(positions_.col(content_.more_uses[use].second));
+  uses.normals.resize(uses.positions.size(), direction);
 }
 
-// A use goes with the first earlier one whose normal would be written as the same number.
+/// For every frame one column a use.
+std::vector<Points> ObjNormals::images(const Uses& uses) const {
+  const auto count = static_cast<Eigen::Index>(uses.positions.size());
+  if (count == 0) return std::vector<Points>(frames_.size(), Points(3, 0));
+  const Eigen::Map<const Points> normals(uses.normals.front().data(), 3, count);
+  std::vector<Points> images =
+      motion_.jacobians(Eigen::Map<const Points>(uses.positions.front().data(), 3, count));
+  for (Points& image : images) image = moved_normals(normals, image);
+  return images;
+}
+
+/// A use goes with the first earlier one whose normal would be written as the same number. moved: 3×k, the
+/// images of all uses of these normals.
+void ObjNormals::rank_uses(const std::vector<std::uint32_t>& normals, const Points& moved, Frame& frame,
+                           std::vector<std::uint32_t>& lines) const {
+  const double tolerance = 0.5 * std::pow(10.0, -decimals_);
+  Eigen::Index at = 0;
+  for (const std::uint32_t normal : normals) {
+    std::vector<Eigen::Index> first_of{at++};
+    for (std::size_t use = more_start_[normal]; use < more_start_[normal + 1]; ++use, ++at) {
+      const auto same = std::find_if(first_of.begin(), first_of.end(), [&](Eigen::Index other) {
+        return (moved.col(at) - moved.col(other)).cwiseAbs().maxCoeff() <= tolerance;
+      });
+      frame.rank[use] = static_cast<std::uint32_t>(same - first_of.begin());
+      if (same == first_of.end()) first_of.push_back(at);
+    }
+    lines[normal] = static_cast<std::uint32_t>(first_of.size());
+  }
+}
+
 void ObjNormals::decide(const Points& normals, const Progress& progress) {
   constexpr std::size_t uses_at_a_time = std::size_t{1} << 17;
   const auto count = static_cast<std::uint32_t>(content_.first_use.size());
-  const double tolerance = 0.5 * std::pow(10.0, -decimals_);
   for (Frame& frame : frames_) frame.rank.assign(content_.more_uses.size(), 0);
   std::vector<std::vector<std::uint32_t>> lines(motion_.frames, std::vector<std::uint32_t>(count, 1));
-  for (std::uint32_t begin = 0; begin < count;) {
+  for (std::uint32_t normal = 0; normal < count;) {
     progress.check();
     std::vector<std::uint32_t> several;
-    std::vector<Vector3> x, n;
-    for (; begin < count && x.size() < uses_at_a_time; ++begin) {
-      if (more_start_[begin] == more_start_[begin + 1]) continue;
-      several.push_back(begin);
-      const Points places = use_positions(begin);
-      for (Eigen::Index i = 0; i < places.cols(); ++i) {
-        x.push_back(places.col(i));
-        n.push_back(normals.col(begin));
-      }
+    Uses uses;
+    for (; normal < count && uses.positions.size() < uses_at_a_time; ++normal) {
+      if (!is_of_several(normal)) continue;
+      several.push_back(normal);
+      add_uses(normal, normals.col(normal), uses);
     }
-    if (several.empty()) continue;
-    const auto points = static_cast<Eigen::Index>(x.size());
-    const std::vector<Points> jacobians =
-        motion_.jacobians(Eigen::Map<const Points>(x.front().data(), 3, points));
-    for (std::size_t f = 0; f < frames_.size(); ++f) {
-      const Points moved = moved_normals(Eigen::Map<const Points>(n.front().data(), 3, points), jacobians[f]);
-      Eigen::Index at = 0;
-      for (const std::uint32_t normal : several) {
-        std::vector<Eigen::Index> first_of{at};
-        for (std::size_t use = more_start_[normal]; use < more_start_[normal + 1]; ++use) {
-          ++at;
-          const auto same = std::find_if(first_of.begin(), first_of.end(), [&](Eigen::Index other) {
-            return (moved.col(at) - moved.col(other)).cwiseAbs().maxCoeff() <= tolerance;
-          });
-          frames_[f].rank[use] = static_cast<std::uint32_t>(same - first_of.begin());
-          if (same == first_of.end()) first_of.push_back(at);
-        }
-        ++at;
-        lines[f][normal] = static_cast<std::uint32_t>(first_of.size());
-      }
-    }
+    const std::vector<Points> moved = images(uses);
+    for (std::size_t f = 0; f < frames_.size(); ++f) rank_uses(several, moved[f], frames_[f], lines[f]);
   }
   for (std::size_t f = 0; f < frames_.size(); ++f) {
+    // Without a normal that becomes several no number changes.
     if (std::all_of(lines[f].begin(), lines[f].end(), [](std::uint32_t n) { return n == 1; })) continue;
     frames_[f].first_line.assign(count + 1, 0);
     std::partial_sum(lines[f].begin(), lines[f].end(), frames_[f].first_line.begin() + 1);
@@ -133,29 +137,19 @@ std::uint32_t ObjNormals::lines_before(std::size_t frame, std::uint32_t normals)
 
 std::vector<std::vector<Points>> ObjNormals::moved(std::uint32_t first, const Points& normals) const {
   const auto count = static_cast<std::uint32_t>(normals.cols());
-  std::vector<Vector3> x, n;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if (content_.first_use[first + i] == ObjContent::unused) continue;
-    const Points places = use_positions(first + i);
-    for (Eigen::Index k = 0; k < places.cols(); ++k) {
-      x.push_back(places.col(k));
-      n.push_back(normals.col(i));
-    }
-  }
+  const auto is_used = [&](std::uint32_t i) { return content_.first_use[first + i] != ObjContent::unused; };
+  Uses uses;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (is_used(i)) add_uses(first + i, normals.col(i), uses);
+  const std::vector<Points> moved = images(uses);
   std::vector<std::vector<Points>> result(frames_.size(), std::vector<Points>(count, Points(3, 0)));
-  if (x.empty()) return result;
-  const auto points = static_cast<Eigen::Index>(x.size());
-  const std::vector<Points> jacobians =
-      motion_.jacobians(Eigen::Map<const Points>(x.front().data(), 3, points));
   for (std::size_t f = 0; f < frames_.size(); ++f) {
-    const Points moved = moved_normals(Eigen::Map<const Points>(n.front().data(), 3, points), jacobians[f]);
     Eigen::Index at = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const std::uint32_t normal = first + i;
-      if (content_.first_use[normal] == ObjContent::unused) continue;
-      std::vector<Vector3> lines{moved.col(at++)};
-      for (std::size_t use = more_start_[normal]; use < more_start_[normal + 1]; ++use, ++at)
-        if (frames_[f].rank[use] == lines.size()) lines.push_back(moved.col(at));
+      if (!is_used(i)) continue;
+      std::vector<Vector3> lines{moved[f].col(at++)};
+      for (std::size_t use = more_start_[first + i]; use < more_start_[first + i + 1]; ++use, ++at)
+        if (frames_[f].rank[use] == lines.size()) lines.push_back(moved[f].col(at));
       result[f][i] =
           Eigen::Map<const Points>(lines.front().data(), 3, static_cast<Eigen::Index>(lines.size()));
     }

@@ -37,9 +37,17 @@ class ObjNormals {
     std::vector<std::uint32_t> rank;        ///< of every further use: which of the normal's lines
   };
 
+  /// Normals at the positions that use them, normal by normal, the first use first.
+  struct Uses {
+    std::vector<Vector3> positions, normals;
+  };
+
   void decide(const Points& normals, const Progress& progress);
-  Points use_positions(std::uint32_t normal) const;
-  std::uint32_t rank(std::size_t frame, std::size_t use) const;
+  bool is_of_several(std::uint32_t normal) const { return more_start_[normal] != more_start_[normal + 1]; }
+  void add_uses(std::uint32_t normal, const Vector3& direction, Uses& uses) const;
+  std::vector<Points> images(const Uses& uses) const;
+  void rank_uses(const std::vector<std::uint32_t>& normals, const Points& moved, Frame& frame,
+                 std::vector<std::uint32_t>& lines) const;
 
   const ObjContent& content_;
   const PointMotion& motion_;
