@@ -44,24 +44,59 @@ class CellFinder {
   std::vector<LeafTable> tables_;
 };
 
-using Triangle = std::array<Vector3, 3>;
+struct Corner {
+  Vector3 place;
+  FinestCell cell;
+};
+using Triangle = std::array<Corner, 3>;
 
-// Halves the longest edge where it exceeds `length`.
-void split_if_longer(const Triangle& triangle, double length, std::vector<Triangle>& parts) {
-  std::size_t longest = 0;
-  double squared = 0;
-  for (std::size_t edge = 0; edge < 3; ++edge) {
-    const double found = (triangle[(edge + 1) % 3] - triangle[edge]).squaredNorm();
-    if (found > squared) longest = edge;
-    squared = std::max(squared, found);
+/// Adds the cells along a triangle: its longest edge is halved until it is no longer than the finest voxel at
+/// its corners.
+class CellsAlong {
+ public:
+  CellsAlong(const Pyramid& pyramid, const CellFinder& finder, std::vector<FinestCell>& cells)
+      : pyramid_(pyramid), finder_(finder), cells_(cells) {}
+
+  void add(const Vector3& a, const Vector3& b, const Vector3& c) {
+    parts_.push_back({corner(a), corner(b), corner(c)});
+    while (!parts_.empty()) {
+      const Triangle part = parts_.back();
+      parts_.pop_back();
+      split_if_longer(part);
+    }
   }
-  if (!(squared > length * length)) return;
-  const Vector3 middle = 0.5 * (triangle[longest] + triangle[(longest + 1) % 3]);
-  for (const std::size_t kept : {longest, (longest + 1) % 3}) {
-    parts.push_back(triangle);
-    parts.back()[kept == longest ? (longest + 1) % 3 : longest] = middle;
+
+ private:
+  Corner corner(const Vector3& place) {
+    cells_.push_back(finder_.find(place));
+    return {place, cells_.back()};
   }
-}
+
+  void split_if_longer(const Triangle& triangle) {
+    double finest = std::numeric_limits<double>::infinity();
+    for (const Corner& corner : triangle)
+      finest = std::min(finest, pyramid_.levels[static_cast<std::size_t>(corner.cell.level)].voxel_size);
+    std::size_t longest = 0;
+    double squared = 0;
+    for (std::size_t edge = 0; edge < 3; ++edge) {
+      const double found = (triangle[(edge + 1) % 3].place - triangle[edge].place).squaredNorm();
+      if (found > squared) longest = edge;
+      squared = std::max(squared, found);
+    }
+    if (!(squared > finest * finest)) return;
+    const std::size_t next = (longest + 1) % 3;
+    const Corner middle = corner(0.5 * (triangle[longest].place + triangle[next].place));
+    for (const std::size_t replaced : {next, longest}) {
+      parts_.push_back(triangle);
+      parts_.back()[replaced] = middle;
+    }
+  }
+
+  const Pyramid& pyramid_;
+  const CellFinder& finder_;
+  std::vector<FinestCell>& cells_;
+  std::vector<Triangle> parts_;
+};
 
 }  // namespace
 
@@ -96,22 +131,12 @@ std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMe
   std::vector<std::vector<FinestCell>> found((faces + grain - 1) / grain);
   parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
     std::vector<FinestCell>& cells = found[begin / grain];
-    std::vector<Triangle> parts;
+    CellsAlong along(pyramid, finder, cells);
     for (std::size_t face = begin; face < end; ++face) {
       const auto corner = [&](int n) {
         return Vector3(surface.vertices.col(surface.faces(n, static_cast<Eigen::Index>(face))));
       };
-      parts.push_back({corner(0), corner(1), corner(2)});
-      while (!parts.empty()) {
-        const Triangle part = parts.back();
-        parts.pop_back();
-        double finest = std::numeric_limits<double>::infinity();
-        for (const Vector3& place : part) {
-          cells.push_back(finder.find(place));
-          finest = std::min(finest, pyramid.levels[static_cast<std::size_t>(cells.back().level)].voxel_size);
-        }
-        split_if_longer(part, finest, parts);
-      }
+      along.add(corner(0), corner(1), corner(2));
     }
     sort_unique(cells);
   });

@@ -107,7 +107,10 @@ bool reaches(const Bounds& bounds, const Center& center, double squared_lambda) 
 
 LayerEvaluator::LayerEvaluator(const Points& centers, const Points& coefficients, double lambda,
                                Wendland function)
-    : lambda_(lambda), function_(function), grid_(centers, lambda) {
+    : lambda_(lambda),
+      function_(function),
+      grid_(centers, lambda),
+      places_(centers(Eigen::all, grid_.order()), lambda) {
   if (coefficients.cols() != centers.cols() || !coefficients.allFinite())
     throw InvalidInput("radial layer of " + std::to_string(centers.cols()) + " centres and " +
                        std::to_string(coefficients.cols()) +
@@ -178,18 +181,12 @@ bool LayerEvaluator::within_reach(const Bounds& bounds) const {
 
 void LayerEvaluator::collect(const Bounds& bounds, std::vector<int>& nearby) const {
   nearby.clear();
-  const double squared_lambda = lambda_ * lambda_;
   const Vector3 low = Vector3(bounds.low[0], bounds.low[1], bounds.low[2]).array() - lambda_;
   const Vector3 high = Vector3(bounds.high[0], bounds.high[1], bounds.high[2]).array() + lambda_;
-  grid_.for_each_range(low, high, [&](int begin, int end) {
-    std::size_t kept = nearby.size();
-    nearby.resize(kept + std::size_t(end - begin));
-    for (int position = begin; position < end; ++position) {
-      nearby[kept] = position;
-      kept += reaches(bounds, sorted_[std::size_t(position)], squared_lambda);
-    }
-    nearby.resize(kept);
-  });
+  thread_local std::vector<CenterPlaces::Range> ranges;
+  ranges.clear();
+  grid_.for_each_range(low, high, [](int begin, int end) { ranges.push_back({begin, end}); });
+  places_.append_near(ranges, bounds.low, bounds.high, nearby);
 }
 
 void LayerEvaluator::narrow(const Bounds& bounds, const std::vector<int>& candidates,

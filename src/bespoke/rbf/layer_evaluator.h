@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bespoke/rbf/center_places.h"
 #include "bespoke/rbf/point_grid.h"
 #include "bespoke/types.h"
 
@@ -76,6 +77,7 @@ class LayerEvaluator {
   double lambda_;
   Wendland function_;
   PointGrid grid_;
+  CenterPlaces places_;         // in the grid's order
   std::vector<Center> sorted_;  // in the grid's order
   // One bit for each cell of a coarse lattice: set where a centre may lie within λ.
   std::vector<std::uint64_t> reach_;

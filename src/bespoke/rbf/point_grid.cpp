@@ -1,17 +1,17 @@
 #include "bespoke/rbf/point_grid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "bespoke/error.h"
 
 namespace bespoke {
 namespace {
 
-// 21 bits an axis fit a 64-bit key; beyond that many cells the edge grows.
+// Two places of 21 bits fit a key; beyond that many cells the edge grows.
 constexpr int max_cells = 1 << 20;
 
 void require_usable(const Points& points, double length, const char* name) {
@@ -27,7 +27,7 @@ void require_usable(const Points& points, double length, const char* name) {
 PointGrid::PointGrid(const Points& points, double cell) {
   require_usable(points, cell, "cell edge");
   const auto count = static_cast<std::size_t>(points.cols());
-  slots_.assign(1, {});
+  rows_.assign(1, {});
   if (count == 0) return;
   origin_ = points.rowwise().minCoeff();
   const Vector3 extent = points.rowwise().maxCoeff() - origin_;
@@ -35,33 +35,38 @@ PointGrid::PointGrid(const Points& points, double cell) {
   inverse_cell_ = 1 / edge;
   cells_ = (extent.array() * inverse_cell_).floor().min(max_cells).cast<int>() + 1;
 
-  std::vector<std::pair<std::uint64_t, int>> keyed(count);
+  using CellOfPoint = std::array<int, 4>;  // k, j, i, index of the point
+  std::vector<CellOfPoint> placed(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    const Cell cell_index = cell_of(points.col(column)).min(cells_ - 1);
-    keyed[i] = {key_of(cell_index.x(), cell_index.y(), cell_index.z()), static_cast<int>(i)};
+    const Cell cell_index = cell_of(points.col(static_cast<Eigen::Index>(i))).min(cells_ - 1);
+    placed[i] = {cell_index.z(), cell_index.y(), cell_index.x(), static_cast<int>(i)};
   }
-  std::sort(keyed.begin(), keyed.end());
+  std::sort(placed.begin(), placed.end());
 
   sorted_.resize(3, points.cols());
   order_.resize(count);
-  std::vector<Slot> occupied;
+  std::vector<Row> occupied;
   for (std::size_t position = 0; position < count; ++position) {
-    const auto [key, index] = keyed[position];
+    const auto [k, j, i, index] = placed[position];
     order_[position] = index;
     sorted_.col(static_cast<Eigen::Index>(position)) = points.col(index);
-    if (occupied.empty() || occupied.back().key != key)
-      occupied.push_back({key, static_cast<int>(position), static_cast<int>(position)});
+    const auto cells = static_cast<int>(cell_place_.size());
+    const bool begins_row = occupied.empty() || occupied.back().key != key_of(j, k);
+    if (begins_row) occupied.push_back({key_of(j, k), cells, cells});
+    if (!begins_row && cell_place_.back() == i) continue;
+    cell_place_.push_back(i);
+    cell_begin_.push_back(static_cast<int>(position));
     ++occupied.back().end;
   }
+  cell_begin_.push_back(static_cast<int>(count));
 
-  std::size_t slot_count = 4;
-  while (slot_count < 2 * occupied.size()) slot_count *= 2;
-  slots_.assign(slot_count, {});
-  for (const Slot& cell_range : occupied) {
-    std::size_t slot = first_slot(cell_range.key);
-    while (slots_[slot].begin < slots_[slot].end) slot = next_slot(slot);
-    slots_[slot] = cell_range;
+  std::size_t slots = 4;
+  while (slots < 2 * occupied.size()) slots *= 2;
+  rows_.assign(slots, {});
+  for (const Row& row : occupied) {
+    std::size_t slot = first_slot(row.key);
+    while (rows_[slot].begin < rows_[slot].end) slot = next_slot(slot);
+    rows_[slot] = row;
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,28 +34,32 @@ class PointGrid {
  private:
   using Cell = Eigen::Array3i;
   Cell cell_of(const Vector3& x) const;
-  /// Slot of a hash table: an occupied cell and the sorted positions of its points; empty where begin == end.
-  struct Slot {
+  /// Slot of a hash table: a row of cells along x, of which begin … end − 1 hold points; unused where
+  /// begin == end.
+  struct Row {
     std::uint64_t key = 0;
     int begin = 0;
     int end = 0;
   };
-  static std::uint64_t key_of(int i, int j, int k) {
-    return (static_cast<std::uint64_t>(k) << 42) | (static_cast<std::uint64_t>(j) << 21) |
-           static_cast<std::uint64_t>(i);
+  static std::uint64_t key_of(int j, int k) {
+    return (static_cast<std::uint64_t>(k) << 21) | static_cast<std::uint64_t>(j);
   }
   std::size_t first_slot(std::uint64_t key) const {
     // Fibonacci hashing: the high bits of the product mix all bits of the key.
-    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 20) & (slots_.size() - 1);
+    return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 20) & (rows_.size() - 1);
   }
-  std::size_t next_slot(std::size_t slot) const { return (slot + 1) & (slots_.size() - 1); }
+  std::size_t next_slot(std::size_t slot) const { return (slot + 1) & (rows_.size() - 1); }
 
   Points sorted_;           // 3×n in cell order
   std::vector<int> order_;  // sorted position → index
   Vector3 origin_ = Vector3::Zero();
   double inverse_cell_ = 1;
   Cell cells_ = Cell::Zero();  // number of cells along each axis
-  std::vector<Slot> slots_;    // a power of two of them, at most half occupied
+  // Of the cells that hold points, row after row: the place in the row, and the first sorted position, with
+  // one more at the end.
+  std::vector<int> cell_place_;
+  std::vector<int> cell_begin_;
+  std::vector<Row> rows_;  // a power of two of them, at most half used
 };
 
 /// Indices, increasing, of a subset no two of which are closer than `spacing`, and from which no point is
@@ -76,16 +82,18 @@ void PointGrid::for_each_range(const Vector3& low, const Vector3& high, const Vi
   const Cell first = cell_of(low).max(0);
   const Cell last = cell_of(high).min(cells_ - 1);
   for (int k = first.z(); k <= last.z(); ++k)
-    for (int j = first.y(); j <= last.y(); ++j)
-      for (int i = first.x(); i <= last.x(); ++i) {
-        const std::uint64_t key = key_of(i, j, k);
-        for (std::size_t slot = first_slot(key); slots_[slot].begin < slots_[slot].end;
-             slot = next_slot(slot)) {
-          if (slots_[slot].key != key) continue;
-          visit(slots_[slot].begin, slots_[slot].end);
-          break;
-        }
-      }
+    for (int j = first.y(); j <= last.y(); ++j) {
+      const std::uint64_t key = key_of(j, k);
+      std::size_t slot = first_slot(key);
+      while (rows_[slot].begin < rows_[slot].end && rows_[slot].key != key) slot = next_slot(slot);
+      const auto row_end = cell_place_.begin() + rows_[slot].end;
+      const auto from = std::lower_bound(cell_place_.begin() + rows_[slot].begin, row_end, first.x());
+      auto to = from;
+      while (to != row_end && *to <= last.x()) ++to;
+      if (from != to)
+        visit(cell_begin_[static_cast<std::size_t>(from - cell_place_.begin())],
+              cell_begin_[static_cast<std::size_t>(to - cell_place_.begin())]);
+    }
 }
 
 }  // namespace bespoke
