@@ -75,4 +75,17 @@ void CenterPlaces::append_near(const std::vector<Range>& ranges, const double* l
   near.resize(before + count);
 }
 
+CenterPlaces CenterPlaces::subset(const std::vector<int>& positions) const {
+  CenterPlaces result;
+  result.origin_ = origin_;
+  result.squared_reach_ = squared_reach_;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<float>& from = coordinates_[axis];
+    std::vector<float>& row = result.coordinates_[axis];
+    row.assign(positions.size() + width, 0);
+    for (std::size_t i = 0; i < positions.size(); ++i) row[i] = from[static_cast<std::size_t>(positions[i])];
+  }
+  return result;
+}
+
 }  // namespace bespoke

@@ -24,7 +24,11 @@ class CenterPlaces {
   void append_near(const std::vector<Range>& ranges, const double* low, const double* high,
                    std::vector<int>& near) const;
 
+  /// The places of some of the centres, by their positions; what it finds are indices into `positions`.
+  CenterPlaces subset(const std::vector<int>& positions) const;
+
  private:
+  CenterPlaces() = default;
   static constexpr int width = 16;
   using Lanes = float __attribute__((vector_size(width * sizeof(float))));
   struct Box;

@@ -239,8 +239,12 @@ void LayerEvaluator::evaluate_together(Block* blocks, std::size_t count, const B
 
 void LayerEvaluator::evaluate_among(const std::vector<int>& candidates, Block* blocks, std::size_t count,
                                     Order order, std::vector<int>& nearby) const {
+  const CenterPlaces among = places_.subset(candidates);
+  const std::vector<CenterPlaces::Range> all{{0, int(candidates.size())}};
   for (std::size_t b = 0; b < count; ++b) {
-    narrow(blocks[b].bounds, candidates, nearby);
+    nearby.clear();
+    among.append_near(all, blocks[b].bounds.low, blocks[b].bounds.high, nearby);
+    for (int& position : nearby) position = candidates[std::size_t(position)];
     sum(blocks[b], order, nearby.data(), int(nearby.size()));
   }
 }
