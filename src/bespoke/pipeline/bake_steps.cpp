@@ -1,10 +1,11 @@
 #include "bespoke/pipeline/bake_steps.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "bespoke/bake/error_points.h"
-#include "bespoke/lattice/baked_map.h"
+#include "bespoke/lattice/atlas_map.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -50,12 +51,20 @@ Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& st
   return summarize(std::move(errors));
 }
 
+/// The baked steps after one, looked up as products are: the rounding that this adds is far below a
+/// tolerance.
+using StepsAfter = std::vector<std::shared_ptr<const ElasticMap>>;
+
+void put_first(const MapStep& step, StepsAfter& after) {
+  after.insert(after.begin(), loaded_map(step.affine, step.pyramid));
+}
+
 /// One step, its error measured where the baked steps after it take it.
-Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const std::vector<MapStep>& after,
+Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const StepsAfter& after,
                BakeOptions options, const Progress& progress) {
   options.surface = &surface;
   if (after.empty()) return bake(exact, options, progress);
-  const ElasticChain then = baked_chain(after);
+  const ElasticChain then(after);
   options.then = &then;
   return bake(exact, options, progress);
 }
@@ -66,7 +75,11 @@ BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfac
                     const Progress& progress) {
   BakedSteps baked = std::move(done);
   std::size_t used = 0;
-  for (const MapStep& step : baked.steps) used += step.pyramid.leaf_count();
+  StepsAfter after;
+  for (auto step = baked.steps.rbegin(); step != baked.steps.rend(); ++step) {
+    used += step->pyramid.leaf_count();
+    put_first(*step, after);
+  }
   for (std::size_t k = exact.steps().size() - baked.steps.size(); k-- > 0;) {
     const ElasticMap& map = *exact.steps()[k];
     BakeOptions step_options = options;
@@ -74,12 +87,13 @@ BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfac
     const std::size_t shares = k + (k > 0 && !divisible.empty() ? 2 : 1);
     if (options.max_leaves)
       step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
-    Bake step = bake_step(map, {surfaces[k], faces}, baked.steps, step_options, progress);
+    Bake step = bake_step(map, {surfaces[k], faces}, after, step_options, progress);
     used += step.pyramid.leaf_count();
     Certificate certificate = certify(step.pyramid, map.affine(), 1, progress);
     baked.steps.insert(baked.steps.begin(), {map.affine(), std::move(step.pyramid), std::move(certificate)});
     baked.summaries.insert(baked.summaries.begin(), std::move(step.summary));
     if (is_to_be_divided(baked, divisible)) break;
+    if (k > 0) put_first(baked.steps.front(), after);
   }
   return baked;
 }
