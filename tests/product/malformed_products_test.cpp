@@ -4,7 +4,8 @@
 #include <random>
 #include <vector>
 
-#include "product/product_files.h"
+#include "bespoke/product/detail/gltf_file.h"
+#include "product/gltf_scene.h"
 
 namespace bespoke {
 namespace {
@@ -41,6 +42,23 @@ std::string ply_body(const std::string& format) {
   return text;
 }
 
+/// Skinned, morphing, shown twice, with a sparse accessor.
+test::GltfScene gltf_scene() {
+  test::GltfScene scene = test::morphing_triangle();
+  scene.root["nodes"] = {{{"mesh", 0}, {"children", {1}}, {"translation", {0.5, 0, 0}}},
+                         {{"mesh", 0}, {"rotation", {0, 0.6, 0, 0.8}}},
+                         {{"mesh", 1}, {"skin", 0}}};
+  scene.root["skins"] = {{{"joints", {1}}}};
+  const int sparse = scene.accessor(std::vector<float>(12, 0.25f), "VEC3", 5126);
+  const int at = scene.accessor(std::vector<std::uint16_t>{1, 3}, "SCALAR", 5123);
+  const int with = scene.accessor(std::vector<float>(6, 2.0f), "VEC3", 5126);
+  scene.root["accessors"][5]["sparse"] = {{"count", 2},
+                                          {"indices", {{"bufferView", at}, {"componentType", 5123}}},
+                                          {"values", {{"bufferView", with}}}};
+  scene.root["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", sparse}}}}}}});
+  return scene;
+}
+
 std::vector<GoodFile> good_files() {
   std::string obj = "mtllib a.mtl\r\no thing\n", off = "NOFF\n30 28 0\n", xyz, csv = "id,x,y,z\n";
   std::string stl = "solid s\n", binary_stl = std::string(80, 's') + bytes(20u);
@@ -71,7 +89,9 @@ std::vector<GoodFile> good_files() {
           {"b.stl", binary_stl},
           {"a.ply", ply_body("ascii")},
           {"b.ply", ply_body("binary_little_endian")},
-          {"c.ply", ply_body("binary_big_endian")}};
+          {"c.ply", ply_body("binary_big_endian")},
+          {"a.glb", gltf_scene().glb()},
+          {"a.gltf", gltf_scene().gltf(data_uri_of("data:;base64,", gltf_scene().data))}};
 }
 
 /// One of the ways in which files are damaged.

@@ -18,8 +18,10 @@ struct Format {
   CarrySummary (*carry)(const InputFile&, std::vector<OutputFile>&, const PointMotion&, const Progress&);
 };
 
-constexpr std::array formats{Format{".obj", carry_obj}, Format{".ply", carry_ply}, Format{".stl", carry_stl},
-                             Format{".off", carry_off}, Format{".xyz", carry_xyz}, Format{".csv", carry_csv}};
+constexpr std::array formats{Format{".obj", carry_obj},   Format{".ply", carry_ply},
+                             Format{".stl", carry_stl},   Format{".off", carry_off},
+                             Format{".gltf", carry_gltf}, Format{".glb", carry_gltf},
+                             Format{".xyz", carry_xyz},   Format{".csv", carry_csv}};
 
 const Format* find_format(const fs::path& path) {
   std::string ending = path.extension().string();

@@ -20,5 +20,7 @@ CarrySummary carry_xyz(const InputFile& file, std::vector<OutputFile>& outputs, 
                        const Progress& progress);
 CarrySummary carry_csv(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
                        const Progress& progress);
+CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
+                        const Progress& progress);
 
 }  // namespace bespoke

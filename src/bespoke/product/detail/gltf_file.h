@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bespoke/product/detail/gltf_json.h"
+#include "bespoke/product/detail/product_file.h"
+
+namespace bespoke {
+
+/// A glTF file, .gltf or .glb, with the bytes of its buffers.
+struct GltfFile {
+  std::filesystem::path path;
+  bool is_binary = false;
+  std::string text;  ///< the JSON, as it stands in the file
+  GltfJson json;
+  std::vector<std::string> buffers;
+  std::string chunks_behind;  ///< of a .glb, behind its JSON and the first buffer
+
+  GltfPart root() const { return {path, json, ""}; }
+  /// Whether the first buffer is the .glb's second chunk.
+  bool has_binary_chunk() const;
+};
+
+/// Throws FileError, also for a buffer beside the file, and FormatError naming the byte or the JSON pointer.
+GltfFile read_gltf(const InputFile& file);
+
+/// Writes the file with this JSON text and these bytes of its binary chunk, if it has one.
+void write_gltf(const GltfFile& file, std::string_view text, std::string_view binary, OutputFile& output);
+
+/// Whether a buffer's uri holds its bytes.
+bool is_data_uri(std::string_view uri);
+/// The uri of the same kind of data with these bytes.
+std::string data_uri_of(std::string_view uri, std::string_view bytes);
+
+/// A relative uri as a file's name, and the other way: a blank is "%20".
+std::string file_name_of_uri(std::string_view uri);
+std::string uri_of_file_name(std::string_view name);
+
+}  // namespace bespoke

@@ -1,0 +1,138 @@
+#include "bespoke/product/detail/gltf_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+// Joints hold a mesh in its bind pose where they agree this well about its place, relative to the sizes that
+// are added up: far above the rounding of the file's floats, far below any pose.
+constexpr double pose_tolerance = 1e-4;
+
+/// (a ∘ b)(x) = a(b(x)).
+AffineMap composed(const AffineMap& a, const AffineMap& b) { return {a.linear * b.linear, a * b.offset}; }
+
+AffineMap affine_of(const Eigen::Matrix4d& matrix) {
+  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
+}
+
+AffineMap local_transform(const GltfPart& node) {
+  if (node.has("matrix"))
+    return affine_of(
+        Eigen::Map<const Eigen::Matrix4d>(node.numbers("matrix", Eigen::VectorXd::Zero(16)).eval().data()));
+  const Eigen::VectorXd q = node.numbers("rotation", Eigen::Vector4d(0, 0, 0, 1));
+  const Eigen::VectorXd scale = node.numbers("scale", Eigen::VectorXd::Ones(3));
+  AffineMap map;
+  const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
+  if (!(rotation.norm() > 0)) node.fail_at("rotation", "has no axis");
+  // The identity stays so to the last bit.
+  if (rotation.vec() != Vector3::Zero()) map.linear = rotation.normalized().toRotationMatrix();
+  map.linear = (map.linear * scale.asDiagonal()).eval();
+  map.offset = node.numbers("translation", Eigen::VectorXd::Zero(3));
+  return map;
+}
+
+/// From every node into the scene.
+std::vector<AffineMap> scene_transforms(const std::vector<GltfPart>& nodes) {
+  std::vector<std::optional<std::size_t>> parent(nodes.size());
+  std::vector<std::vector<std::size_t>> children;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    children.push_back(nodes[i].indices("children", nodes.size()));
+    for (const std::size_t child : children.back()) {
+      if (parent[child]) nodes[child].fail("is the child of two nodes");
+      parent[child] = i;
+    }
+  }
+  std::vector<AffineMap> scene_from_node(nodes.size());
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (!parent[i]) order.push_back(i);
+  for (std::size_t at = 0; at < order.size(); ++at) {
+    const std::size_t node = order[at];
+    const AffineMap local = local_transform(nodes[node]);
+    scene_from_node[node] = parent[node] ? composed(scene_from_node[*parent[node]], local) : local;
+    order.insert(order.end(), children[node].begin(), children[node].end());
+  }
+  if (order.size() == nodes.size()) return scene_from_node;
+  std::sort(order.begin(), order.end());
+  std::size_t missing = 0;  // whoever has no root above it is in a circle, or below one
+  while (missing < order.size() && order[missing] == missing) ++missing;
+  nodes[missing].fail("is below itself");
+}
+
+struct BindPose {
+  AffineMap scene_from_mesh;
+  bool is_shown = true;  ///< the joints stand so in the file
+};
+
+/// In the bind pose all joints hold the mesh at one place; where they stand otherwise the place is unknown.
+BindPose bind_pose(const GltfFile& file, const GltfPart& skin, const std::vector<AffineMap>& scene_from_node,
+                   const std::vector<GltfAccessor>& accessors) {
+  const std::vector<std::size_t> joints = skin.indices("joints", scene_from_node.size());
+  const auto inverse_binds = skin.index("inverseBindMatrices", accessors.size());
+  if (joints.empty()) skin.fail_at("joints", "are none");
+  GltfValues matrices = GltfValues(Eigen::Matrix4f::Identity().reshaped()).replicate(1, joints.size());
+  if (inverse_binds) {
+    if (accessors[*inverse_binds].components != 16 || accessors[*inverse_binds].count < joints.size())
+      skin.fail_at("inverseBindMatrices", "is not one matrix a joint");
+    matrices = read_values(accessors[*inverse_binds], file.buffers, 0, joints.size());
+  }
+  BindPose pose;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const AffineMap& joint = scene_from_node[joints[i]];
+    const Eigen::Matrix4d matrix = matrices.col(static_cast<Eigen::Index>(i)).cast<double>().reshaped(4, 4);
+    const AffineMap bind = affine_of(matrix);
+    const AffineMap held = composed(joint, bind);
+    if (i == 0) pose.scene_from_mesh = held;
+    const AffineMap& first = pose.scene_from_mesh;
+    const double reach = joint.offset.norm() + joint.linear.norm() * bind.offset.norm();
+    pose.is_shown = pose.is_shown &&
+                    (held.linear - first.linear).norm() <= pose_tolerance * first.linear.norm() &&
+                    (held.offset - first.offset).norm() <= pose_tolerance * reach;
+  }
+  if (!pose.is_shown) pose.scene_from_mesh = AffineMap();
+  return pose;
+}
+
+}  // namespace
+
+GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& accessors) {
+  const std::vector<GltfPart> nodes = file.root().elements("nodes");
+  const std::vector<GltfPart> skins = file.root().elements("skins");
+  const std::size_t meshes = file.root().elements("meshes").size();
+  const std::vector<AffineMap> scene_from_node = scene_transforms(nodes);
+  GltfScene scene;
+  std::size_t bound = 0, posed = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto mesh = nodes[i].index("mesh", meshes);
+    const auto skin = nodes[i].index("skin", skins.size());
+    if (!mesh) continue;
+    if (nodes[i].has("extensions") && nodes[i].member("extensions").has("EXT_mesh_gpu_instancing"))
+      throw InvalidInput(file.path.string() + ": " + nodes[i].pointer() +
+                         ": shows instances (EXT_mesh_gpu_instancing); make them nodes first");
+    GltfShown shown{i, *mesh, scene_from_node[i]};
+    if (skin) {
+      const BindPose pose = bind_pose(file, skins[*skin], scene_from_node, accessors);
+      shown.scene_from_mesh = pose.scene_from_mesh;
+      ++(pose.is_shown ? bound : posed);
+    }
+    const double determinant = shown.scene_from_mesh.linear.determinant();
+    if (!(std::abs(determinant) > 0 && std::isfinite(1 / determinant)))
+      nodes[i].fail("places its mesh flat, which cannot be undone");
+    scene.shown.push_back(std::move(shown));
+  }
+  if (bound > 0)
+    scene.warnings.emplace_back("a skinned mesh was carried in its bind pose; its skin was left as it is");
+  if (posed > 0)
+    scene.warnings.emplace_back(
+        "a skinned mesh is not shown in its bind pose; its vertices were carried where they are stored, and "
+        "its skin "
+        "was left as it is");
+  return scene;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bespoke/product/detail/gltf_accessor.h"
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// A mesh where a node shows it.
+struct GltfShown {
+  std::size_t node = 0, mesh = 0;
+  AffineMap scene_from_mesh;  ///< can be undone
+};
+
+struct GltfScene {
+  std::vector<GltfShown> shown;
+  std::vector<std::string> warnings;
+};
+
+/// Which meshes the nodes show, and where. A skinned mesh is where its joints hold it in its bind pose, not
+/// where its node is. Throws FormatError naming the JSON pointer at fault, and InvalidInput for instances.
+GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& accessors);
+
+}  // namespace bespoke

@@ -1,0 +1,176 @@
+#include "bespoke/product/detail/gltf_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <tuple>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+struct RoleOfAttribute {
+  const char* name;
+  GltfRole role;
+  const char* type;
+};
+constexpr std::array<RoleOfAttribute, 3> roles{{{"POSITION", GltfRole::position, "VEC3"},
+                                                {"NORMAL", GltfRole::normal, "VEC3"},
+                                                {"TANGENT", GltfRole::tangent, "VEC4"}}};
+
+class Planner {
+ public:
+  Planner(const GltfFile& file, const std::vector<GltfAccessor>& accessors)
+      : file_(file), accessors_(accessors), stays_(shares_bytes(accessors)) {
+    plan_.json = file.json;
+  }
+
+  GltfPlan run() {
+    const GltfScene scene = read_scene(file_, accessors_);
+    const std::vector<GltfPart> meshes = file_.root().elements("meshes");
+    plan_.warnings = scene.warnings;
+    std::vector<std::vector<std::pair<std::size_t, std::size_t>>> shown(meshes.size());  // (place, mesh)
+    for (const GltfShown& item : scene.shown) {
+      const std::size_t place = place_index(item.scene_from_mesh);
+      auto& own = shown[item.mesh];
+      auto found =
+          std::find_if(own.begin(), own.end(), [&](const auto& pair) { return pair.first == place; });
+      if (found == own.end()) {
+        own.emplace_back(place, own.empty() ? item.mesh : copy("meshes", item.mesh));
+        found = own.end() - 1;
+      }
+      if (found->second != item.mesh) plan_.json["nodes"][item.node]["mesh"] = found->second;
+    }
+    std::size_t hidden = 0;
+    for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
+      keep_other_uses(meshes[mesh], shown[mesh].empty());
+      hidden += shown[mesh].empty();
+    }
+    for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
+      for (const auto& [place, result] : shown[mesh]) plan_mesh(meshes[mesh], result, place);
+    if (hidden > 0)
+      plan_.warnings.push_back("meshes that no node shows were left as they are: " + std::to_string(hidden));
+    if (!file_.root().elements("animations").empty())
+      plan_.warnings.emplace_back("animations were left as they are");
+    return std::move(plan_);
+  }
+
+ private:
+  std::size_t place_index(const AffineMap& map) {
+    const auto found = std::find_if(plan_.places.begin(), plan_.places.end(), [&](const AffineMap& other) {
+      return other.linear == map.linear && other.offset == map.offset;
+    });
+    if (found != plan_.places.end()) return static_cast<std::size_t>(found - plan_.places.begin());
+    plan_.places.push_back(map);
+    return plan_.places.size() - 1;
+  }
+
+  std::size_t copy(const char* array, std::size_t index) {
+    GltfJson element = file_.json[array][index];
+    plan_.json[array].push_back(std::move(element));
+    return plan_.json[array].size() - 1;
+  }
+
+  /// Values that something refers to which is not carried stay where they are.
+  void keep_other_uses(const GltfPart& mesh, bool is_hidden) {
+    for (const GltfPart& primitive : mesh.elements("primitives")) {
+      std::vector<GltfPart> lists = primitive.elements("targets");
+      lists.push_back(primitive.member("attributes"));
+      for (const GltfPart& list : lists)
+        for (const std::string& name : list.names()) {
+          const auto index = list.index(name.c_str(), accessors_.size());
+          const bool has_role =
+              std::any_of(roles.begin(), roles.end(), [&](const auto& role) { return name == role.name; });
+          if (is_hidden || !has_role) stays_[*index] = true;
+        }
+    }
+  }
+
+  void plan_mesh(const GltfPart& mesh, std::size_t result, std::size_t place) {
+    const std::vector<GltfPart> primitives = mesh.elements("primitives");
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      if (primitives[p].has("extensions") &&
+          primitives[p].member("extensions").has("KHR_draco_mesh_compression"))
+        throw InvalidInput(file_.path.string() + ": " + primitives[p].pointer() +
+                           ": is compressed (KHR_draco_mesh_compression); decompress it first");
+      primitives[p].index("indices", accessors_.size());
+      plan_primitive(primitives[p], plan_.json["meshes"][result]["primitives"][p], place);
+    }
+  }
+
+  void plan_primitive(const GltfPart& primitive, GltfJson& result, std::size_t place) {
+    const GltfPart attributes = primitive.member("attributes");
+    const auto positions = accessor(attributes, "POSITION", "VEC3");
+    if (!positions) return;
+    std::map<std::string, std::size_t> bases;
+    for (const auto& [name, role, type] : roles) {
+      const auto base = accessor(attributes, name, type);
+      if (!base) continue;
+      require_same_count(attributes, name, *base, *positions);
+      bases[name] = *base;
+      assign({role, *positions, *base, {}, {}, place, 0}, result["attributes"][name]);
+    }
+    const std::vector<GltfPart> targets = primitive.elements("targets");
+    for (std::size_t t = 0; t < targets.size(); ++t) {
+      const auto shift = accessor(targets[t], "POSITION", "VEC3");
+      if (shift) require_same_count(targets[t], "POSITION", *shift, *positions);
+      for (const auto& [name, role, type] : roles) {
+        const auto difference = accessor(targets[t], name, "VEC3");
+        if (!difference) continue;
+        if (!bases.contains(name)) targets[t].fail_at(name, "has no such attribute to differ from");
+        require_same_count(targets[t], name, *difference, *positions);
+        assign({role, *positions, bases[name], difference, shift, place, 0}, result["targets"][t][name]);
+      }
+    }
+  }
+
+  std::optional<std::size_t> accessor(const GltfPart& list, const char* name, const char* type) const {
+    const auto index = list.index(name, accessors_.size());
+    if (!index) return index;
+    const GltfAccessor& found = accessors_[*index];
+    if (found.type != type || found.component == GltfComponent::uint32)
+      list.fail_at(name, "must be " + std::string(type) + " of floats or of 8 or 16 bits, which " +
+                             found.pointer + " is not");
+    return index;
+  }
+
+  void require_same_count(const GltfPart& list, const char* name, std::size_t index,
+                          std::size_t positions) const {
+    if (accessors_[index].count != accessors_[positions].count)
+      list.fail_at(name, "has " + std::to_string(accessors_[index].count) + " values, but there are " +
+                             std::to_string(accessors_[positions].count) + " positions");
+  }
+
+  // What an accessor becomes depends on all that the key names: the first such use stays in its place, any
+  // other gets an accessor of its own.
+  void assign(GltfTask task, GltfJson& slot) {
+    const std::size_t none = accessors_.size();
+    const Key key{task.source(),  task.place, task.role,
+                  task.positions, task.base,  task.difference_of_positions.value_or(none)};
+    auto known = results_.find(key);
+    if (known == results_.end()) {
+      task.result = stays_[task.source()] ? copy("accessors", task.source()) : task.source();
+      stays_[task.source()] = true;
+      known = results_.emplace(key, task.result).first;
+      plan_.tasks.push_back(task);
+    }
+    if (slot != known->second) slot = known->second;
+  }
+
+  using Key = std::tuple<std::size_t, std::size_t, GltfRole, std::size_t, std::size_t, std::size_t>;
+
+  const GltfFile& file_;
+  const std::vector<GltfAccessor>& accessors_;
+  std::vector<bool> stays_;  ///< of every accessor: its values must not change where they are
+  GltfPlan plan_;
+  std::map<Key, std::size_t> results_;
+};
+
+}  // namespace
+
+GltfPlan plan_gltf(const GltfFile& file, const std::vector<GltfAccessor>& accessors) {
+  return Planner(file, accessors).run();
+}
+
+}  // namespace bespoke
