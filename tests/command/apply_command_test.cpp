@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command/example_pair.h"
+#include "product/gltf_scene.h"
 
 namespace bespoke::test {
 namespace {
@@ -113,6 +114,28 @@ TEST_F(ApplyCommand, WritesSeveralProductsIntoADirectory) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(pair_.has("moved/here/product.obj"));
   EXPECT_TRUE(pair_.has("moved/here/source.obj"));
+}
+
+TEST_F(ApplyCommand, CarriesGltfAsObj) {
+  const Eigen::Matrix3Xf points = product().cast<float>();
+  GltfScene scene;
+  const auto bound = [](const Eigen::Vector3f& x) { return json{x[0], x[1], x[2]}; };
+  scene.accessor(std::vector<float>(points.data(), points.data() + points.size()), "VEC3", 5126,
+                 {{"min", bound(points.rowwise().minCoeff())}, {"max", bound(points.rowwise().maxCoeff())}});
+  scene.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}};
+  scene.root["nodes"] = {{{"mesh", 0}}};
+  write_text(pair_.file("a.glb"), scene.glb());
+  write_text(pair_.file("b.gltf"), scene.gltf("data.bin"));
+  write_text(pair_.file("data.bin"), scene.data);
+  const ProgramResult result = bespoke({"apply", pair_.file("map.vdb"), pair_.file("a.glb"),
+                                        pair_.file("b.gltf"), "--out-dir", pair_.file("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const GlbContent out(read_text(pair_.file("out/a.glb")));
+  EXPECT_EQ(read_text(pair_.file("out/b.bin")), out.data);
+  const std::vector<float> carried = out.floats(0);
+  const Points expected = applied({});
+  const Points found = Eigen::Map<const Eigen::Matrix3Xf>(carried.data(), 3, expected.cols()).cast<double>();
+  EXPECT_LE(largest_distance(found, expected), 4 * float_rounding(expected));
 }
 
 TEST_F(ApplyCommand, NeedsOneOfTheTwoOutputs) {

@@ -149,7 +149,8 @@ ProductSummary convert(const std::string& name, const std::vector<fs::path>& pat
     product.vertices = std::move(moved.frames[k]);
     write_product(paths[k], product);
   }
-  return {moved.summary, {"written as another kind of file: only faces and texture coordinates were kept"}};
+  return {
+      moved.summary, {"written as another kind of file: only faces and texture coordinates were kept"}, {}};
 }
 
 void run(const ApplyArguments& arguments, const Progress& progress) {
@@ -170,6 +171,7 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
                                                     times(arguments), motion, progress)
                                  : convert(name, plan[i], *elastic, asset, times(arguments), motion);
     outputs.add(plan[i]);
+    outputs.add(summary.companions);
     applied.push_back({fs::path(name).filename().string(), std::move(summary)});
   }
   progress.step("apply", arguments.products.size(), arguments.products.size());

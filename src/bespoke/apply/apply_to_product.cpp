@@ -62,6 +62,8 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
     CarrySummary carried = carry_product(input, own_outputs, point_motion, progress);
     written.add(own_outputs);
+    written.add(carried.companions);
+    summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
     summary.warnings = std::move(carried.warnings);
     summary.points.points = points;
     summary.points.in_band = in_band;

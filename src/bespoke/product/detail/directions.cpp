@@ -25,4 +25,11 @@ Points moved_normals(const Points& normals, const Points& jacobians) {
   return moved;
 }
 
+Points moved_tangents(const Points& tangents, const Points& jacobians) {
+  Points moved(3, tangents.cols());
+  for (Eigen::Index i = 0; i < tangents.cols(); ++i)
+    moved.col(i) = with_length_of(tangents.col(i), jacobians.middleCols<3>(3 * i) * tangents.col(i));
+  return moved;
+}
+
 }  // namespace bespoke

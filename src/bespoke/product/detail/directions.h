@@ -9,4 +9,7 @@ namespace bespoke {
 /// seen counter-clockwise. A normal that is zero or not finite stays as it is.
 Points moved_normals(const Points& normals, const Points& jacobians);
 
+/// Tangents: J t, as long as t.
+Points moved_tangents(const Points& tangents, const Points& jacobians);
+
 }  // namespace bespoke
