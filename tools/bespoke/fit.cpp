@@ -9,7 +9,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_io.h"
-#include "bespoke/pipeline/make_map.h"
+#include "bespoke/pipeline/map_request.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "length_option.h"
@@ -20,7 +20,7 @@
 namespace bespoke::command {
 namespace {
 
-struct FitArguments {
+struct FitArguments : MapRequest {
   std::string source;
   std::string target;
   std::string anchors;
@@ -29,25 +29,8 @@ struct FitArguments {
   std::string fitted_out;
   std::string confidence_out;
   std::string report;
-  std::optional<SurfaceFitMethod> surface_fit;
-  std::optional<BoundaryRule> boundaries;
-  std::optional<double> max_stretch;
-  std::optional<ElasticMethod> elastic;
-  std::optional<RotationPath> path;
-  std::optional<int> steps;
-  std::optional<Length> anchor_sigma;
-  std::optional<Length> lambda;
-  std::optional<Length> tolerance;
-  std::optional<Length> fit_tolerance;
-  std::optional<Length> voxel_size;
-  std::optional<Length> contact_gap;
-  std::optional<std::uint64_t> max_memory;
-  bool keep_exact = false;
-  bool half = false;
   bool require_certified = false;
-  bool strict = false;
   bool add_corners = false;
-  bool paper = false;
   RunOptions run;
 };
 
@@ -68,36 +51,6 @@ void require_consistent(const FitArguments& arguments) {
     if (!output->empty()) outputs.emplace_back(*output);
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
   require_safe_outputs(inputs, outputs);
-}
-
-MakeMapOptions make_options(const FitArguments& arguments, double source_diagonal) {
-  MakeMapOptions options = default_options(source_diagonal);
-  if (arguments.paper) {
-    options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
-    options.fit.surface_fit.laplacian = no_additions;
-    options.fit.elastic = ElasticMethod::csrbf;
-    options.path = RotationPath::euler;
-    options.fit.steps = 1;
-    options.fit.contact_gap = 0;
-  }
-  if (arguments.surface_fit) options.fit.surface_fit.method = *arguments.surface_fit;
-  if (arguments.boundaries) options.fit.surface_fit.boundaries = *arguments.boundaries;
-  if (arguments.max_stretch) options.fit.surface_fit.max_stretch = *arguments.max_stretch;
-  if (arguments.elastic) options.fit.elastic = *arguments.elastic;
-  if (arguments.path) options.path = *arguments.path;
-  if (arguments.steps) options.fit.steps = *arguments.steps;
-  if (arguments.lambda) options.fit.lambda = arguments.lambda->in_mesh_units(source_diagonal);
-  if (arguments.fit_tolerance)
-    options.fit.fit_tolerance = arguments.fit_tolerance->in_mesh_units(source_diagonal);
-  if (arguments.contact_gap) options.fit.contact_gap = arguments.contact_gap->in_mesh_units(source_diagonal);
-  if (arguments.tolerance) options.bake.tolerance = arguments.tolerance->in_mesh_units(source_diagonal);
-  // Who names a tolerance wants that one.
-  if (arguments.tolerance || arguments.strict) options.bake.max_leaves.reset();
-  if (arguments.voxel_size) options.bake.voxel_size = arguments.voxel_size->in_mesh_units(source_diagonal);
-  if (arguments.max_memory) options.fit.max_memory = options.bake.max_memory = *arguments.max_memory;
-  if (arguments.half) options.bake.precision = ValuePrecision::half;
-  options.keep_exact = arguments.keep_exact;
-  return options;
 }
 
 /// One number a line, in the order of the source's vertices.
@@ -140,14 +93,6 @@ void warn_of_contradictions(const Anchors& anchors) {
   if (!text.empty()) std::fprintf(stderr, "bespoke: warning: %s\n", text.c_str());
 }
 
-/// Gives a σ to the pairs that came without an accuracy; the printed method has exact anchors only.
-void rate_by_options(Anchors& anchors, const FitArguments& arguments, double source_diagonal) {
-  if (!arguments.anchor_sigma && !arguments.paper) return;
-  const double sigma = arguments.anchor_sigma ? arguments.anchor_sigma->in_mesh_units(source_diagonal) : 0;
-  for (AnchorPair& pair : anchors.pairs)
-    if (!pair.sigma && std::isinf(pair.weight)) pair.sigma = sigma;
-}
-
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
   if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
@@ -187,7 +132,7 @@ void run(const FitArguments& arguments, const Progress& progress) {
   warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
   warn_of_contradictions(anchors);
-  rate_by_options(anchors, arguments, diagonal(source.vertices));
+  rate_anchors(anchors, arguments, diagonal(source.vertices));
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};

@@ -1,24 +1,17 @@
 #include "length_option.h"
 
-#include <charconv>
-#include <cmath>
 #include <cstdio>
 
 namespace bespoke::command {
 
 Length parse_length(const std::string& option, const std::string& text, LengthRange range) {
-  Length length;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, length.value);
-  length.percent = stop != end && *stop == '%';
-  const bool complete = error == std::errc() && stop + length.percent == end;
-  const bool in_range = length.value > 0 || (range == LengthRange::not_negative && length.value == 0);
-  if (!(complete && in_range && std::isfinite(length.value)))
+  const std::optional<Length> length = bespoke::parse_length(text, range);
+  if (!length)
     throw CLI::ValidationError(option, "'" + text + "' is not a " +
                                            (range == LengthRange::positive ? "positive" : "non-negative") +
                                            " length; write mesh units (0.02) or a "
                                            "percentage of the source's bounding-box diagonal (10%)");
-  return length;
+  return *length;
 }
 
 std::string percentage(double fraction) {

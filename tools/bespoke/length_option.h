@@ -4,19 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "bespoke/length.h"
+
 namespace bespoke::command {
-
-/// A length as the user gives it: mesh units, or a percentage of the source's bounding-box diagonal.
-struct Length {
-  double value = 0;
-  bool percent = false;
-
-  double in_mesh_units(double source_diagonal) const {
-    return percent ? value / 100 * source_diagonal : value;
-  }
-};
-
-enum class LengthRange { positive, not_negative };
 
 /// "0.02" or "10%"; finite and within the range. Throws CLI::ValidationError naming `option` and the text.
 Length parse_length(const std::string& option, const std::string& text,

@@ -1,0 +1,55 @@
+#include "bespoke/pipeline/map_request.h"
+
+#include <cmath>
+
+namespace bespoke {
+namespace {
+
+void use_printed_method(MakeMapOptions& options) {
+  options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
+  options.fit.surface_fit.laplacian = no_additions;
+  options.fit.elastic = ElasticMethod::csrbf;
+  options.path = RotationPath::euler;
+  options.fit.steps = 1;
+  options.fit.contact_gap = 0;
+}
+
+void set_lengths(const MapRequest& request, double source_diagonal, MakeMapOptions& options) {
+  const auto set = [&](const std::optional<Length>& length, auto& value) {
+    if (length) value = length->in_mesh_units(source_diagonal);
+  };
+  set(request.lambda, options.fit.lambda);
+  set(request.fit_tolerance, options.fit.fit_tolerance);
+  set(request.contact_gap, options.fit.contact_gap);
+  set(request.tolerance, options.bake.tolerance);
+  set(request.voxel_size, options.bake.voxel_size);
+}
+
+}  // namespace
+
+MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
+  MakeMapOptions options = default_options(source_diagonal);
+  if (request.paper) use_printed_method(options);
+  if (request.surface_fit) options.fit.surface_fit.method = *request.surface_fit;
+  if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
+  if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
+  if (request.elastic) options.fit.elastic = *request.elastic;
+  if (request.path) options.path = *request.path;
+  if (request.steps) options.fit.steps = *request.steps;
+  set_lengths(request, source_diagonal, options);
+  // Who names a tolerance wants that one.
+  if (request.tolerance || request.strict) options.bake.max_leaves.reset();
+  if (request.max_memory) options.fit.max_memory = options.bake.max_memory = *request.max_memory;
+  if (request.half) options.bake.precision = ValuePrecision::half;
+  options.keep_exact = request.keep_exact;
+  return options;
+}
+
+void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal) {
+  if (!request.anchor_sigma && !request.paper) return;
+  const double sigma = request.anchor_sigma ? request.anchor_sigma->in_mesh_units(source_diagonal) : 0;
+  for (AnchorPair& pair : anchors.pairs)
+    if (!pair.sigma && std::isinf(pair.weight)) pair.sigma = sigma;
+}
+
+}  // namespace bespoke

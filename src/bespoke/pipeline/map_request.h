@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "bespoke/length.h"
+#include "bespoke/pipeline/make_map.h"
+
+namespace bespoke {
+
+/// What somebody asks of a map, by the names of `bespoke fit`; what is empty or false is left to the
+/// defaults. Lengths in percent are of the source's bounding-box diagonal.
+struct MapRequest {
+  std::optional<SurfaceFitMethod> surface_fit;
+  std::optional<BoundaryRule> boundaries;
+  std::optional<double> max_stretch;  ///< > 1
+  std::optional<ElasticMethod> elastic;
+  std::optional<RotationPath> path;
+  std::optional<int> steps;  ///< > 0
+  std::optional<Length> anchor_sigma;
+  std::optional<Length> lambda;
+  std::optional<Length> tolerance;
+  std::optional<Length> fit_tolerance;
+  std::optional<Length> voxel_size;
+  std::optional<Length> contact_gap;
+  std::optional<std::uint64_t> max_memory;  ///< bytes
+  bool keep_exact = false;
+  bool half = false;
+  bool strict = false;  ///< the tolerance is met everywhere, whatever it takes
+  bool paper = false;   ///< the printed method; needs anchors
+};
+
+MakeMapOptions make_options(const MapRequest& request, double source_diagonal);
+
+/// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
+void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal);
+
+}  // namespace bespoke

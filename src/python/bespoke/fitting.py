@@ -1,0 +1,92 @@
+"""From two models and their anchors to a map."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _engine
+from .anchors import Anchor
+from .maps import Length, Map, Progress
+from .meshes import Mesh
+from .summaries import FitReport
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A map and how it came to be."""
+
+    map: Map
+    fitted: Mesh  #: the source laid onto the target, target frame
+    confidence: npt.NDArray[np.float64]  #: (n,), 0 to 1: whether a vertex found a counterpart; empty with `fitted`
+    report: FitReport
+
+
+def fit(
+    source: Mesh,
+    target: Mesh,
+    anchors: Iterable[Anchor] = (),
+    *,
+    fitted: Mesh | None = None,
+    add_corners: bool = False,
+    surface_fit: str | None = None,
+    boundaries: str | None = None,
+    max_stretch: float | None = None,
+    elastic: str | None = None,
+    path: str | None = None,
+    steps: int | None = None,
+    paper: bool = False,
+    anchor_sigma: Length | None = None,
+    lambda_: Length | None = None,
+    tolerance: Length | None = None,
+    fit_tolerance: Length | None = None,
+    contact_gap: Length | None = None,
+    voxel_size: Length | None = None,
+    strict: bool = False,
+    half: bool = False,
+    keep_exact: bool = False,
+    max_memory: int | None = None,
+    progress: Progress | None = None,
+) -> Fit:
+    """Fits a map of the space around `source` onto the space around `target`, and bakes it.
+
+    The options are those of `bespoke fit`, with its defaults; lengths are numbers in the models' unit or texts like
+    "10%" of the source's diagonal, `max_memory` is in bytes. Without anchors models in similar pose are aligned by their
+    surfaces, or refused. Given the same input, the map is the command's, bit for bit.
+
+    Raises InvalidInput, SolverError (also when models cannot be aligned with certainty), MemoryLimitError.
+    """
+    options = {
+        "surface_fit": surface_fit,
+        "boundaries": boundaries,
+        "max_stretch": max_stretch,
+        "elastic": elastic,
+        "path": path,
+        "steps": steps,
+        "paper": paper,
+        "anchor_sigma": anchor_sigma,
+        "lambda_": lambda_,
+        "tolerance": tolerance,
+        "fit_tolerance": fit_tolerance,
+        "contact_gap": contact_gap,
+        "voxel_size": voxel_size,
+        "strict": strict,
+        "half": half,
+        "keep_exact": keep_exact,
+        "max_memory": max_memory,
+    }
+    engine, vertices, confidence, report = _engine.fit(
+        (source.vertices, source.faces),
+        (target.vertices, target.faces),
+        [(pair.name, pair.a, pair.b, pair.weight, pair.sigma) for pair in anchors],
+        getattr(anchors, "unit", ""),
+        None if fitted is None else (fitted.vertices, fitted.faces),
+        add_corners,
+        options,
+        progress,
+    )
+    return Fit(Map(engine), Mesh(vertices, source.faces), confidence, FitReport._from(json.loads(report)))

@@ -1,0 +1,51 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+
+#include "bespoke/anchors/anchors.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "numpy_points.h"
+#include "parts.h"
+
+namespace bespoke::python {
+namespace py = pybind11;
+namespace fs = std::filesystem;
+namespace {
+
+py::tuple read_mesh(const fs::path& path) {
+  TriangleMesh mesh;
+  {
+    const py::gil_scoped_release release;
+    mesh = read_triangle_mesh(path);
+  }
+  return to_arrays(mesh);
+}
+
+void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArray& faces) {
+  const TriangleMesh mesh = to_mesh(vertices, faces, path.string());
+  const py::gil_scoped_release release;
+  write_triangle_mesh(path, mesh);
+}
+
+/// (unit, [(name, a, b, weight or None, sigma or None), …])
+py::tuple anchors_of_file(const fs::path& path) {
+  const Anchors anchors = read_anchors(path);
+  py::list pairs;
+  for (const AnchorPair& pair : anchors.pairs) {
+    const py::object weight = std::isinf(pair.weight) ? py::object(py::none()) : py::float_(pair.weight);
+    const auto triple = [](const Vector3& x) { return py::make_tuple(x.x(), x.y(), x.z()); };
+    pairs.append(py::make_tuple(pair.name, triple(pair.a), triple(pair.b), weight, pair.sigma));
+  }
+  return py::make_tuple(anchors.unit, pairs);
+}
+
+}  // namespace
+
+void add_files(py::module_& engine) {
+  engine.def("read_mesh", &read_mesh, py::arg("path"));
+  engine.def("write_mesh", &write_mesh, py::arg("path"), py::arg("vertices"), py::arg("faces"));
+  engine.def("read_anchors", &anchors_of_file, py::arg("path"));
+}
+
+}  // namespace bespoke::python

@@ -1,0 +1,125 @@
+#include <pybind11/stl.h>
+
+#include <limits>
+
+#include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/pipeline/map_request.h"
+#include "bespoke/stopwatch.h"
+#include "loaded_asset.h"
+#include "parts.h"
+#include "released.h"
+
+namespace bespoke::python {
+namespace py = pybind11;
+namespace {
+
+Vector3 to_vector(const py::handle& triple) {
+  const py::sequence numbers = py::reinterpret_borrow<py::sequence>(triple);
+  return {numbers[0].cast<double>(), numbers[1].cast<double>(), numbers[2].cast<double>()};
+}
+
+/// [(name, a, b, weight or None, sigma or None), …]
+Anchors to_anchors(const py::iterable& pairs, const std::string& unit) {
+  Anchors anchors{unit, {}};
+  for (const py::handle& item : pairs) {
+    const auto row = py::reinterpret_borrow<py::tuple>(item);
+    const double weight = row[3].is_none() ? std::numeric_limits<double>::infinity() : row[3].cast<double>();
+    anchors.pairs.push_back({row[0].cast<std::string>(), to_vector(row[1]), to_vector(row[2]), weight,
+                             row[4].cast<std::optional<double>>()});
+  }
+  return anchors;
+}
+
+/// Options by the command's names, with _ for -; all of them are taken out of `given`.
+class RequestReader {
+ public:
+  explicit RequestReader(const py::dict& given) : given_(given) {}
+
+  MapRequest read() {
+    MapRequest request;
+    take("surface_fit", surface_fits, request.surface_fit);
+    take("boundaries", boundary_rules, request.boundaries);
+    take("elastic", elastic_methods, request.elastic);
+    take("path", rotation_paths, request.path);
+    take("max_stretch", request.max_stretch);
+    take("steps", request.steps);
+    take("max_memory", request.max_memory);
+    take("anchor_sigma", request.anchor_sigma, LengthRange::not_negative);
+    take("lambda_", request.lambda);
+    take("tolerance", request.tolerance);
+    take("fit_tolerance", request.fit_tolerance);
+    take("voxel_size", request.voxel_size);
+    take("contact_gap", request.contact_gap, LengthRange::not_negative);
+    request.keep_exact = flag("keep_exact");
+    request.half = flag("half");
+    request.strict = flag("strict");
+    request.paper = flag("paper");
+    return request;
+  }
+
+ private:
+  py::object value(const char* name) const { return given_.attr("get")(name); }
+
+  bool flag(const char* name) const { return py::bool_(value(name)); }
+
+  template <class Table, class Value>
+  void take(const char* name, const Table& table, std::optional<Value>& option) const {
+    if (const py::object given = value(name); !given.is_none())
+      option = required(table, given.cast<std::string>(), name);
+  }
+  template <class Number>
+  void take(const char* name, std::optional<Number>& option) const {
+    option = value(name).cast<std::optional<Number>>();
+  }
+  void take(const char* name, std::optional<Length>& option,
+            LengthRange range = LengthRange::positive) const {
+    option = to_length(value(name), name, range);
+  }
+
+  const py::dict& given_;
+};
+
+void require_in_range(const MapRequest& request) {
+  if (request.max_stretch && !(*request.max_stretch > 1))
+    throw InvalidInput("max_stretch " + std::to_string(*request.max_stretch) + " must be greater than 1");
+  if (request.steps && (*request.steps < 1 || *request.steps > 100))
+    throw InvalidInput("steps " + std::to_string(*request.steps) + " must be between 1 and 100");
+}
+
+/// (map, fitted vertices n×3 in the target frame, confidence n, report as JSON)
+py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays, const py::iterable& pairs,
+              const std::string& unit, const py::object& fitted_arrays, bool add_corners,
+              const py::dict& options, const py::object& callback) {
+  const auto mesh = [](const py::tuple& arrays, const std::string& role) {
+    TriangleMesh made = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
+    require_valid(made, role);
+    return made;
+  };
+  const TriangleMesh source = mesh(source_arrays, "source"), target = mesh(target_arrays, "target");
+  std::optional<TriangleMesh> fitted;
+  if (!fitted_arrays.is_none()) fitted = mesh(fitted_arrays, "fitted");
+  const MapRequest request = RequestReader(options).read();
+  require_in_range(request);
+  Anchors anchors = to_anchors(pairs, unit);
+  rate_anchors(anchors, request, diagonal(source.vertices));
+  if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
+
+  const Stopwatch watch;
+  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
+  MadeMap made = released(callback, [&](const Progress& progress) {
+    return make_map(input, make_options(request, diagonal(source.vertices)), progress);
+  });
+  const std::string report = fit_report(input, made, watch.seconds());
+  const Points laid = made.fit.target_from_source * made.fit.fitted_vertices;
+  return py::make_tuple(std::make_shared<LoadedAsset>(std::move(made.asset)), to_array(laid),
+                        to_array(made.fit.confidence), report);
+}
+
+}  // namespace
+
+void add_fit(py::module_& engine) {
+  engine.def("fit", &fit, py::arg("source"), py::arg("target"), py::arg("anchors"), py::arg("unit"),
+             py::arg("fitted"), py::arg("add_corners"), py::arg("options"), py::arg("progress"));
+}
+
+}  // namespace bespoke::python

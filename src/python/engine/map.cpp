@@ -1,0 +1,172 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/mesh/product_io.h"
+#include "bespoke/pipeline/certify_map.h"
+#include "bespoke/pipeline/derive_map.h"
+#include "bespoke/pipeline/summary_json.h"
+#include "bespoke/quality/mapping_quality.h"
+#include "bespoke/report/inspection.h"
+#include "bespoke/report/quality_report.h"
+#include "loaded_asset.h"
+#include "parts.h"
+#include "released.h"
+
+namespace bespoke::python {
+namespace py = pybind11;
+namespace fs = std::filesystem;
+namespace {
+
+std::shared_ptr<LoadedAsset> load(const fs::path& path, bool untrusted) {
+  const py::gil_scoped_release release;
+  return std::make_shared<LoadedAsset>(read_asset(path, {.untrusted = untrusted}));
+}
+
+void save(const LoadedAsset& map, const fs::path& path) {
+  const py::gil_scoped_release release;
+  write_asset(path, map.asset());
+}
+
+/// Of names that may be empty: the asset's own path, the mapping's own order.
+MotionOptions motion(const LoadedAsset& map, const std::string& path, const std::string& order) {
+  MotionOptions options{map.asset().path, MappingOrder::elastic_first};
+  if (!order.empty()) options.order = required(mapping_orders, order, "order");
+  if (!path.empty())
+    options.path = required(rotation_paths, path, "path");
+  else if (options.path == RotationPath::flow && options.order != MappingOrder::elastic_first)
+    options.path = RotationPath::geodesic;
+  return options;
+}
+
+PointArray image(LoadedAsset& map, const PointArray& points, double t, const std::string& path,
+                 const std::string& order) {
+  require_rows_of_three(points, "points");
+  PointArray image = make_points(points.shape(0));
+  const PointSpans spans{numbers(points), {image.mutable_data(), static_cast<std::size_t>(image.size())}};
+  const MotionOptions options = motion(map, path, order);
+  released(py::none(), [&](const Progress& progress) {
+    return apply_points(map.carrier(), map.asset().target_from_source, spans, {t, options, progress});
+  });
+  return image;
+}
+
+PointArray inverse(LoadedAsset& map, const PointArray& points) {
+  const Points y = to_points(points, "points");
+  return to_array(released(py::none(), [&](const Progress&) { return map.preimages(y); }));
+}
+
+py::array_t<double> jacobian(LoadedAsset& map, const PointArray& points, double t) {
+  const Points x = to_points(points, "points");
+  const Points found = released(py::none(), [&](const Progress&) {
+    return motion_jacobian(map.carrier(), map.asset().target_from_source, x, {t}, {map.asset().path}).front();
+  });
+  // Columns of the library's matrices become rows of NumPy's.
+  py::array_t<double> result({x.cols(), Eigen::Index{3}, Eigen::Index{3}});
+  auto entry = result.mutable_unchecked<3>();
+  for (Eigen::Index n = 0; n < x.cols(); ++n)
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j < 3; ++j) entry(n, i, j) = found(i, 3 * n + j);
+  return result;
+}
+
+std::string check(const LoadedAsset& map, double t, const py::object& callback) {
+  return released(callback, [&](const Progress& progress) {
+    return to_json(certify_map(map.asset(), t, progress)).dump();
+  });
+}
+
+BakeOptions bake_options(const std::optional<Length>& tolerance, double otherwise, double diagonal,
+                         bool half) {
+  BakeOptions options;
+  options.tolerance = tolerance ? tolerance->in_mesh_units(diagonal) : otherwise;
+  if (half) options.precision = ValuePrecision::half;
+  return options;
+}
+
+std::shared_ptr<LoadedAsset> inverted(const LoadedAsset& map, const py::object& tolerance, bool half,
+                                      const py::object& callback) {
+  const AssetRecord& record = map.asset().record;
+  const BakeOptions options = bake_options(to_length(tolerance, "tolerance"), record.tolerance,
+                                           record.target.box.diagonal().norm(), half);
+  return released(callback, [&](const Progress& progress) {
+    return std::make_shared<LoadedAsset>(invert_map(map.asset(), options, progress).asset);
+  });
+}
+
+std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsset& second,
+                                      const py::object& tolerance, bool half, bool any_models,
+                                      const py::object& callback) {
+  const AssetRecord &a = first.asset().record, &b = second.asset().record;
+  const BakeOptions options =
+      bake_options(to_length(tolerance, "tolerance"), std::max(a.tolerance, b.tolerance),
+                   a.source.box.diagonal().norm(), half);
+  const MeetingModels meeting = any_models ? MeetingModels::may_differ : MeetingModels::must_be_the_same;
+  return released(callback, [&](const Progress& progress) {
+    return std::make_shared<LoadedAsset>(
+        compose_maps(first.asset(), second.asset(), options, meeting, progress).asset);
+  });
+}
+
+/// The report of `bespoke apply`, JSON.
+std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vector<fs::path>& outputs,
+                       const std::vector<double>& times, const std::string& path, const std::string& order,
+                       const py::object& callback) {
+  const MotionOptions options = motion(map, path, order);
+  const ProductSummary summary = released(callback, [&](const Progress& progress) {
+    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times, options,
+                            progress);
+  });
+  return apply_report({{product.filename().string(), summary}}, times, summary.points.seconds);
+}
+
+std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
+                    const std::vector<fs::path>& products, const py::object& callback) {
+  const auto model = [&](const py::tuple& arrays, const ModelRecord& record, const std::string& role) {
+    TriangleMesh mesh = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
+    require_valid(mesh, role);
+    if (content_hash(mesh) != record.hash)
+      throw InvalidInput(role + ": is not the one that the map was made of (other vertices or faces)");
+    return mesh;
+  };
+  const AssetRecord& record = map.asset().record;
+  const TriangleMesh from = model(source, record.source, "source"),
+                     to = model(target, record.target, "target");
+  const auto [a, b] = anchor_points(record);
+  return released(callback, [&](const Progress& progress) {
+    std::vector<NamedProduct> named;
+    std::vector<std::string> names;
+    for (const fs::path& path : products) {
+      const Product product = read_product(path);
+      named.push_back({path.string(), {product.vertices, triangulated(product)}});
+      names.push_back(path.filename().string());
+    }
+    const MappingQuality quality = mapping_quality(
+        {from, to, map.certified_map(), map.asset().target_from_source, a, b, named}, {}, progress);
+    return quality_json(quality, names, record.unit);
+  });
+}
+
+}  // namespace
+
+void add_map(py::module_& engine) {
+  py::class_<LoadedAsset, std::shared_ptr<LoadedAsset>>(engine, "Map")
+      .def_static("load", &load, py::arg("path"), py::arg("untrusted"))
+      .def("save", &save, py::arg("path"))
+      .def("image", &image, py::arg("points"), py::arg("t"), py::arg("path"), py::arg("order"))
+      .def("inverse", &inverse, py::arg("points"))
+      .def("jacobian", &jacobian, py::arg("points"), py::arg("t"))
+      .def("check", &check, py::arg("t"), py::arg("progress"))
+      .def("inverted", &inverted, py::arg("tolerance"), py::arg("half"), py::arg("progress"))
+      .def("composed", &composed, py::arg("second"), py::arg("tolerance"), py::arg("half"),
+           py::arg("any_models"), py::arg("progress"))
+      .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
+           py::arg("order"), py::arg("progress"))
+      .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("products"),
+           py::arg("progress"))
+      .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });
+}
+
+}  // namespace bespoke::python

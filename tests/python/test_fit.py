@@ -1,0 +1,127 @@
+import json
+
+import bespoke
+import numpy as np
+import pytest
+
+
+def write_anchors(path, anchors):
+    pairs = [{"name": pair.name, "a": pair.a, "b": pair.b, "sigma": pair.sigma} for pair in anchors]
+    path.write_text(json.dumps({"units": "cm", "pairs": pairs}))
+
+
+def test_fit_is_that_of_the_command(pair, command, tmp_path):
+    bespoke.write_mesh(tmp_path / "source.ply", pair.source)
+    bespoke.write_mesh(tmp_path / "target.ply", pair.target)
+    write_anchors(tmp_path / "anchors.json", pair.anchors)
+    command(
+        "fit", tmp_path / "source.ply", tmp_path / "target.ply", "--anchors", tmp_path / "anchors.json",
+        "--tolerance", "0.5%", "--lambda", "15%", "-o", tmp_path / "command.vdb",
+    )  # fmt: skip
+    fit = bespoke.fit(
+        bespoke.read_mesh(tmp_path / "source.ply"),
+        bespoke.read_mesh(tmp_path / "target.ply"),
+        bespoke.read_anchors(tmp_path / "anchors.json"),
+        tolerance="0.5%",
+        lambda_="15%",
+    )
+    commands = bespoke.Map.load(tmp_path / "command.vdb")
+    points = np.random.default_rng(3).uniform(-2, 2, (1000, 3))
+    np.testing.assert_array_equal(fit.map(points), commands(points))
+    assert fit.map.info == commands.info
+    assert fit.map.info.unit == "cm"
+
+
+def test_fit_says_what_it_found(pair):
+    assert pair.fit.fitted.vertices.shape == pair.source.vertices.shape
+    assert pair.fit.confidence.shape == (len(pair.source.vertices),)
+    assert pair.fit.confidence.max() <= 1
+    assert [stage.name for stage in pair.fit.report.stages][0] == "rigid"
+    assert pair.fit.report.anchor_residuals.count == len(pair.anchors)
+    image = pair.map(pair.source.vertices)
+    assert np.linalg.norm(image - pair.fit.fitted.vertices, axis=1).max() < 3 * pair.map.info.tolerance
+
+
+def test_given_fit_needs_no_anchors(pair):
+    fitted = bespoke.Mesh(pair.source.vertices * [1.1, 1, 0.9] + [0, 0, 5], pair.source.faces)
+    fit = bespoke.fit(pair.source, pair.target, fitted=fitted, tolerance="0.2%")
+    image = fit.map(pair.source.vertices)
+    assert np.linalg.norm(image - fitted.vertices, axis=1).max() < 3 * fit.map.info.tolerance
+
+
+def test_progress_is_told_and_may_stop(pair):
+    stages = []
+    bespoke.fit(
+        pair.source, pair.target, pair.anchors, tolerance="2%", progress=lambda stage, done, total: stages.append(stage)
+    )
+    assert {"bake", "certify"} <= set(stages)
+
+    class Enough(Exception):
+        pass
+
+    def stop(stage, done, total):
+        raise Enough(stage)
+
+    with pytest.raises(Enough):
+        bespoke.fit(pair.source, pair.target, pair.anchors, progress=stop)
+
+
+def test_interrupt_becomes_keyboard_interrupt(pair):
+    import os
+    import signal
+
+    def press(stage, done, total):
+        os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        bespoke.fit(pair.source, pair.target, pair.anchors, progress=press)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"elastic": "rubber"}, "elastic 'rubber'.*diffeomorphic"),
+        ({"tolerance": "-1%"}, "tolerance"),
+        ({"lambda_": "wide"}, "lambda_ wide"),
+        ({"max_stretch": 0.5}, "max_stretch"),
+        ({"steps": 0}, "steps"),
+    ],
+)
+def test_refuses_options_with_reasons(pair, options, words):
+    with pytest.raises(bespoke.InvalidInput, match=words):
+        bespoke.fit(pair.source, pair.target, pair.anchors, **options)
+
+
+def test_refuses_unusable_input(pair):
+    with pytest.raises(ValueError, match="anchor"):
+        bespoke.fit(pair.source, pair.target, pair.anchors[:2])
+    broken = bespoke.Mesh(pair.source.vertices, np.array([[0, 1, 99999]]))
+    with pytest.raises(bespoke.InvalidInput, match="source"):
+        bespoke.fit(broken, pair.target, pair.anchors)
+    holed = pair.source.vertices.copy()
+    holed[3] = np.inf
+    with pytest.raises(bespoke.InvalidInput, match="source"):
+        bespoke.fit(bespoke.Mesh(holed, pair.source.faces), pair.target, pair.anchors)
+
+
+def test_meshes_come_back_as_written(pair, tmp_path):
+    bespoke.write_mesh(tmp_path / "mesh.ply", pair.source)
+    again = bespoke.read_mesh(tmp_path / "mesh.ply")
+    np.testing.assert_array_equal(again.vertices, pair.source.vertices.astype(np.float32))
+    np.testing.assert_array_equal(again.faces, pair.source.faces)
+    (tmp_path / "mesh.obj").write_text("v 0 0\n")
+    with pytest.raises(bespoke.FormatError, match="line 1|:1"):
+        bespoke.read_mesh(tmp_path / "mesh.obj")
+
+
+def test_anchors_come_with_their_accuracy(tmp_path):
+    (tmp_path / "anchors.json").write_text(
+        '{"units": "mm", "pairs": [{"name": "x", "a": [0, 1, 2], "b": [3, 4, 5], "sigma": 0.5},'
+        ' {"a": [0, 0, 0], "b": [1, 1, 1], "weight": 2}, {"a": [0, 0, 9], "b": [1, 1, 9]}]}'
+    )
+    anchors = bespoke.read_anchors(tmp_path / "anchors.json")
+    assert anchors.unit == "mm"
+    assert anchors[0] == bespoke.Anchor((0, 1, 2), (3, 4, 5), "x", 0.5)
+    assert anchors[1].weight == 2
+    assert anchors[1].sigma is None
+    assert anchors[2] == bespoke.Anchor((0, 0, 9), (1, 1, 9))

@@ -1,0 +1,134 @@
+import json
+import threading
+
+import bespoke
+import numpy as np
+import pytest
+
+
+def test_surfaces_and_anchors_correspond(pair):
+    x, y, z = (pair.map(pair.source.vertices) - [3, -1, 2]).T
+    off = np.abs((y / 1.2) ** 2 + (x / 1.3) ** 2 + (z / 1.8) ** 2 - 1)
+    assert off.max() < 0.02
+    a = np.array([pair_.a for pair_ in pair.anchors])
+    b = np.array([pair_.b for pair_ in pair.anchors])
+    assert np.linalg.norm(pair.map(a) - b, axis=1).max() < 2 * pair.map.info.tolerance
+
+
+def test_identity_at_zero_and_the_map_at_one(pair, around):
+    np.testing.assert_array_equal(pair.map(around, 0), around)
+    np.testing.assert_array_equal(pair.map(around, 1), pair.map(around))
+
+
+def test_inverse_leads_back(pair, around):
+    finest = min(level["voxel_size"] for level in pair.map.info.json["levels"])
+    back = pair.map.inverse(pair.map(around))
+    assert np.linalg.norm(back - around, axis=1).max() < 1e-4 * finest
+
+
+def test_jacobian_is_the_derivative(pair, around):
+    step = 1e-6
+    for t in (0.5, 1):
+        jacobian = pair.map.jacobian(around, t)
+        assert jacobian.shape == (500, 3, 3)
+        for j in range(3):
+            shift = step * np.eye(3)[j]
+            difference = (pair.map(around + shift, t) - pair.map(around - shift, t)) / (2 * step)
+            # The map is trilinear in cells: where a difference crosses a wall it is no derivative.
+            close = np.abs(difference - jacobian[:, :, j]).max(axis=1) < 1e-2
+            assert close.mean() > 0.99
+    assert np.linalg.det(pair.map.jacobian(around)).min() > 0
+
+
+def test_takes_any_array_and_refuses_other_shapes(pair, around):
+    expected = pair.map(around)
+    np.testing.assert_array_equal(pair.map(np.asfortranarray(around)), expected)
+    np.testing.assert_array_equal(pair.map(np.repeat(around, 2, axis=0)[::2]), expected)
+    np.testing.assert_array_equal(pair.map(around.tolist()), expected)
+    assert pair.map(np.empty((0, 3))).shape == (0, 3)
+    for shape in ((3,), (3, 500), (2, 2, 3)):
+        with pytest.raises(bespoke.InvalidInput, match=r"\(n, 3\)"):
+            pair.map(np.zeros(shape))
+    with pytest.raises(bespoke.InvalidInput, match="finite"):
+        pair.map([[0, np.nan, 0]])
+
+
+def test_file_holds_the_same_map(pair, around, tmp_path):
+    file = tmp_path / "map.vdb"
+    pair.map.save(file)
+    again = bespoke.Map.load(file)
+    np.testing.assert_array_equal(again(around), pair.map(around))
+    assert again.info == pair.map.info
+    again.save(tmp_path / "again.vdb")
+    assert len(again.info.anchors) == len(pair.anchors)
+    np.testing.assert_array_equal(bespoke.Map.load(tmp_path / "again.vdb", untrusted=True)(around), again(around))
+
+
+def test_certificate_proves_a_bijection(pair):
+    for t in (0.5, 1):
+        certificate = pair.map.check(t)
+        assert certificate.bijection
+        assert certificate.folded == certificate.undecided == 0
+        assert certificate.least_determinant > 0
+
+
+def test_inverted_and_composed_maps_lead_back(pair, around):
+    back = pair.map.inverted()
+    there_and_back = pair.map.compose(back)
+    error = np.linalg.norm(there_and_back(around) - around, axis=1)
+    assert error.max() < 5 * pair.map.info.tolerance
+    with pytest.raises(bespoke.InvalidInput):
+        pair.map.compose(pair.map)
+
+
+def test_carries_files_as_points(pair, around, tmp_path):
+    product = tmp_path / "product.xyz"
+    product.write_text("".join(f"{x!r} {y!r} {z!r} kept\n" for x, y, z in around.tolist()))
+    outputs = [tmp_path / "half.xyz", tmp_path / "whole.xyz"]
+    summary = pair.map.apply(product, outputs, [0.5, 1])
+    assert summary.points == 500
+    assert summary.in_band + summary.affine_only == 500
+    for output, t in zip(outputs, (0.5, 1)):
+        rows = [line.split() for line in output.read_text().splitlines()]
+        assert all(row[3] == "kept" for row in rows)
+        np.testing.assert_allclose([[float(x) for x in row[:3]] for row in rows], pair.map(around, t), atol=1e-6)
+
+
+def test_measures_the_pair_and_no_other(pair):
+    quality = pair.map.measure(pair.source, pair.target)
+    assert quality.flipped_faces == 0
+    assert quality.source_to_target.p95 < 0.02
+    with pytest.raises(bespoke.InvalidInput, match="source"):
+        pair.map.measure(pair.target, pair.target)
+
+
+def test_threads_share_a_map(pair, around):
+    expected = pair.map(around)
+    found = [None] * 8
+
+    def ask(k):
+        found[k] = pair.map(around)
+
+    threads = [threading.Thread(target=ask, args=(k,)) for k in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for image in found:
+        np.testing.assert_array_equal(image, expected)
+
+
+def test_info_is_that_of_the_command(pair, command, tmp_path):
+    file = tmp_path / "map.vdb"
+    pair.map.save(file)
+    assert json.loads(command("info", file, "--json")) == pair.map.info.json
+
+
+@pytest.mark.parametrize("content", [b"", b"no volume", b"\0" * 4096])
+def test_refuses_what_is_no_asset(tmp_path, content):
+    file = tmp_path / "broken.vdb"
+    file.write_bytes(content)
+    with pytest.raises(bespoke.Error, match="broken.vdb"):
+        bespoke.Map.load(file)
+    with pytest.raises(OSError):
+        bespoke.Map.load(tmp_path / "missing.vdb")
