@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "command/example_pair.h"
 
 namespace bespoke::test {
@@ -30,6 +32,27 @@ TEST(SamplePrograms, FitApplyAndInspect) {
   EXPECT_THAT(inspect.out, HasSubstr("p13"));
 }
 
+// Another program, which knows the file's description only, carries products to where the command does.
+TEST(SamplePrograms, StrangersReaderAgreesWithApply) {
+  if (run_program({"/usr/bin/python3", "-c", "import numpy, pyopenvdb"}).exit_code != 0)
+    GTEST_SKIP() << "pyopenvdb (python3-openvdb) or NumPy is not installed";
+  const ExamplePair pair;
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--steps", "2"}}) {
+    ASSERT_EQ(pair.fit("map.vdb", extra).exit_code, 0);
+    ASSERT_EQ(pair.apply("map.vdb", {"-o", pair.file("ours.obj")}).exit_code, 0);
+    const ProgramResult read =
+        run_program({"/usr/bin/python3", BESPOKE_SOURCE_DIR "/samples/viewers/read_asset.py",
+                     pair.file("map.vdb"), pair.file("product.obj"), pair.file("theirs.obj")});
+    ASSERT_EQ(read.exit_code, 0) << read.err;
+    const Points ours = read_obj_points(pair.file("ours.obj"));
+    const Points theirs = read_obj_points(pair.file("theirs.obj"));
+    const double diagonal = (ours.rowwise().maxCoeff() - ours.rowwise().minCoeff()).norm();
+    EXPECT_LT((ours - theirs).cwiseAbs().maxCoeff(), 1e-6 * diagonal);
+  }
+  const std::string text = read_text(BESPOKE_SOURCE_DIR "/samples/viewers/read_asset.py");
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 60);
+}
+
 TEST(SamplePrograms, NameWhatTheyNeed) {
   for (const std::string name : {"fit_and_apply", "apply_asset", "inspect_asset"}) {
     EXPECT_THAT(run_program({program(name)}).err, HasSubstr("usage: " + name));
@@ -47,7 +70,7 @@ TEST(Readme, ShowsASampleVerbatim) {
 TEST(Readme, NamesEveryOptionOfTheCommand) {
   const std::string readme = read_text(BESPOKE_SOURCE_DIR "/README.md");
   for (const std::string name :
-       {"fit", "apply", "info", "check", "invert", "compose", "measure", "samples"}) {
+       {"fit", "apply", "info", "check", "invert", "compose", "export", "measure", "samples"}) {
     const std::string help = bespoke({name, "--help"}).out;
     for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
       const std::string option =

@@ -5,6 +5,7 @@
 namespace bespoke::command {
 
 /// Each adds one subcommand, which runs while the arguments are parsed.
+void add_export_command(CLI::App& app);
 void add_fit_command(CLI::App& app);
 void add_apply_command(CLI::App& app);
 void add_info_command(CLI::App& app);

@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
   add_invert_command(app);
   add_compose_command(app);
   add_measure_command(app);
+  add_export_command(app);
   add_samples_command(app);
 
   remember_interruptions();

@@ -1,0 +1,48 @@
+#include "bespoke/exchange/image_formats.h"
+
+#include <fstream>
+
+#include "bespoke/atomic_file.h"
+#include "bespoke/error.h"
+#include "bespoke/exchange/detail/image_files.h"
+
+namespace bespoke {
+namespace {
+
+struct ImageFormat {
+  std::string_view ending;
+  void (*write)(std::ostream& out, const DisplacementImage& image, const ImageNotes& notes);
+};
+
+constexpr std::array image_formats{ImageFormat{".vti", &write_vti}, ImageFormat{".nrrd", &write_nrrd}};
+
+const ImageFormat& format_of(const std::filesystem::path& path) {
+  for (const ImageFormat& format : image_formats)
+    if (path.extension() == format.ending) return format;
+  throw InvalidInput(path.string() + ": unknown ending '" + path.extension().string() +
+                     "'; displacement images are written as " + image_endings());
+}
+
+}  // namespace
+
+void write_displacement_image(const std::filesystem::path& path, const DisplacementImage& image,
+                              const ImageNotes& notes) {
+  const ImageFormat& format = format_of(path);
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    format.write(out, image, notes);
+    out.flush();
+    if (!out) throw FileError(path.string() + ": cannot be written");
+  });
+}
+
+void require_image_ending(const std::filesystem::path& path) { format_of(path); }
+
+std::string image_endings() {
+  std::string endings;
+  for (const ImageFormat& format : image_formats)
+    endings += (endings.empty() ? "" : ", ") + std::string(format.ending);
+  return endings;
+}
+
+}  // namespace bespoke

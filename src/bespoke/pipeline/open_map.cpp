@@ -1,0 +1,58 @@
+#include "bespoke/pipeline/open_map.h"
+
+#include <utility>
+#include <vector>
+
+#include "bespoke/certificate/inverse.h"
+#include "bespoke/elastic/exact_map_io.h"
+#include "bespoke/error.h"
+#include "bespoke/lattice/baked_map.h"
+
+namespace bespoke {
+namespace {
+
+/// The way back through the map's own cells.
+std::shared_ptr<const ElasticMap> inverse_map(const std::filesystem::path& path, Asset& asset) {
+  if (!whole_certificate(asset).is_bijection())
+    throw InvalidInput(path.string() + ": is not certified as a bijection, so it has no inverse");
+  std::vector<std::shared_ptr<const ElasticMap>> way_back;
+  for (auto step = asset.steps.rbegin(); step != asset.steps.rend(); ++step) {
+    const auto baked = std::make_shared<BakedMap>(step->affine, std::move(step->pyramid));
+    // The inverse refers to the baked map, which therefore goes last.
+    way_back.emplace_back(new InverseMap(*baked, asset.target_from_source),
+                          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
+  }
+  return std::make_shared<ElasticChain>(std::move(way_back));
+}
+
+}  // namespace
+
+OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {
+  Asset asset = read_asset(path, options);
+  OpenedMap map{nullptr, asset.target_from_source, asset.path};
+  switch (form) {
+    case MapForm::grids:
+      map.elastic = std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));
+      break;
+    case MapForm::exact:
+      map.elastic = stored_exact_map(path, asset);
+      break;
+    case MapForm::inverse:
+      map.elastic = inverse_map(path, asset);
+      map.target_from_source = inverse(asset.target_from_source);
+      break;
+  }
+  return map;
+}
+
+std::shared_ptr<const ElasticMap> stored_exact_map(const std::filesystem::path& path, const Asset& asset) {
+  if (asset.exact_map.empty())
+    throw InvalidInput(path.string() + ": holds no exact map; make it with `bespoke fit --keep-exact`");
+  try {
+    return parse_exact_map(asset.exact_map);
+  } catch (const FormatError& error) {
+    throw FormatError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace bespoke

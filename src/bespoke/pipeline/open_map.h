@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/mapping/elastic_map.h"
+#include "bespoke/mapping/mapping.h"
+
+namespace bespoke {
+
+/// Which map of an asset carries products.
+enum class MapForm {
+  grids,    ///< what is stored, in its fastest form
+  exact,    ///< the exact map that `fit --keep-exact` stored
+  inverse,  ///< back from the target, through the cells of a certified map
+};
+
+/// A map as products are carried through it. Any number of threads may share one.
+struct OpenedMap {
+  std::shared_ptr<const ElasticMap> elastic;
+  RigidTransform target_from_source;  ///< turned round in the inverse
+  RotationPath path = RotationPath::geodesic;
+};
+
+/// Throws as read_asset; InvalidInput when the asset has no such map.
+OpenedMap open_map(const std::filesystem::path& path, MapForm form = MapForm::grids,
+                   const ReadAssetOptions& options = {});
+
+/// The exact map that `fit --keep-exact` stored in the asset read from `path`. Throws InvalidInput when there
+/// is none, FormatError for bytes that are not one.
+std::shared_ptr<const ElasticMap> stored_exact_map(const std::filesystem::path& path, const Asset& asset);
+
+}  // namespace bespoke
