@@ -14,6 +14,9 @@ void add_invert_command(CLI::App& app);
 void add_compose_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
+void add_view_command(CLI::App& app);
+void add_pick_command(CLI::App& app);
+void add_anchors_command(CLI::App& app);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

@@ -4,6 +4,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "interruption.h"
+#include "page_output.h"
 
 int main(int argc, char** argv) {
   using namespace bespoke::command;
@@ -24,7 +25,11 @@ int main(int argc, char** argv) {
   add_measure_command(app);
   add_export_command(app);
   add_samples_command(app);
+  add_view_command(app);
+  add_pick_command(app);
+  add_anchors_command(app);
 
+  remember_arguments(argc, argv);
   remember_interruptions();
   return exit_code_of([&] {
     try {

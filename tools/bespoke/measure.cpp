@@ -11,6 +11,7 @@
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
 #include "commands.h"
+#include "map_models.h"
 #include "run_options.h"
 #include "stored_exact_map.h"
 
@@ -27,14 +28,6 @@ struct MeasureArguments {
   bool untrusted = false;
   RunOptions run;
 };
-
-/// Refuses a model that the map was not made of: its figures would say nothing about the map.
-void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
-                   const char* role) {
-  require_valid(mesh, path);
-  if (content_hash(mesh) != record.hash)
-    throw InvalidInput(path + ": is not the " + role + " that the map was made of (other vertices or faces)");
-}
 
 void run(const MeasureArguments& arguments, const Progress& progress) {
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});

@@ -1,0 +1,220 @@
+#include "bespoke/anchors/anchor_files.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "bespoke/anchors/detail/point_files.h"
+#include "bespoke/atomic_file.h"
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+
+namespace bespoke {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw FileError(path.string() + ": cannot be opened for reading");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    std::ofstream file(temporary, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) throw FileError(path.string() + ": cannot be written");
+  });
+}
+
+void require_files(const std::vector<std::filesystem::path>& paths, AnchorFormat format) {
+  const std::size_t wanted = has_file_per_side(format) ? 2 : 1;
+  if (paths.size() != wanted)
+    throw InvalidInput(
+        paths.front().string() + ": the format " + std::string(name_of(anchor_formats, format)) +
+        (wanted == 2 ? " has one file a side: give two" : " has both sides in one file: give one"));
+  for (const std::filesystem::path& path : paths)
+    if (anchor_format_of(path) != format)
+      throw InvalidInput(path.string() + ": is of another format than " + paths.front().string());
+}
+
+void require_models(AnchorFormat format, const AnchorFileOptions& options) {
+  const bool needs_them = format == AnchorFormat::wrap || format == AnchorFormat::indices;
+  if (needs_them && (options.source == nullptr || options.target == nullptr))
+    throw InvalidInput(std::string("the format ") + std::string(name_of(anchor_formats, format)) +
+                       " names places of the models: give both");
+}
+
+// ---- pairs of two sides
+
+/// Whether the points of both sides are the same names in perhaps another order, each once.
+bool are_named_alike(const std::vector<NamedPoint>& a, const std::vector<NamedPoint>& b) {
+  std::set<std::string> first, second;
+  for (const NamedPoint& point : a) first.insert(point.name);
+  for (const NamedPoint& point : b) second.insert(point.name);
+  return first == second && first.size() == a.size() && first.size() == b.size() && !first.contains("");
+}
+
+Anchors paired(const std::vector<NamedPoint>& a, const std::vector<NamedPoint>& b,
+               const std::vector<std::filesystem::path>& paths) {
+  if (a.size() != b.size())
+    throw FormatError(paths[0].string() + " has " + std::to_string(a.size()) + " points, " +
+                      paths[1].string() + " has " + std::to_string(b.size()));
+  const bool by_name = are_named_alike(a, b);
+  Anchors anchors;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const NamedPoint& other =
+        by_name ? *std::find_if(b.begin(), b.end(),
+                                [&](const NamedPoint& point) { return point.name == a[i].name; })
+                : b[i];
+    // Where the names of the sides differ the first one's stand, but no name twice.
+    const auto is_taken = [&](const AnchorPair& pair) {
+      return !a[i].name.empty() && pair.name == a[i].name;
+    };
+    const bool is_free = std::none_of(anchors.pairs.begin(), anchors.pairs.end(), is_taken);
+    anchors.pairs.push_back({is_free ? a[i].name : "", a[i].x, other.x});
+  }
+  return anchors;
+}
+
+// ---- vertex numbers
+
+Anchors parse_indices(const std::string& text, const std::string& file, const AnchorFileOptions& options) {
+  std::istringstream rows(text);
+  Anchors anchors;
+  std::string row;
+  for (int line = 1; std::getline(rows, row); ++line) {
+    const std::string where = file + ":" + std::to_string(line);
+    std::replace(row.begin(), row.end(), ',', ' ');
+    std::istringstream words(row);
+    long a = 0, b = 0;
+    std::string rest;
+    if (row.find_first_not_of(" \t\r") == std::string::npos || row[0] == '#') continue;
+    if (!(words >> a >> b) || words >> rest) throw FormatError(where + ": a line is two vertex numbers");
+    for (const auto& [number, mesh, side] :
+         {std::tuple{a, options.source, "source"}, {b, options.target, "target"}})
+      if (number < 0 || number >= mesh->vertices.cols())
+        throw FormatError(where + ": vertex " + std::to_string(number) + " of the " + side + "'s " +
+                          std::to_string(mesh->vertices.cols()));
+    anchors.pairs.push_back({"", options.source->vertices.col(a), options.target->vertices.col(b)});
+  }
+  return anchors;
+}
+
+Eigen::Index nearest_vertex(const TriangleMesh& mesh, const Vector3& x) {
+  Eigen::Index nearest = 0;
+  (mesh.vertices.colwise() - x).colwise().squaredNorm().minCoeff(&nearest);
+  return nearest;
+}
+
+std::string indices_text(const Anchors& anchors, const AnchorFileOptions& options) {
+  std::string text;
+  for (const AnchorPair& pair : anchors.pairs)
+    text += std::to_string(nearest_vertex(*options.source, pair.a)) + " " +
+            std::to_string(nearest_vertex(*options.target, pair.b)) + "\n";
+  return text;
+}
+
+// ---- this project's own
+
+std::string json_text(const Anchors& anchors) {
+  Json pairs = Json::array();
+  for (const AnchorPair& pair : anchors.pairs) {
+    Json json = Json::object();
+    if (!pair.name.empty()) json["name"] = pair.name;
+    json["a"] = {pair.a.x(), pair.a.y(), pair.a.z()};
+    json["b"] = {pair.b.x(), pair.b.y(), pair.b.z()};
+    if (std::isfinite(pair.weight)) json["weight"] = pair.weight;
+    if (pair.sigma) json["sigma"] = *pair.sigma;
+    pairs.push_back(std::move(json));
+  }
+  Json document = Json::object();
+  if (!anchors.unit.empty()) document["units"] = anchors.unit;
+  document["pairs"] = std::move(pairs);
+  return document.dump(1) + "\n";
+}
+
+std::string csv_text(const Anchors& anchors) {
+  std::ostringstream text;
+  text.precision(17);
+  text << "name,ax,ay,az,bx,by,bz,weight,sigma\n";
+  for (const AnchorPair& pair : anchors.pairs) {
+    text << '"';
+    for (const char letter : pair.name) text << (letter == '"' ? "\"\"" : std::string(1, letter));
+    text << '"';
+    for (const Vector3& x : {pair.a, pair.b}) text << ',' << x.x() << ',' << x.y() << ',' << x.z();
+    text << ',';
+    if (std::isfinite(pair.weight)) text << pair.weight;
+    text << ',';
+    if (pair.sigma) text << *pair.sigma;
+    text << '\n';
+  }
+  return text.str();
+}
+
+std::vector<NamedPoint> side_of(const Anchors& anchors, Vector3 AnchorPair::*end) {
+  std::vector<NamedPoint> points;
+  for (const AnchorPair& pair : anchors.pairs) points.push_back({pair.name, pair.*end});
+  return points;
+}
+
+}  // namespace
+
+AnchorFormat anchor_format_of(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  if (name.ends_with(".mrk.json")) return AnchorFormat::markups;
+  if (name.ends_with(".wrap.json")) return AnchorFormat::wrap;
+  if (name.ends_with(".csv")) return AnchorFormat::csv;
+  if (name.ends_with(".pp")) return AnchorFormat::meshlab;
+  if (name.ends_with(".fcsv")) return AnchorFormat::fiducials;
+  if (name.ends_with(".pts")) return AnchorFormat::landmarks;
+  if (name.ends_with(".txt")) return AnchorFormat::indices;
+  if (!name.ends_with(".json"))
+    throw InvalidInput(
+        path.string() +
+        ": unknown ending; known are .json, .csv, .pp, .mrk.json, .fcsv, .pts, .wrap.json and .txt");
+  // Wrap's files have no ending of their own; they are arrays.
+  std::ifstream file(path);
+  char first = 0;
+  return file >> first && first == '[' ? AnchorFormat::wrap : AnchorFormat::json;
+}
+
+bool has_file_per_side(AnchorFormat format) {
+  return format != AnchorFormat::json && format != AnchorFormat::csv && format != AnchorFormat::indices;
+}
+
+Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const AnchorFileOptions& options) {
+  const AnchorFormat format = anchor_format_of(paths.at(0));
+  require_files(paths, format);
+  require_models(format, options);
+  if (format == AnchorFormat::json || format == AnchorFormat::csv) return read_anchors(paths[0]);
+  if (format == AnchorFormat::indices) return parse_indices(text_of(paths[0]), paths[0].string(), options);
+  return paired(parse_points(text_of(paths[0]), format, paths[0].string(), options.source, options.models),
+                parse_points(text_of(paths[1]), format, paths[1].string(), options.target, options.models),
+                paths);
+}
+
+void write_anchor_files(const std::vector<std::filesystem::path>& paths, const Anchors& anchors,
+                        const AnchorFileOptions& options) {
+  const AnchorFormat format = anchor_format_of(paths.at(0));
+  require_files(paths, format);
+  require_models(format, options);
+  if (format == AnchorFormat::json) return write_text(paths[0], json_text(anchors));
+  if (format == AnchorFormat::csv) return write_text(paths[0], csv_text(anchors));
+  if (format == AnchorFormat::indices) return write_text(paths[0], indices_text(anchors, options));
+  write_text(paths[0], points_text(side_of(anchors, &AnchorPair::a), format, options.source, options.models));
+  write_text(paths[1], points_text(side_of(anchors, &AnchorPair::b), format, options.target, options.models));
+}
+
+}  // namespace bespoke

@@ -1,0 +1,284 @@
+#include "bespoke/anchors/detail/point_files.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+#include <string_view>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
+
+namespace bespoke {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
+
+std::string triple(const Vector3& x, const char* separator) {
+  return digits(x.x()) + separator + digits(x.y()) + separator + digits(x.z());
+}
+
+/// LPS and RAS differ by half a turn about z; twice is none.
+Vector3 turned(const Vector3& x, PatientSystem from, PatientSystem to) {
+  return from == to ? x : Vector3(-x.x(), -x.y(), x.z());
+}
+
+PatientSystem system_named(const std::string& name, const std::string& where) {
+  if (name == "LPS" || name == "1") return PatientSystem::lps;
+  if (name == "RAS" || name == "0") return PatientSystem::ras;
+  throw FormatError(where + ": the coordinate system is \"" + name + "\", not LPS or RAS");
+}
+
+double number(const std::string& text, const std::string& where) {
+  std::size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used == 0 || used != text.size() || !std::isfinite(value))
+    throw FormatError(where + ": \"" + text.substr(0, 40) + "\" is not a finite number");
+  return value;
+}
+
+std::vector<std::string> split(const std::string& row, char separator) {
+  std::vector<std::string> fields(1);
+  for (const char letter : row)
+    if (letter == separator)
+      fields.emplace_back();
+    else if (letter != '\r')
+      fields.back() += letter;
+  return fields;
+}
+
+// ---- MeshLab
+
+std::string unescaped(std::string text) {
+  constexpr std::array<std::pair<const char*, const char*>, 5> entities{
+      {{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&amp;", "&"}}};
+  for (const auto& [entity, letter] : entities)
+    for (std::size_t at = 0; (at = text.find(entity, at)) != std::string::npos; ++at)
+      text.replace(at, std::string_view(entity).size(), letter);
+  return text;
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char letter : text)
+    if (letter == '<')
+      result += "&lt;";
+    else if (letter == '"')
+      result += "&quot;";
+    else if (letter == '&')
+      result += "&amp;";
+    else
+      result += letter;
+  return result;
+}
+
+std::vector<NamedPoint> parse_meshlab(const std::string& text, const std::string& file) {
+  if (text.find("<PickedPoints") == std::string::npos)
+    throw FormatError(file + ": no <PickedPoints>: not a file of picked points");
+  const std::regex point("<point\\b([^>]*)>"), attribute("(\\w+)\\s*=\\s*\"([^\"]*)\"");
+  std::vector<NamedPoint> points;
+  for (std::sregex_iterator found(text.begin(), text.end(), point), end; found != end; ++found) {
+    const std::string attributes = found->str(1);
+    const std::string where = file + ": point " + std::to_string(points.size());
+    NamedPoint next;
+    int coordinates = 0;
+    bool is_active = true;
+    for (std::sregex_iterator pair(attributes.begin(), attributes.end(), attribute); pair != end; ++pair) {
+      const std::string key = pair->str(1), value = unescaped(pair->str(2));
+      if (key == "name") next.name = value;
+      if (key == "active") is_active = value != "0";
+      if (key.size() != 1 || key[0] < 'x' || key[0] > 'z') continue;
+      next.x[key[0] - 'x'] = number(value, where);
+      ++coordinates;
+    }
+    if (coordinates != 3) throw FormatError(where + " has not all of x, y and z");
+    if (is_active) points.push_back(next);
+  }
+  return points;
+}
+
+std::string meshlab_text(const std::vector<NamedPoint>& points) {
+  std::string text = "<!DOCTYPE PickedPoints>\n<PickedPoints>\n";
+  for (const NamedPoint& point : points)
+    text += " <point x=\"" + digits(point.x.x()) + "\" y=\"" + digits(point.x.y()) + "\" z=\"" +
+            digits(point.x.z()) + "\" active=\"1\" name=\"" + escaped(point.name) + "\"/>\n";
+  return text + "</PickedPoints>\n";
+}
+
+// ---- 3D Slicer
+
+std::vector<NamedPoint> parse_markups(const Json& document, const std::string& file, PatientSystem models) {
+  const Json& markup = document.at("markups").at(0);
+  const PatientSystem system = system_named(markup.value("coordinateSystem", "LPS"), file);
+  std::vector<NamedPoint> points;
+  for (const Json& control : markup.at("controlPoints")) {
+    if (control.value("positionStatus", "defined") != "defined") continue;
+    const Json& at = control.at("position");
+    points.push_back(
+        {control.value("label", ""),
+         turned({at.at(0).get<double>(), at.at(1).get<double>(), at.at(2).get<double>()}, system, models)});
+  }
+  return points;
+}
+
+std::string markups_text(const std::vector<NamedPoint>& points, PatientSystem models) {
+  Json controls = Json::array();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    controls.push_back({{"id", std::to_string(i + 1)},
+                        {"label", points[i].name},
+                        {"position", {points[i].x.x(), points[i].x.y(), points[i].x.z()}},
+                        {"positionStatus", "defined"}});
+  const Json markup = {{"type", "Fiducial"},
+                       {"coordinateSystem", models == PatientSystem::lps ? "LPS" : "RAS"},
+                       {"coordinateUnits", "mm"},
+                       {"controlPoints", std::move(controls)}};
+  Json document;
+  document["@schema"] =
+      "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+      "markups-schema-v1.0.3.json#";
+  document["markups"] = Json::array({markup});
+  return document.dump(1) + "\n";
+}
+
+std::vector<NamedPoint> parse_fiducials(const std::string& text, const std::string& file,
+                                        PatientSystem models) {
+  std::istringstream rows(text);
+  // What files without the line mean: 3D Slicer wrote RAS before it wrote the line.
+  PatientSystem system = PatientSystem::ras;
+  std::vector<NamedPoint> points;
+  std::string row;
+  const std::string mark = "# CoordinateSystem = ";
+  for (int line = 1; std::getline(rows, row); ++line) {
+    const std::string where = file + ":" + std::to_string(line);
+    if (!row.empty() && row.back() == '\r') row.pop_back();
+    if (row.starts_with(mark)) system = system_named(row.substr(mark.size()), where);
+    if (row.empty() || row[0] == '#') continue;
+    const std::vector<std::string> fields = split(row, ',');
+    constexpr std::size_t label_column = 11;
+    if (fields.size() < 4) throw FormatError(where + ": fewer than four columns");
+    points.push_back({fields.size() > label_column ? fields[label_column] : "",
+                      turned({number(fields[1], where), number(fields[2], where), number(fields[3], where)},
+                             system, models)});
+  }
+  return points;
+}
+
+std::string fiducials_text(const std::vector<NamedPoint>& points, PatientSystem models) {
+  std::string text = "# Markups fiducial file version = 5.0\n# CoordinateSystem = ";
+  text += models == PatientSystem::lps ? "LPS" : "RAS";
+  text += "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    // A comma would end the column.
+    const std::string label = std::regex_replace(points[i].name, std::regex(","), " ");
+    text += std::to_string(i + 1) + "," + triple(points[i].x, ",") + ",0,0,0,1,1,1,0," + label + ",,\n";
+  }
+  return text;
+}
+
+// ---- Landmark Editor
+
+std::vector<NamedPoint> parse_landmarks(const std::string& text, const std::string& file) {
+  std::istringstream rows(text);
+  std::vector<NamedPoint> points;
+  std::string row;
+  std::size_t promised = 0;
+  for (int line = 1; std::getline(rows, row); ++line) {
+    const std::string where = file + ":" + std::to_string(line);
+    std::istringstream stream(row);
+    std::vector<std::string> words;
+    for (std::string word; stream >> word;) words.push_back(word);
+    if (words.empty() || words[0] == "Version") continue;
+    if (words.size() == 1 && points.empty()) {
+      promised = static_cast<std::size_t>(number(words[0], where));
+      continue;
+    }
+    if (words.size() != 4) throw FormatError(where + ": a point is a name and three numbers");
+    points.push_back({words[0], {number(words[1], where), number(words[2], where), number(words[3], where)}});
+  }
+  if (points.size() != promised)
+    throw FormatError(file + ": " + std::to_string(points.size()) + " points, but it says " +
+                      std::to_string(promised));
+  return points;
+}
+
+std::string landmarks_text(const std::vector<NamedPoint>& points) {
+  std::string text = "Version 1.0\n" + std::to_string(points.size()) + "\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    // Names are words there.
+    std::string name = std::regex_replace(points[i].name, std::regex("\\s+"), "_");
+    if (name.empty()) name = "S" + std::to_string(i);
+    text += name + " " + triple(points[i].x, " ") + "\n";
+  }
+  return text;
+}
+
+// ---- Wrap
+
+Vector3 point_of(const TriangleMesh& mesh, const Json& entry, const std::string& where) {
+  const auto face = entry.at(0).get<Eigen::Index>();
+  const double u = entry.at(1).get<double>(), v = entry.at(2).get<double>();
+  if (face < 0 || face >= mesh.faces.cols())
+    throw FormatError(where + ": triangle " + std::to_string(face) + " of " +
+                      std::to_string(mesh.faces.cols()));
+  const auto corner = [&](int k) { return mesh.vertices.col(mesh.faces(k, face)); };
+  return (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
+}
+
+std::string wrap_text(const std::vector<NamedPoint>& points, const TriangleMesh& mesh) {
+  const ClosestPointTree tree(mesh);
+  Json list = Json::array();
+  for (const NamedPoint& point : points) {
+    const SurfacePoint near = *tree.closest(point.x);
+    list.push_back({near.face, near.barycentric[1], near.barycentric[2]});
+  }
+  return list.dump() + "\n";
+}
+
+std::vector<NamedPoint> parse_json_points(const std::string& text, AnchorFormat format,
+                                          const std::string& file, const TriangleMesh* mesh,
+                                          PatientSystem models) {
+  try {
+    const Json document = Json::parse(text);
+    if (format == AnchorFormat::markups) return parse_markups(document, file, models);
+    std::vector<NamedPoint> points;
+    for (const Json& entry : document)
+      points.push_back({"", point_of(*mesh, entry, file + ": point " + std::to_string(points.size()))});
+    return points;
+  } catch (const Json::exception& error) {
+    throw FormatError(file + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+std::vector<NamedPoint> parse_points(const std::string& text, AnchorFormat format, const std::string& file,
+                                     const TriangleMesh* mesh, PatientSystem models) {
+  if (format == AnchorFormat::meshlab) return parse_meshlab(text, file);
+  if (format == AnchorFormat::fiducials) return parse_fiducials(text, file, models);
+  if (format == AnchorFormat::landmarks) return parse_landmarks(text, file);
+  return parse_json_points(text, format, file, mesh, models);
+}
+
+std::string points_text(const std::vector<NamedPoint>& points, AnchorFormat format, const TriangleMesh* mesh,
+                        PatientSystem models) {
+  if (format == AnchorFormat::meshlab) return meshlab_text(points);
+  if (format == AnchorFormat::fiducials) return fiducials_text(points, models);
+  if (format == AnchorFormat::landmarks) return landmarks_text(points);
+  if (format == AnchorFormat::markups) return markups_text(points, models);
+  return wrap_text(points, *mesh);
+}
+
+}  // namespace bespoke

@@ -1,0 +1,51 @@
+#include "bespoke/page/fit_findings.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "bespoke/error.h"
+#include "bespoke/pipeline/summary_json.h"
+
+namespace bespoke {
+namespace {
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path))
+    throw FileError(path.string() + ": cannot be opened for reading");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+}  // namespace
+
+std::vector<double> read_confidence(const std::filesystem::path& path) {
+  std::istringstream lines(text_of(path));
+  std::vector<double> values;
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    double value = 0;
+    std::string rest;
+    if (!(words >> value) || words >> rest || !(value >= 0 && value <= 1))
+      throw FormatError(path.string() + ":" + std::to_string(values.size() + 1) + ": \"" +
+                        line.substr(0, 40) + "\" is not a number from 0 to 1");
+    values.push_back(value);
+  }
+  return values;
+}
+
+std::vector<FitFindings::Unmet> read_unmet_vertices(const std::filesystem::path& path) {
+  try {
+    const Json report = Json::parse(text_of(path));
+    std::vector<FitFindings::Unmet> unmet;
+    for (const Json& entry : report.at("unmet_vertices"))
+      unmet.push_back({entry.at("vertex").get<int>(), entry.at("residual").get<double>(),
+                       entry.at("reason").get<std::string>()});
+    return unmet;
+  } catch (const Json::exception& error) {
+    throw FormatError(path.string() + ": not a report of `bespoke fit`: " + error.what());
+  }
+}
+
+}  // namespace bespoke

@@ -1,0 +1,54 @@
+#include "bespoke/page/pick_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "bespoke/page/detail/mesh_record.h"
+
+namespace bespoke {
+namespace {
+
+Json anchors_json(const Anchors& anchors) {
+  Json pairs = Json::array();
+  for (const AnchorPair& pair : anchors.pairs) {
+    Json json = {{"name", pair.name}, {"a", to_json(pair.a)}, {"b", to_json(pair.b)}};
+    if (std::isfinite(pair.weight)) json["weight"] = pair.weight;
+    if (pair.sigma) json["sigma"] = *pair.sigma;
+    pairs.push_back(std::move(json));
+  }
+  return {{"units", anchors.unit}, {"pairs", std::move(pairs)}};
+}
+
+}  // namespace
+
+std::string pick_scene(const PickInput& input, const PickOptions& options) {
+  PackedArrays arrays;
+  Json meshes = Json::array();
+  for (const PickModel* model : {&input.source, &input.target}) {
+    require_valid(model->mesh, model->path);
+    const DisplayMesh display = display_mesh(model->mesh, std::max<std::size_t>(1, options.most_faces / 2));
+    const std::string name = std::filesystem::path(model->path).filename().string();
+    meshes.push_back(mesh_record({model == &input.source ? "source" : "target",
+                                  name,
+                                  model->mesh,
+                                  display,
+                                  {display.shown(model->mesh.vertices)},
+                                  {},
+                                  ""},
+                                 arrays));
+  }
+  const Json record = {
+      {"page", "pick"},
+      {"title", input.title},
+      {"unit", input.anchors ? input.anchors->unit : ""},
+      {"command", input.command},
+      {"key", content_hash(input.source.mesh).substr(0, 16) + content_hash(input.target.mesh).substr(0, 16)},
+      {"source_path", input.source.path},
+      {"target_path", input.target.path},
+      {"meshes", std::move(meshes)},
+      {"anchors", input.anchors ? anchors_json(*input.anchors) : Json()}};
+  return packed_scene(record, arrays);
+}
+
+}  // namespace bespoke

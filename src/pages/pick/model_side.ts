@@ -1,0 +1,174 @@
+import { Box3, Plane, Vector3 } from "three";
+
+import { element } from "../controls/elements";
+import { at_rest } from "../maths/motion";
+import type { Triple } from "../scene/scene";
+import { add_controls } from "../stage/controls";
+import { Markers } from "../stage/markers";
+import { scene_of, Stage } from "../stage/stage";
+import type { Surface } from "../stage/surface";
+import type { Model } from "../view/models";
+
+export type DragMode = "surface" | "normal" | "view";
+
+export interface SideListener {
+  clicked(point: Triple): void;
+  chosen(pair: number): void;
+  drag_started(pair: number): void;
+  dragged(pair: number, point: Triple): void;
+  turned(): void;
+  key(event: KeyboardEvent): void;
+}
+
+export interface SideMarker {
+  pair: number;
+  point: Triple;
+  colour: string;
+}
+
+const grab_radius = 9; // pixels
+
+/** One model with its points: its own stage, so that it can be turned alone. */
+export class ModelSide {
+  readonly box: HTMLElement;
+  readonly stage: Stage;
+  readonly surface: Surface;
+  readonly size: number;
+  readonly centre: Vector3;
+  drag_mode: DragMode = "surface";
+  private readonly markers = new Markers(12);
+  private readonly hint = new Markers(16);
+  private shown_markers: SideMarker[] = [];
+  private readonly ghost: Surface[] = [];
+
+  constructor(readonly model: Model, label: string, private readonly listener: SideListener) {
+    const canvas = element("canvas", { class: "drawing", tabIndex: 0, role: "application", "aria-label": `${label}. Click to set a point; drag a point to move it; drag elsewhere or arrow keys turn, Home resets.` });
+    this.box = element("div", { class: "pick-side" }, canvas, element("div", { class: "pane-label" }, label));
+    this.stage = new Stage(canvas);
+    this.surface = model.surface();
+    const scene = scene_of([this.surface.object, this.markers.object, this.hint.object]);
+    this.stage.panes = [{ label, scene, pose: at_rest, left: 0, top: 0, width: 1, height: 1 }];
+    const box = new Box3();
+    const places = model.knots[0];
+    for (let i = 0; i < places.length; i += 3) box.expandByPoint(new Vector3().fromArray(places, i));
+    this.size = box.min.distanceTo(box.max);
+    this.centre = box.getCenter(new Vector3());
+    this.stage.frame(box.min, box.max);
+    this.stage.on_draw(() => this.listener.turned());
+    add_controls(this.stage, {
+      click: (x, y) => this.click(x, y),
+      hover: () => undefined,
+      leave: () => undefined,
+      grab: (x, y) => this.grab(x, y),
+    });
+    canvas.addEventListener("keydown", (event) => this.listener.key(event));
+  }
+
+  show(markers: SideMarker[], chosen: number): void {
+    this.shown_markers = markers;
+    const large = new Set(markers.map((marker, i) => (marker.pair === chosen ? i : -1)));
+    this.markers.set(markers.map((marker) => new Vector3(...marker.point)), markers.map((marker) => marker.colour), large);
+    this.stage.draw_soon();
+  }
+
+  show_hint(point: Triple | null): void {
+    this.hint.set(point === null ? [] : [new Vector3(...point)], point === null ? [] : ["#e0b000"]);
+    this.stage.draw_soon();
+  }
+
+  /** A second surface over the model, or none. */
+  show_ghost(surface: Surface | null): void {
+    for (const old of this.ghost.splice(0)) {
+      old.object.removeFromParent();
+      old.dispose();
+    }
+    if (surface !== null) {
+      surface.set_opacity(0.45);
+      this.stage.panes[0].scene.add(surface.object);
+      this.ghost.push(surface);
+    }
+    this.stage.draw_soon();
+  }
+
+  nearest_on_surface(point: Triple): Triple {
+    const places = this.surface.places();
+    let best = 0, least = Infinity;
+    for (let i = 0; i < places.length; i += 3) {
+      const d = (places[i] - point[0]) ** 2 + (places[i + 1] - point[1]) ** 2 + (places[i + 2] - point[2]) ** 2;
+      if (d < least) [best, least] = [i, d];
+    }
+    return [places[best], places[best + 1], places[best + 2]];
+  }
+
+  private click(x: number, y: number): void {
+    const marker = this.marker_at(x, y);
+    if (marker !== null) return this.listener.chosen(marker.pair);
+    const point = this.surface_point(x, y);
+    if (point !== null) this.listener.clicked(point);
+  }
+
+  private surface_point(x: number, y: number): Triple | null {
+    const at = this.stage.ray_at(x, y);
+    return at === null ? null : ((this.surface.first_hit(at.ray)?.point.toArray() as Triple | undefined) ?? null);
+  }
+
+  private marker_at(x: number, y: number): SideMarker | null {
+    let best: SideMarker | null = null, least = grab_radius;
+    for (const marker of this.shown_markers) {
+      const pixel = this.stage.pixel_of(this.stage.panes[0], new Vector3(...marker.point));
+      const away = Math.hypot(pixel.x - x, pixel.y - y);
+      if (away < least && this.is_seen(marker, pixel.x, pixel.y)) [best, least] = [marker, away];
+    }
+    return best;
+  }
+
+  /** Whether the model does not hide it. */
+  private is_seen(marker: SideMarker, x: number, y: number): boolean {
+    const at = this.stage.ray_at(x, y);
+    if (at === null) return false;
+    const hit = this.surface.first_hit(at.ray);
+    return hit === null || hit.distance > at.ray.origin.distanceTo(new Vector3(...marker.point)) - 0.02 * this.size;
+  }
+
+  private grab(x: number, y: number): { move(x: number, y: number): void; release(): void } | null {
+    const marker = this.marker_at(x, y);
+    if (marker === null) return null;
+    const start = new Vector3(...marker.point);
+    const normal = this.normal_near(marker.point);
+    let has_moved = false;
+    const move = (now_x: number, now_y: number): void => {
+      const point = this.dragged_point(start, normal, now_x, now_y);
+      if (point === null || (!has_moved && Math.hypot(now_x - x, now_y - y) < 4)) return;
+      if (!has_moved) this.listener.drag_started(marker.pair);
+      has_moved = true;
+      this.listener.dragged(marker.pair, point);
+    };
+    return { move, release: () => undefined };
+  }
+
+  private dragged_point(start: Vector3, normal: Vector3, x: number, y: number): Triple | null {
+    if (this.drag_mode === "surface") return this.surface_point(x, y);
+    const at = this.stage.ray_at(x, y);
+    if (at === null) return null;
+    if (this.drag_mode === "view") {
+      const plane = new Plane().setFromNormalAndCoplanarPoint(at.ray.direction, start);
+      return (at.ray.intersectPlane(plane, new Vector3())?.toArray() as Triple | undefined) ?? null;
+    }
+    // The point of the normal's line that is nearest to the ray.
+    const across = new Vector3().crossVectors(normal, at.ray.direction);
+    const squared = across.lengthSq();
+    if (squared < 1e-4) return null; // looking along the normal: how far cannot be told
+    const along = new Vector3().subVectors(at.ray.origin, start).cross(at.ray.direction).dot(across) / squared;
+    return start.clone().addScaledVector(normal, along).toArray() as Triple;
+  }
+
+  private normal_near(point: Triple): Vector3 {
+    const places = this.surface.places();
+    let best = 0, least = Infinity;
+    for (let i = 0; i < places.length; i += 3) {
+      const d = (places[i] - point[0]) ** 2 + (places[i + 1] - point[1]) ** 2 + (places[i + 2] - point[2]) ** 2;
+      if (d < least) [best, least] = [i / 3, d];
+    }
+    return this.surface.normal_at(best);
+  }
+}

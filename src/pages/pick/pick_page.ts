@@ -1,0 +1,288 @@
+import { Vector3 } from "three";
+
+import { button_group, checkbox, element, tabs, theme_button } from "../controls/elements";
+import { mirrored, symmetry_plane, type Plane } from "../maths/mirror";
+import { shown } from "../maths/numbers";
+import { distance } from "../maths/warp";
+import type { PickRecord, Triple } from "../scene/scene";
+import { Surface } from "../stage/surface";
+import { Model } from "../view/models";
+import { check_pairs, next_place, type PairChecks } from "./checks";
+import { anchors_csv, anchors_json, parse_anchors, parse_json } from "./formats";
+import { History, type PickedPair } from "./history";
+import { type DragMode, ModelSide, type SideListener } from "./model_side";
+
+const colours = ["#1d6fd1", "#c2410c", "#0f766e", "#7e22ce", "#a16207", "#be185d", "#4d7c0f", "#334155"];
+const mirror_names: [RegExp, string][] = [[/left/i, "right"], [/right/i, "left"], [/_l$/i, "_r"], [/_r$/i, "_l"], [/\bl\b/i, "r"], [/\br\b/i, "l"]];
+
+/** The page for picking anchors. */
+export function pick_page(root: HTMLElement, record: PickRecord, bytes: Uint8Array): void {
+  new PickPage(root, record, bytes);
+}
+
+type Side = "a" | "b";
+
+class PickPage {
+  private readonly history: History;
+  private readonly sides: Record<Side, ModelSide>;
+  private readonly list = element("tbody", {});
+  private readonly warnings = element("ul", { class: "plain", role: "status", "aria-label": "Warnings" });
+  private readonly undo_button = element("button", { type: "button", onclick: () => this.history.undo() }, "Undo");
+  private readonly redo_button = element("button", { type: "button", onclick: () => this.history.redo() }, "Redo");
+  private readonly command = element("pre", {});
+  private readonly message = element("p", { class: "soft", role: "status" });
+  private planes: Record<Side, Plane> | null = null;
+  private chosen = -1;
+  private linked = true;
+  private has_preview = false;
+  private has_hint = false;
+  private active: Side = "a";
+  private checks: PairChecks;
+
+  constructor(root: HTMLElement, private readonly record: PickRecord, bytes: Uint8Array) {
+    const given = record.anchors === null ? [] : parse_json(record.anchors);
+    this.history = new History(`bespoke-pick-${record.key}`, given, () => this.refresh());
+    const models = record.meshes.map((mesh) => new Model(mesh, bytes));
+    this.sides = { a: this.side("a", models[0]), b: this.side("b", models[1]) };
+    const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
+    this.checks = check_pairs(this.history.pairs);
+    root.classList.add("pick");
+    root.append(this.head(), stage, this.panel());
+    document.addEventListener("keydown", (event) => this.shortcut(event));
+    this.refresh();
+    Object.assign(window, {
+      bespoke: {
+        pairs: () => structuredClone(this.history.pairs),
+        pixel: (side: Side, point: Triple) => this.pixel(side, point),
+        draw: () => [this.sides.a, this.sides.b].forEach((each) => each.stage.draw()),
+      },
+    });
+  }
+
+  private side(name: Side, model: Model): ModelSide {
+    const listener: SideListener = {
+      clicked: (point) => this.set_point(name, point),
+      chosen: (pair) => this.choose(pair),
+      drag_started: (pair) => {
+        this.chosen = pair;
+        this.history.change(() => undefined);
+      },
+      dragged: (pair, point) => this.history.change_again((pairs) => (pairs[pair][name] = point)),
+      turned: () => this.follow(name),
+      key: (event) => {
+        if (event.key === "Delete" || event.key === "Backspace") this.remove(this.chosen);
+      },
+    };
+    const side = new ModelSide(model, `${name === "a" ? "Source" : "Target"}: ${model.record.name}`, listener);
+    side.box.addEventListener("pointerenter", () => (this.active = name));
+    side.box.addEventListener("focusin", () => (this.active = name));
+    return side;
+  }
+
+  private head(): HTMLElement {
+    const plain = (label: string, action: () => void): HTMLElement => element("button", { type: "button", onclick: action }, label);
+    const views = element("div", { class: "group", role: "group", "aria-label": "Views" },
+      ...(["front", "side", "top"] as const).map((side) => plain(side[0].toUpperCase() + side.slice(1), () => this.both((each) => each.stage.look_from(side)))),
+      plain("Reset", () => this.both((each) => each.stage.reset())));
+    const drag = button_group("Dragging a point moves it", [{ value: "surface", label: "On surface" }, { value: "normal", label: "Along normal" }, { value: "view", label: "In view plane" }], "surface",
+      (mode) => this.both((each) => (each.drag_mode = mode as DragMode)));
+    return element("header", {}, element("h1", {}, this.record.title), element("span", { class: "space" }), this.undo_button, this.redo_button, drag, views, theme_button(() => this.both((each) => each.stage.draw_soon())));
+  }
+
+  private panel(): HTMLElement {
+    const button = (label: string, action: () => void, name = ""): HTMLElement => element("button", { type: "button", class: name, onclick: action }, label);
+    const file = element("input", { type: "file", accept: ".json,.csv", hidden: true, onchange: () => void this.import_file(file) });
+    const heads = ["", "name", "σ", "left out", ""].map((head) => element("th", { scope: "col" }, head));
+    const pairs = element("section", {},
+      element("p", { class: "soft" }, "Click a point on the source, then its counterpart on the target. Drag points to move them."),
+      this.warnings,
+      element("table", {}, element("thead", {}, element("tr", {}, ...heads)), this.list),
+      element("p", {}, ""),
+      element("p", {}, button("Mirror chosen", () => this.mirror(false)), " ", button("Mirror all", () => this.mirror(true)), " ", button("Delete all", () => this.history.change((all) => all.splice(0)))),
+      this.message,
+      checkbox("Cameras linked", true, (on) => (this.linked = on)),
+      checkbox("Preview: the source, warped by the pairs, over the target", false, (on) => { this.has_preview = on; this.refresh(); }),
+      checkbox("Show where the next pair would help most", false, (on) => { this.has_hint = on; this.refresh(); }));
+    const saving = element("section", {},
+      element("h2", {}, "Save"),
+      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.pairs, this.record.unit)), "main"), " ",
+        button("Save as CSV", () => this.save("anchors.csv", anchors_csv(this.history.pairs)))),
+      element("h2", {}, "Then fit"), this.command,
+      element("h2", {}, "Import"),
+      element("p", {}, button("Open JSON or CSV", () => file.click()), file),
+      element("p", { class: "soft" }, "bespoke anchors convert makes JSON of MeshLab, 3D Slicer, Wrap and Landmark Editor files. Work is kept in this browser until it is deleted."));
+    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Save and import", body: saving }]));
+  }
+
+  // ---- pairs
+
+  private set_point(side: Side, point: Triple): void {
+    const pairs = this.history.pairs;
+    // The chosen pair if it lacks this end, else any that does, else a new one.
+    const lacking = (i: number): boolean => pairs[i] !== undefined && pairs[i][side] === null;
+    const index = lacking(this.chosen) ? this.chosen : pairs.findIndex((_, i) => lacking(i));
+    this.chosen = index >= 0 ? index : pairs.length;
+    this.history.change((all) => {
+      if (index >= 0) all[index][side] = point;
+      else all.push({ name: this.free_name(), a: side === "a" ? point : null, b: side === "b" ? point : null, sigma: null, weight: null });
+    });
+  }
+
+  private free_name(): string {
+    const taken = new Set(this.history.pairs.map((pair) => pair.name));
+    let number = 1;
+    while (taken.has(`p${number}`)) ++number;
+    return `p${number}`;
+  }
+
+  private remove(index: number): void {
+    if (this.history.pairs[index] === undefined) return;
+    this.chosen = -1;
+    this.history.change((pairs) => pairs.splice(index, 1));
+  }
+
+  private choose(index: number): void {
+    this.chosen = index;
+    this.refresh();
+  }
+
+  private mirror(all: boolean): void {
+    this.planes ??= { a: this.plane("a"), b: this.plane("b") };
+    const planes = this.planes;
+    const added: PickedPair[] = [];
+    const pairs = this.history.pairs;
+    const reach = 0.02; // of the size: what lies nearer to the plane has no other side
+    for (const [i, pair] of pairs.entries()) {
+      if (pair.a === null || pair.b === null || (!all && i !== this.chosen)) continue;
+      const a = this.sides.a.nearest_on_surface(mirrored(pair.a, planes.a));
+      const b = this.sides.b.nearest_on_surface(mirrored(pair.b, planes.b));
+      const is_there = [...pairs, ...added].some((other) => other.a !== null && distance(other.a, a) < reach * this.sides.a.size);
+      if (!is_there) added.push({ ...pair, name: this.mirror_name(pair.name, [...pairs, ...added]), a, b });
+    }
+    const quality = (plane: Plane): string => `${shown(100 * plane.misfit)} %`;
+    this.message.textContent = `${added.length} mirrored. Symmetric to ${quality(planes.a)} of the size (source) and ${quality(planes.b)} (target): check them.`;
+    if (added.length > 0) this.history.change((every) => every.push(...added));
+  }
+
+  private plane(side: Side): Plane {
+    const places = this.sides[side].surface.places();
+    const points: Triple[] = [];
+    for (let i = 0; i < places.length; i += 3) points.push([places[i], places[i + 1], places[i + 2]]);
+    return symmetry_plane(points);
+  }
+
+  private mirror_name(name: string, pairs: PickedPair[]): string {
+    const rule = mirror_names.find(([pattern]) => pattern.test(name));
+    const wished = rule === undefined ? `${name}_mirrored` : name.replace(rule[0], rule[1]);
+    let unique = wished;
+    for (let k = 2; pairs.some((pair) => pair.name === unique); ++k) unique = `${wished}_${k}`;
+    return unique;
+  }
+
+  // ---- what is shown
+
+  private refresh(): void {
+    if (this.sides === undefined) return;
+    const pairs = this.history.pairs;
+    this.checks = check_pairs(pairs);
+    for (const side of ["a", "b"] as const)
+      this.sides[side].show(pairs.flatMap((pair, i) => (pair[side] === null ? [] : [{ pair: i, point: pair[side], colour: colours[i % colours.length] }])), this.chosen);
+    this.undo_button.disabled = !this.history.can_undo;
+    this.redo_button.disabled = !this.history.can_redo;
+    this.list.replaceChildren(...pairs.map((pair, i) => this.pair_row(pair, i)));
+    this.warnings.replaceChildren(...this.checks.warnings.map((text) => element("li", { class: "warn" }, text)));
+    this.command.textContent = `bespoke fit ${this.record.source_path} ${this.record.target_path} --anchors anchors.json -o map.vdb`;
+    this.sides.a.show_hint(this.has_hint ? next_place(this.sides.a.surface.places(), pairs.flatMap((pair) => (pair.a === null ? [] : [pair.a]))) : null);
+    this.show_preview();
+  }
+
+  private show_preview(): void {
+    const { warp } = this.checks;
+    if (!this.has_preview || warp === null) return this.sides.b.show_ghost(null);
+    const model = this.sides.a.model;
+    const places = new Float32Array(model.knots[0].length);
+    for (let i = 0; i < places.length; i += 3) places.set(warp([model.knots[0][i], model.knots[0][i + 1], model.knots[0][i + 2]]), i);
+    this.sides.b.show_ghost(new Surface([places], model.faces, "#c9824f"));
+  }
+
+  private pair_row(pair: PickedPair, index: number): HTMLElement {
+    const complete = this.checks.complete.indexOf(pair as PairChecks["complete"][number]);
+    const off = complete >= 0 ? this.checks.left_out[complete] : null;
+    const suspicion = complete >= 0 ? this.checks.suspicions[complete] : "";
+    const name = element("input", { type: "text", value: pair.name, "aria-label": `Name of pair ${index + 1}`, class: "name" });
+    name.addEventListener("change", () => this.history.change((pairs) => (pairs[index].name = name.value.trim())));
+    const sigma = element("input", { type: "number", "aria-label": `Sigma of ${pair.name}`, value: pair.sigma === null ? "" : String(pair.sigma), placeholder: "auto", step: "any", min: "0" });
+    sigma.addEventListener("change", () => this.history.change((pairs) => (pairs[index].sigma = sigma.value === "" || sigma.valueAsNumber < 0 ? null : sigma.valueAsNumber)));
+    const swatch = element("button", { type: "button", class: "swatch", title: "Choose this pair", "aria-label": `Choose ${pair.name}`, onclick: () => this.fly_to(index) });
+    swatch.style.background = colours[index % colours.length];
+    const state = pair.a === null ? "no source" : pair.b === null ? "no target" : shown(off);
+    const line = element("tr", { class: index === this.chosen ? "chosen" : "" },
+      element("td", {}, swatch), element("td", {}, name, suspicion === "" ? null : element("div", { class: "warn" }, suspicion)),
+      element("td", {}, sigma), element("td", {}, state),
+      element("td", {}, element("button", { type: "button", "aria-label": `Delete ${pair.name}`, onclick: () => this.remove(index) }, "×")));
+    return line;
+  }
+
+  private fly_to(index: number): void {
+    this.choose(index);
+    const pair = this.history.pairs[index];
+    for (const side of ["a", "b"] as const) {
+      const point = pair[side];
+      if (point !== null) this.sides[side].stage.fly_to(new Vector3(...point), 0.08 * this.sides[side].size);
+    }
+  }
+
+  private both(action: (side: ModelSide) => void): void {
+    action(this.sides.a);
+    action(this.sides.b);
+  }
+
+  /** The other camera does what the active one did, in proportion. */
+  private follow(side: Side): void {
+    if (!this.linked || side !== this.active || this.sides === undefined) return;
+    const from = this.sides[side], to = this.sides[side === "a" ? "b" : "a"];
+    const scale = to.size / from.size;
+    const centre = from.stage.view.centre.clone().sub(from.centre).multiplyScalar(scale).add(to.centre);
+    const before = JSON.stringify(to.stage.view);
+    Object.assign(to.stage.view, from.stage.view, { centre, half_height: from.stage.view.half_height * scale });
+    if (JSON.stringify(to.stage.view) !== before) to.stage.draw_soon();
+  }
+
+  // ---- keys and files
+
+  private shortcut(event: KeyboardEvent): void {
+    const is_typing = event.target instanceof HTMLInputElement && event.target.type !== "checkbox";
+    if (is_typing || !(event.ctrlKey || event.metaKey)) return;
+    const key = event.key.toLowerCase();
+    if (key === "z" && !event.shiftKey) this.history.undo();
+    else if (key === "y" || (key === "z" && event.shiftKey)) this.history.redo();
+    else return;
+    event.preventDefault();
+  }
+
+  private save(name: string, text: string): void {
+    const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+    element("a", { href: url, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(url), 1000);
+  }
+
+  private async import_file(input: HTMLInputElement): Promise<void> {
+    const file = input.files?.[0];
+    if (file === undefined) return;
+    try {
+      const pairs = parse_anchors(await file.text());
+      this.history.change((all) => all.splice(0, all.length, ...pairs));
+      this.message.textContent = `${pairs.length} pairs from ${file.name}.`;
+    } catch (error) {
+      this.message.textContent = `${file.name}: ${error instanceof Error ? error.message : String(error)}`;
+    }
+    input.value = "";
+  }
+
+  private pixel(side: Side, point: Triple): number[] {
+    const { stage } = this.sides[side];
+    const box = stage.canvas.getBoundingClientRect();
+    const at = stage.pixel_of(stage.panes[0], new Vector3(...point));
+    return [box.left + at.x, box.top + at.y];
+  }
+}

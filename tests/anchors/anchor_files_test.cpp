@@ -1,0 +1,174 @@
+#include "bespoke/anchors/anchor_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bespoke/error.h"
+#include "support/error_message.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+using test::error_message;
+using test::ScratchDirectory;
+using test::write_text;
+using testing::HasSubstr;
+
+class AnchorFiles : public testing::Test {
+ protected:
+  std::vector<std::filesystem::path> paths(const std::vector<std::string>& names) const {
+    std::vector<std::filesystem::path> found;
+    for (const std::string& name : names) found.push_back(directory_ / name);
+    return found;
+  }
+  std::vector<std::filesystem::path> write(const std::string& name, const std::string& text) const {
+    write_text(directory_ / name, text);
+    return paths({name});
+  }
+  std::vector<std::filesystem::path> write(const std::string& first, const std::string& a,
+                                           const std::string& second, const std::string& b) const {
+    write_text(directory_ / first, a);
+    write_text(directory_ / second, b);
+    return paths({first, second});
+  }
+
+  ScratchDirectory directory_;
+  TriangleMesh source_ = shapes::icosphere(2);
+  TriangleMesh target_ = shapes::moved(shapes::icosphere(2), {2 * Matrix3::Identity(), Vector3(1, 2, 3)});
+  AnchorFileOptions models_{&source_, &target_};
+};
+
+/// Names without blanks, points on a vertex and within a face.
+Anchors two_pairs(const TriangleMesh& source, const TriangleMesh& target) {
+  const auto middle = [](const TriangleMesh& mesh) {
+    return Vector3((mesh.vertices.col(mesh.faces(0, 5)) + mesh.vertices.col(mesh.faces(1, 5)) +
+                    mesh.vertices.col(mesh.faces(2, 5))) /
+                   3);
+  };
+  return {
+      "",
+      {{"chin", source.vertices.col(7), target.vertices.col(9)}, {"nose", middle(source), middle(target)}}};
+}
+
+TEST_F(AnchorFiles, KeepPointsThroughEveryFormatOfPoints) {
+  const Anchors anchors = two_pairs(source_, target_);
+  const std::vector<std::vector<std::string>> files{{"x.json"},
+                                                    {"x.csv"},
+                                                    {"a.pp", "b.pp"},
+                                                    {"a.mrk.json", "b.mrk.json"},
+                                                    {"a.fcsv", "b.fcsv"},
+                                                    {"a.pts", "b.pts"},
+                                                    {"a.wrap.json", "b.wrap.json"}};
+  for (const std::vector<std::string>& names : files) {
+    write_anchor_files(paths(names), anchors, models_);
+    const Anchors found = read_anchor_files(paths(names), models_);
+    ASSERT_EQ(found.pairs.size(), 2u) << names[0];
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_LT((found.pairs[i].a - anchors.pairs[i].a).norm(), 1e-14) << names[0];
+      EXPECT_LT((found.pairs[i].b - anchors.pairs[i].b).norm(), 1e-14) << names[0];
+      const bool has_names = names[0] != "a.wrap.json";
+      EXPECT_EQ(found.pairs[i].name, has_names ? anchors.pairs[i].name : "") << names[0];
+    }
+  }
+}
+
+TEST_F(AnchorFiles, KeepAccuracyAndUnitInTheirOwnFormats) {
+  Anchors anchors = two_pairs(source_, target_);
+  anchors.unit = "cm";
+  anchors.pairs[0].sigma = 0.25;
+  anchors.pairs[1].weight = 3;
+  anchors.pairs[1].name = "a \"quoted\", name";
+  for (const std::string name : {"x.json", "x.csv"}) {
+    write_anchor_files(paths({name}), anchors);
+    const Anchors found = read_anchor_files(paths({name}));
+    EXPECT_EQ(found.pairs[0].sigma, 0.25);
+    EXPECT_EQ(found.pairs[1].weight, 3);
+    EXPECT_EQ(found.pairs[1].name, anchors.pairs[1].name);
+    EXPECT_EQ(found.pairs[1].a, anchors.pairs[1].a);
+  }
+}
+
+TEST_F(AnchorFiles, VertexNumbersAreTheNearestVertices) {
+  write_anchor_files(paths({"x.txt"}), two_pairs(source_, target_), models_);
+  const Anchors found = read_anchor_files(paths({"x.txt"}), models_);
+  EXPECT_EQ(found.pairs[0].a, source_.vertices.col(7));
+  EXPECT_EQ(found.pairs[0].b, target_.vertices.col(9));
+  EXPECT_THAT(
+      error_message<FormatError>([&] { read_anchor_files(write("y.txt", "3 4\n\n7 999\n"), models_); }),
+      HasSubstr("y.txt:3: vertex 999 of the target's 162"));
+  EXPECT_THROW(read_anchor_files(write("z.txt", "3\n"), models_), FormatError);
+}
+
+TEST_F(AnchorFiles, MeshLabsPointsMayBeSwitchedOff) {
+  const auto files =
+      write("a.pp",
+            "<!DOCTYPE PickedPoints>\n<PickedPoints>\n <DocumentData/>\n"
+            " <point z=\"3\" x=\"1\" active=\"1\" y=\"-2e-1\" name=\"A &amp; B\"/>\n"
+            " <point x=\"9\" y=\"9\" z=\"9\" active=\"0\" name=\"off\"/>\n</PickedPoints>\n",
+            "b.pp", "<PickedPoints><point x='1'/><point x=\"4\" y=\"5\" z=\"6\" name=\"A\"/></PickedPoints>");
+  EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(files); }),
+              HasSubstr("b.pp: point 0 has not all of x"));
+  write_text(files[1], "<PickedPoints><point x=\"4\" y=\"5\" z=\"6\" name=\"other\"/></PickedPoints>");
+  const Anchors found = read_anchor_files(files);
+  ASSERT_EQ(found.pairs.size(), 1u);
+  EXPECT_EQ(found.pairs[0].name, "A & B");
+  EXPECT_EQ(found.pairs[0].a, Vector3(1, -0.2, 3));
+  EXPECT_EQ(found.pairs[0].b, Vector3(4, 5, 6));
+}
+
+TEST_F(AnchorFiles, SlicersCoordinatesAreTurnedIntoThoseOfTheModels) {
+  const auto markup = [](const std::string& system) {
+    return R"({"markups":[{"type":"Fiducial","coordinateSystem":")" + system +
+           R"(","controlPoints":[{"label":"F-1","position":[1,2,3],"positionStatus":"defined"},)"
+           R"({"label":"F-2","position":[9,9,9],"positionStatus":"undefined"}]}]})";
+  };
+  const Anchors found = read_anchor_files(write("a.mrk.json", markup("LPS"), "b.mrk.json", markup("RAS")));
+  ASSERT_EQ(found.pairs.size(), 1u);
+  EXPECT_EQ(found.pairs[0].a, Vector3(1, 2, 3));
+  EXPECT_EQ(found.pairs[0].b, Vector3(-1, -2, 3));
+  const Anchors in_ras =
+      read_anchor_files(paths({"a.mrk.json", "b.mrk.json"}), {nullptr, nullptr, PatientSystem::ras});
+  EXPECT_EQ(in_ras.pairs[0].a, Vector3(-1, -2, 3));
+  EXPECT_EQ(in_ras.pairs[0].b, Vector3(1, 2, 3));
+  EXPECT_THROW(read_anchor_files(write("a.mrk.json", markup("XYZ"), "b.mrk.json", markup("RAS"))),
+               FormatError);
+}
+
+TEST_F(AnchorFiles, OldFiducialsAreRasUnlessTheySayOtherwise) {
+  const std::string row = "vtkMRMLMarkupsFiducialNode_0,1,2,3,0,0,0,1,1,1,0,tip,,\n";
+  const Anchors found =
+      read_anchor_files(write("a.fcsv", row, "b.fcsv", "# CoordinateSystem = LPS\r\n" + row));
+  EXPECT_EQ(found.pairs[0].name, "tip");
+  EXPECT_EQ(found.pairs[0].a, Vector3(-1, -2, 3));
+  EXPECT_EQ(found.pairs[0].b, Vector3(1, 2, 3));
+  EXPECT_THAT(
+      error_message<FormatError>([&] { read_anchor_files(write("a.fcsv", "a,1,x,3\n", "b.fcsv", row)); }),
+      HasSubstr("a.fcsv:1: \"x\""));
+}
+
+TEST_F(AnchorFiles, PointsOfOneNameArePairsInAnyOrder) {
+  const auto files = write("a.pts", "Version 1.0\n2\nS000 1 2 3\nS001 4 5 6\n", "b.pts",
+                           "Version 1.0\n2\nS001 40 50 60\nS000 10 20 30\n");
+  const Anchors found = read_anchor_files(files);
+  EXPECT_EQ(found.pairs[0].b, Vector3(10, 20, 30));
+  EXPECT_EQ(found.pairs[1].b, Vector3(40, 50, 60));
+  EXPECT_THROW(read_anchor_files(write("a.pts", "Version 1.0\n3\nS000 1 2 3\n", "b.pts", "")), FormatError);
+}
+
+TEST_F(AnchorFiles, RefuseMissingSidesModelsAndEndings) {
+  const auto message = [&](const std::vector<std::string>& names, const AnchorFileOptions& options) {
+    return error_message<InvalidInput>([&] { read_anchor_files(paths(names), options); });
+  };
+  EXPECT_THAT(message({"a.pp"}, {}), HasSubstr("one file a side"));
+  EXPECT_THAT(message({"a.csv", "b.csv"}, {}), HasSubstr("both sides in one file"));
+  EXPECT_THAT(message({"a.pp", "b.pts"}, {}), HasSubstr("another format"));
+  EXPECT_THAT(message({"a.wrap.json", "b.wrap.json"}, {}), HasSubstr("give both"));
+  EXPECT_THAT(message({"a.xml"}, {}), HasSubstr("unknown ending"));
+  EXPECT_THROW(read_anchor_files(paths({"a.pp", "b.pp"})), FileError);
+}
+
+}  // namespace
+}  // namespace bespoke

@@ -1,0 +1,57 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bespoke/anchors/anchors.h"
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(AnchorsCommand, ConvertsThereAndBack) {
+  const ExamplePair pair;
+  const ProgramResult there =
+      bespoke({"anchors", "convert", pair.file("anchors.json"), "-o", pair.file("a.mrk.json"),
+               pair.file("b.mrk.json"), "--coordinates", "RAS"});
+  EXPECT_EQ(there.exit_code, 0) << there.err;
+  EXPECT_THAT(read_text(pair.file("a.mrk.json")), HasSubstr("RAS"));
+  const ProgramResult back = bespoke({"anchors", "convert", pair.file("a.mrk.json"), pair.file("b.mrk.json"),
+                                      "-o", pair.file("back.csv"), "--coordinates", "RAS"});
+  EXPECT_EQ(back.exit_code, 0) << back.err;
+  const Anchors first = read_anchors(pair.file("anchors.json")), last = read_anchors(pair.file("back.csv"));
+  EXPECT_EQ(source_points(first), source_points(last));
+  EXPECT_EQ(target_points(first), target_points(last));
+}
+
+TEST(AnchorsCommand, NamesWhatIsSuspicious) {
+  const ExamplePair pair;
+  const ProgramResult sound = bespoke({"anchors", "audit", pair.file("anchors.json"), "--source",
+                                       pair.file("source.obj"), "--target", pair.file("target.obj")});
+  EXPECT_EQ(sound.exit_code, 0) << sound.err;
+  EXPECT_THAT(sound.out, HasSubstr("nothing is suspicious"));
+  Anchors anchors = read_anchors(pair.file("anchors.json"));
+  std::swap(anchors.pairs[2].b, anchors.pairs[9].b);
+  std::string rows;
+  for (const AnchorPair& each : anchors.pairs) {
+    rows += each.name;
+    for (const Vector3& x : {each.a, each.b})
+      for (int axis = 0; axis < 3; ++axis) rows += "," + std::to_string(x[axis]);
+    rows += "\n";
+  }
+  write_text(pair.file("swapped.csv"), rows);
+  const ProgramResult swapped = bespoke({"anchors", "audit", pair.file("swapped.csv")});
+  EXPECT_EQ(swapped.exit_code, 0) << swapped.err;
+  EXPECT_THAT(swapped.out, HasSubstr("p2"));
+  EXPECT_THAT(swapped.out, HasSubstr("p9"));
+}
+
+TEST(AnchorsCommand, RefusesWhatItCannotRead) {
+  const ExamplePair pair;
+  EXPECT_EQ(bespoke({"anchors", "convert", pair.file("source.obj"), "-o", pair.file("x.json")}).exit_code, 2);
+  EXPECT_EQ(bespoke({"anchors", "audit", pair.file("none.csv")}).exit_code, 4);
+  EXPECT_EQ(bespoke({"anchors"}).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace bespoke::test

@@ -1,0 +1,61 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+using testing::AnyOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A build without Node.js has no pages; then the commands must say so.
+bool has_pages(const ExamplePair& pair) {
+  const ProgramResult result =
+      bespoke({"pick", pair.file("source.obj"), pair.file("target.obj"), "-o", pair.file("pick.html")});
+  if (result.exit_code == 0) return true;
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("built without its pages"));
+  return false;
+}
+
+TEST(ViewCommand, WritesOneFileThatNamesNoOther) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  ASSERT_EQ(pair.fit("map.vdb", {"--confidence-out", pair.file("a.conf"), "--report", pair.file("fit.json")})
+                .exit_code,
+            0);
+  const ProgramResult result =
+      bespoke({"view", pair.file("map.vdb"), "--source", pair.file("source.obj"), "--target",
+               pair.file("target.obj"), "--product", pair.file("product.obj"), "--confidence",
+               pair.file("a.conf"), "--fit-report", pair.file("fit.json"), "-o", pair.file("view.html")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::string page = read_text(pair.file("view.html"));
+  EXPECT_THAT(page, HasSubstr("<!doctype html>"));
+  EXPECT_THAT(page, Not(AnyOf(HasSubstr("src=\"http"), HasSubstr("href=\"http"))));
+  EXPECT_THAT(page, Not(HasSubstr("{{")));
+}
+
+TEST(ViewCommand, RefusesOtherModelsAndFindings) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto view = [&](const std::string& source, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"view",     pair.file("map.vdb"),    "--source", pair.file(source),
+                                   "--target", pair.file("target.obj"), "-o",       pair.file("view.html")};
+    words.insert(words.end(), more.begin(), more.end());
+    return bespoke(words);
+  };
+  EXPECT_THAT(view("target.obj", {}).err, HasSubstr("is not the source that the map was made of"));
+  write_text(pair.file("bad.conf"), "0.5\n1.5\n");
+  const ProgramResult bad = view("source.obj", {"--confidence", pair.file("bad.conf")});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.conf:2"));
+  write_text(pair.file("bad.json"), "{}");
+  EXPECT_THAT(view("source.obj", {"--fit-report", pair.file("bad.json")}).err, HasSubstr("not a report"));
+  EXPECT_FALSE(pair.has("view.html"));
+}
+
+}  // namespace
+}  // namespace bespoke::test

@@ -1,0 +1,58 @@
+#include "map_models.h"
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/error.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/mesh/product_io.h"
+
+namespace bespoke::command {
+
+void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
+  app.add_option("MAP", arguments.map, "Asset made by `bespoke fit`")->required();
+  app.add_option("--source", arguments.source, "Model that the map leads from")
+      ->required()
+      ->type_name("MESH");
+  app.add_option("--target", arguments.target, "Model that the map leads to")->required()->type_name("MESH");
+  app.add_option("--product", arguments.products,
+                 "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+      ->type_name("MESH");
+  app.add_option("--confidence", arguments.confidence, "What `fit --confidence-out` wrote")
+      ->type_name("FILE");
+  app.add_option("--fit-report", arguments.fit_report, "What `fit --report` wrote: vertices not met, and why")
+      ->type_name("FILE");
+  app.add_flag("--untrusted", arguments.untrusted, "Check the asset in a child process under limits first");
+}
+
+std::vector<std::filesystem::path> inputs_of(const MapModelArguments& arguments) {
+  std::vector<std::filesystem::path> inputs{arguments.map, arguments.source, arguments.target};
+  inputs.insert(inputs.end(), arguments.products.begin(), arguments.products.end());
+  for (const std::string& file : {arguments.confidence, arguments.fit_report})
+    if (!file.empty()) inputs.push_back(file);
+  return inputs;
+}
+
+MapModels read_map_models(const MapModelArguments& arguments) {
+  MapModels models;
+  models.asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
+  models.source = read_triangle_mesh(arguments.source);
+  models.target = read_triangle_mesh(arguments.target);
+  require_model(arguments.source, models.source, models.asset.record.source, "source");
+  require_model(arguments.target, models.target, models.asset.record.target, "target");
+  for (const std::string& path : arguments.products) {
+    const Product product = read_product(path);
+    models.products.push_back(
+        {std::filesystem::path(path).filename().string(), {product.vertices, triangulated(product)}});
+  }
+  if (!arguments.confidence.empty()) models.findings.confidence = read_confidence(arguments.confidence);
+  if (!arguments.fit_report.empty()) models.findings.unmet = read_unmet_vertices(arguments.fit_report);
+  return models;
+}
+
+void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
+                   const char* role) {
+  require_valid(mesh, path);
+  if (content_hash(mesh) != record.hash)
+    throw InvalidInput(path + ": is not the " + role + " that the map was made of (other vertices or faces)");
+}
+
+}  // namespace bespoke::command

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bespoke/asset/asset.h"
+#include "bespoke/page/fit_findings.h"
+#include "bespoke/quality/mapping_quality.h"
+
+namespace bespoke::command {
+
+/// What subcommands that show a map take: the map, its two models, products, and what the fit found.
+struct MapModelArguments {
+  std::string map;
+  std::string source;
+  std::string target;
+  std::vector<std::string> products;
+  std::string confidence;
+  std::string fit_report;
+  bool untrusted = false;
+};
+
+void add_map_model_options(CLI::App& app, MapModelArguments& arguments);
+
+std::vector<std::filesystem::path> inputs_of(const MapModelArguments& arguments);
+
+struct MapModels {
+  Asset asset;
+  TriangleMesh source;
+  TriangleMesh target;
+  std::vector<NamedProduct> products;  ///< named by their files
+  FitFindings findings;
+};
+
+/// Throws InvalidInput for models that the map was not made of, and whatever reading throws.
+MapModels read_map_models(const MapModelArguments& arguments);
+
+/// Refuses a model that the map was not made of: nothing that it says of the map would hold.
+void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
+                   const char* role);
+
+}  // namespace bespoke::command

@@ -1,0 +1,60 @@
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/page/pick_scene.h"
+#include "commands.h"
+#include "output_files.h"
+#include "page_output.h"
+
+namespace bespoke::command {
+namespace {
+
+struct PickArguments {
+  std::string source;
+  std::string target;
+  std::string anchors;
+  std::string output;
+};
+
+void run(const PickArguments& arguments) {
+  require_pages();
+  std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
+  if (!arguments.anchors.empty()) inputs.push_back(arguments.anchors);
+  require_safe_outputs(inputs, {arguments.output});
+  const PickModel source{arguments.source, read_triangle_mesh(arguments.source)};
+  const PickModel target{arguments.target, read_triangle_mesh(arguments.target)};
+  std::optional<Anchors> anchors;
+  if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
+  const std::string title = "Anchors of " + name(arguments.source) + " and " + name(arguments.target);
+  OutputFiles outputs;
+  outputs.write_text(arguments.output,
+                     whole_page(pick_scene({source, target, anchors, title, typed_command()})));
+  outputs.keep();
+}
+
+}  // namespace
+
+void add_pick_command(CLI::App& app) {
+  auto arguments = std::make_shared<PickArguments>();
+  CLI::App* pick =
+      app.add_subcommand("pick", "Write a page to pick anchors on: click on one model, then on the other");
+  pick->add_option("A", arguments->source, "Source model")->required()->type_name("MESH");
+  pick->add_option("B", arguments->target, "Target model")->required()->type_name("MESH");
+  pick->add_option("--anchors", arguments->anchors, "Pairs to begin with, JSON or CSV")->type_name("FILE");
+  pick->add_option("-o,--output", arguments->output,
+                   "Page to write, .html: one file, which needs no server and no network")
+      ->required()
+      ->type_name("PAGE.html");
+  pick->footer(
+      "Examples:\n"
+      "  bespoke pick woman.obj man.obj -o pick.html\n"
+      "  bespoke pick woman.obj man.obj --anchors first.json -o pick.html");
+  pick->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace bespoke::command

@@ -1,0 +1,65 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bespoke/asset/asset_io.h"
+#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/page/view_scene.h"
+#include "commands.h"
+#include "map_models.h"
+#include "output_files.h"
+#include "page_output.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+namespace {
+
+struct ViewArguments {
+  MapModelArguments models;
+  std::string output;
+  std::size_t most_faces = ViewOptions{}.most_faces;
+  RunOptions run;
+};
+
+void run(const ViewArguments& arguments, const Progress& progress) {
+  require_pages();
+  require_safe_outputs(inputs_of(arguments.models), {arguments.output});
+  const MapModels models = read_map_models(arguments.models);
+  const std::string scene =
+      view_scene({models.asset, models.source, models.target, models.products, models.findings,
+                  std::filesystem::path(arguments.models.map).filename().string(), typed_command()},
+                 {.most_faces = arguments.most_faces}, progress);
+  OutputFiles outputs;
+  outputs.write_text(arguments.output, whole_page(scene));
+  outputs.keep();
+}
+
+}  // namespace
+
+void add_view_command(CLI::App& app) {
+  auto arguments = std::make_shared<ViewArguments>();
+  CLI::App* view =
+      app.add_subcommand("view", "Write a page that shows a map, to judge it by eye in a browser");
+  add_map_model_options(*view, arguments->models);
+  view->add_option("-o,--output", arguments->output,
+                   "Page to write, .html: one file, which needs no server and no network")
+      ->required()
+      ->type_name("PAGE.html");
+  view->add_option(
+          "--max-triangles", arguments->most_faces,
+          "Triangles of all meshes together; larger ones are thinned for display, and the page says so")
+      ->check(CLI::Range(std::size_t{1000}, std::size_t{5000000}))
+      ->capture_default_str();
+  add_run_options(*view, arguments->run);
+  view->footer(
+      "Examples:\n"
+      "  bespoke view dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.html\n"
+      "  bespoke view map.vdb --source a.obj --target b.obj --confidence a.conf --fit-report fit.json -o "
+      "map.html");
+  view->callback([arguments] {
+    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  });
+}
+
+}  // namespace bespoke::command
