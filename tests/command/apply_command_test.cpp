@@ -138,6 +138,43 @@ TEST_F(ApplyCommand, CarriesGltfAsObj) {
   EXPECT_LE(largest_distance(found, expected), 4 * float_rounding(expected));
 }
 
+TEST_F(ApplyCommand, KeepsTheShapeOfAPart) {
+  std::string text = read_text(pair_.file("product.obj"));
+  write_text(pair_.file("product.obj"), text.insert(text.find("f "), "g lens\n"));
+  const auto spread = [](const Points& x) -> Eigen::VectorXd {
+    return (x.colwise() - x.rowwise().mean().eval()).colwise().norm();
+  };
+  const Eigen::VectorXd before = spread(product());
+  EXPECT_LE((spread(applied({"--rigid", "lens"})) - before).cwiseAbs().maxCoeff(), 1e-5 * before.maxCoeff());
+  const Eigen::VectorXd scaled = spread(applied({"--similar", "lens"}));
+  const double scale = scaled.maxCoeff() / before.maxCoeff();
+  EXPECT_GT(std::abs(scale - 1), 1e-3);
+  EXPECT_LE((scaled - scale * before).cwiseAbs().maxCoeff(), 1e-5 * before.maxCoeff());
+  applied({"--rigid", "lens", "--report", pair_.file("report.json")});
+  const json part = json::parse(read_text(pair_.file("report.json")))["products"][0]["parts"][0];
+  EXPECT_EQ(part["name"], "lens");
+  EXPECT_EQ(part["points"], 729);
+  EXPECT_GT(part["distance_from_map"]["max"], 0);
+  std::filesystem::remove(pair_.file("out.obj"));
+  expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--rigid", "glass"}), 2,
+                 "its groups are lens");
+}
+
+TEST_F(ApplyCommand, SplitsEdgesThatTheMapBends) {
+  const auto report = [&] {
+    return json::parse(read_text(pair_.file("report.json")))["products"][0]["chord_error"];
+  };
+  applied({"--report", pair_.file("report.json")});
+  const double error = report()["length"];
+  EXPECT_GT(error, 0);
+  EXPECT_EQ(report()["splits"], 0);
+  const Points refined =
+      applied({"--refine", std::to_string(error / 3), "--report", pair_.file("report.json")});
+  EXPECT_LE(report()["length"], error / 3);
+  EXPECT_EQ(refined.cols(), product().cols() + report()["splits"].get<Eigen::Index>());
+  EXPECT_LE(largest_distance(refined.leftCols(product().cols()), applied({})), 2 * float_rounding(refined));
+}
+
 TEST_F(ApplyCommand, NeedsOneOfTheTwoOutputs) {
   expect_refusal(pair_.apply("map.vdb"), 1, "--out-dir");
   expect_refusal(pair_.apply("map.vdb", {"-o", pair_.file("out.obj"), "--out-dir", pair_.file("moved")}), 1,

@@ -4,13 +4,14 @@
 #include <optional>
 
 #include "bespoke/apply/apply_to_product.h"
+#include "bespoke/apply/convert_product.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/lattice/baked_map.h"
-#include "bespoke/mesh/product_io.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
+#include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
 #include "run_options.h"
@@ -28,6 +29,8 @@ struct ApplyArguments {
   std::string output;
   std::string out_dir;
   std::string report;
+  std::vector<std::string> rigid, similar;  ///< parts
+  std::optional<Length> refine;
   double t = 1;
   std::optional<int> frames;
   std::optional<RotationPath> path;
@@ -62,16 +65,27 @@ std::string ending(const fs::path& path) {
 /// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
 bool keeps_kind(const fs::path& product, const fs::path& output) { return ending(product) == ending(output); }
 
-void require_known_endings(const fs::path& product, const fs::path& output) {
-  if (keeps_kind(product, output)) {
+void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
+  if (keeps_kind(product, output) && !arguments.refine) {
     if (!has_product_ending(output))
       throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
     return;
   }
   if (has_product_ending(output) && !is_mesh_ending(output))
     throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
+  if (!arguments.rigid.empty() || !arguments.similar.empty())
+    throw CLI::ValidationError("apply",
+                               "parts that keep their shape are known only in a file that keeps its kind and "
+                               "its edges");
   require_mesh_ending("apply", output);
   require_mesh_ending("apply", product);
+}
+
+std::vector<RigidPart> parts(const ApplyArguments& arguments) {
+  std::vector<RigidPart> parts;
+  for (const std::string& name : arguments.rigid) parts.push_back({name, PartMotion::rigid});
+  for (const std::string& name : arguments.similar) parts.push_back({name, PartMotion::similar});
+  return parts;
 }
 
 /// One list of frames a product.
@@ -86,7 +100,7 @@ std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments)
   for (const std::string& product : arguments.products) {
     const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
                                                    : fs::path(arguments.output);
-    require_known_endings(product, path);
+    require_known_endings(arguments, product, path);
     plan.push_back(frame_paths(path, arguments.frames));
     outputs.insert(outputs.end(), plan.back().begin(), plan.back().end());
   }
@@ -135,22 +149,21 @@ MotionOptions motion_options(const ApplyArguments& arguments, const Asset& asset
   return {path, order};
 }
 
-/// Writes the faces of a product as another kind of file.
-ProductSummary convert(const std::string& name, const std::vector<fs::path>& paths, const ElasticMap& elastic,
-                       const Asset& asset, const std::vector<double>& times, const MotionOptions& motion) {
-  Product product = read_product(name);
-  AppliedPoints moved;
-  try {
-    moved = apply_mapping(elastic, asset.target_from_source, product.vertices, times, motion);
-  } catch (const InvalidInput& error) {
-    throw InvalidInput(name + ": " + error.what());
+/// Carries the file as it is, or, to become another kind of file or to be refined, its faces.
+ProductSummary apply_one(const ApplyArguments& arguments, const std::string& name,
+                         const std::vector<fs::path>& outputs, const ElasticMap& elastic, const Asset& asset,
+                         const Progress& progress) {
+  const MotionOptions motion = motion_options(arguments, asset);
+  const double diagonal = asset.record.source.box.diagonal().norm();
+  const bool measure_chords = !arguments.report.empty() && is_mesh_ending(name);
+  if (arguments.refine || !keeps_kind(name, outputs.front())) {
+    std::optional<double> refine;
+    if (arguments.refine) refine = arguments.refine->in_mesh_units(diagonal);
+    return convert_product(name, outputs, elastic, asset.target_from_source, times(arguments),
+                           {motion, refine, measure_chords});
   }
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    product.vertices = std::move(moved.frames[k]);
-    write_product(paths[k], product);
-  }
-  return {
-      moved.summary, {"written as another kind of file: only faces and texture coordinates were kept"}, {}};
+  return apply_to_product(name, outputs, elastic, asset.target_from_source, times(arguments),
+                          {motion, parts(arguments), measure_chords, progress});
 }
 
 void run(const ApplyArguments& arguments, const Progress& progress) {
@@ -159,17 +172,13 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
   const std::shared_ptr<const ElasticMap> elastic = elastic_map(arguments, asset);
-  const MotionOptions motion = motion_options(arguments, asset);
 
   OutputFiles outputs;
   std::vector<AppliedProduct> applied;
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
     progress.step("apply", i, arguments.products.size());
     const std::string& name = arguments.products[i];
-    ProductSummary summary = keeps_kind(name, plan[i].front())
-                                 ? apply_to_product(name, plan[i], *elastic, asset.target_from_source,
-                                                    times(arguments), motion, progress)
-                                 : convert(name, plan[i], *elastic, asset, times(arguments), motion);
+    ProductSummary summary = apply_one(arguments, name, plan[i], *elastic, asset, progress);
     outputs.add(plan[i]);
     outputs.add(summary.companions);
     applied.push_back({fs::path(name).filename().string(), std::move(summary)});
@@ -183,6 +192,11 @@ void run(const ApplyArguments& arguments, const Progress& progress) {
   if (arguments.run.quiet) return;
   for (std::size_t i = 0; i < applied.size(); ++i) {
     std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary.points).c_str());
+    if (applied[i].summary.chord)
+      std::printf("%s: %zu edges split; %s\n", plan[i].back().c_str(), applied[i].summary.splits,
+                  to_string(*applied[i].summary.chord).c_str());
+    for (const PartSummary& part : applied[i].summary.parts)
+      std::printf("%s: %s\n", plan[i].back().c_str(), to_string(part).c_str());
     for (const std::string& warning : applied[i].summary.warnings)
       std::fprintf(stderr, "bespoke: warning: %s: %s\n", arguments.products[i].c_str(), warning.c_str());
   }
@@ -222,6 +236,23 @@ void add_apply_command(CLI::App& app) {
       ->add_flag("--inverse", arguments->inverse,
                  "Carry products of the target back to the source, through the cells of a certified map")
       ->excludes(exact);
+  apply
+      ->add_option(
+          "--rigid", arguments->rigid,
+          "A part that keeps its shape: it is turned and shifted as its mapped points ask for best. An OBJ "
+          "group, object or material, a glTF node, or a PLY component by its number; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  apply
+      ->add_option("--similar", arguments->similar,
+                   "The same of a part that may also be scaled as a whole; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  add_length_option(
+      *apply, "--refine", arguments->refine,
+      "Split straight edges where the map bends them until the middle of an edge's image is no farther "
+      "than this from the image of its middle; keeps faces and texture coordinates only (default: none "
+      "is split)");
   apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
       ->type_name("FILE");
   apply->add_flag("--untrusted", arguments->untrusted,

@@ -64,6 +64,13 @@ std::string to_string(const ApplySummary& summary) {
   return text;
 }
 
+ImageOfPoints image_at(const ElasticMap& elastic, const RigidTransform& target_from_source, double t,
+                       const MotionOptions& motion) {
+  return [&elastic, target_from_source, t, motion](const Points& x) -> Points {
+    return std::move(apply_mapping(elastic, target_from_source, x, {t}, motion).frames.front());
+  };
+}
+
 AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& target_from_source,
                             const Points& x, const std::vector<double>& times, const MotionOptions& motion) {
   require_finite(x, times);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,5 +31,12 @@ struct AppliedPoints {
 AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& target_from_source,
                             const Points& x, const std::vector<double>& times,
                             const MotionOptions& motion = {});
+
+/// Where points go (3×n to 3×n).
+using ImageOfPoints = std::function<Points(const Points& x)>;
+
+/// The images of Ψ(t). `elastic` must outlive it.
+ImageOfPoints image_at(const ElasticMap& elastic, const RigidTransform& target_from_source, double t,
+                       const MotionOptions& motion = {});
 
 }  // namespace bespoke

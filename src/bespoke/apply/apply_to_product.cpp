@@ -31,15 +31,23 @@ class Written {
   std::vector<std::filesystem::path> paths_;
 };
 
+void measure_chords(const std::filesystem::path& input, const ImageOfPoints& image, ProductSummary& summary) {
+  try {
+    summary.chord = worst_chord(read_product(input), image);
+  } catch (const FormatError& error) {
+    summary.warnings.push_back(std::string("the chord error is not known: ") + error.what());
+  }
+}
+
 }  // namespace
 
 ProductSummary apply_to_product(const std::filesystem::path& input,
                                 const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
                                 const RigidTransform& target_from_source, const std::vector<double>& times,
-                                const MotionOptions& motion, const Progress& progress) {
-  if (outputs.size() != times.size())
+                                const ApplyToProductOptions& options) {
+  if (outputs.size() != times.size() || times.empty())
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
-                       " times; the numbers must be equal");
+                       " times; the numbers must be equal, and not zero");
   const Stopwatch watch;
   ProductSummary summary;
   Written written;
@@ -51,23 +59,29 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     PointMotion point_motion;
     point_motion.frames = own_times.size();
     point_motion.images = [&](const Points& x) {
-      AppliedPoints applied = apply_mapping(elastic, target_from_source, x, own_times, motion);
+      AppliedPoints applied = apply_mapping(elastic, target_from_source, x, own_times, options.motion);
       points += applied.summary.points;
       in_band += applied.summary.in_band;
       return std::move(applied.frames);
     };
+    point_motion.images_elsewhere = [&](const Points& x) {
+      return apply_mapping(elastic, target_from_source, x, own_times, options.motion).frames;
+    };
     point_motion.jacobians = [&](const Points& x) {
-      return motion_jacobian(elastic, target_from_source, x, own_times, motion);
+      return motion_jacobian(elastic, target_from_source, x, own_times, options.motion);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
-    CarrySummary carried = carry_product(input, own_outputs, point_motion, progress);
+    CarrySummary carried = carry_product(input, own_outputs, point_motion, {options.parts, options.progress});
     written.add(own_outputs);
     written.add(carried.companions);
     summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
     summary.warnings = std::move(carried.warnings);
+    summary.parts = std::move(carried.parts);
     summary.points.points = points;
     summary.points.in_band = in_band;
   }
+  if (options.measure_chords)
+    measure_chords(input, image_at(elastic, target_from_source, times.back(), options.motion), summary);
   written.keep();
   summary.points.affine_only = summary.points.points - summary.points.in_band;
   summary.points.seconds = watch.seconds();

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/apply/apply_mapping.h"
+#include "bespoke/apply/chord_error.h"
+#include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
 
 namespace bespoke {
@@ -13,14 +16,27 @@ struct ProductSummary {
   ApplySummary points;                ///< its seconds are those of reading, look-up and writing
   std::vector<std::string> warnings;  ///< what the file holds that was left as it is, a sentence each
   std::vector<std::filesystem::path> companions;  ///< written besides the outputs: buffers beside a .gltf
+  std::vector<PartSummary> parts;                 ///< that kept their shape
+  std::optional<ChordError> chord;                ///< at the last time, where it was asked for
+  std::size_t splits = 0;                         ///< edges that were split for it
+};
+
+struct ApplyToProductOptions {
+  MotionOptions motion;
+  std::vector<RigidPart> parts;  ///< that keep their shape
+  /// The summary has the chord error of the last time. The faces are read for it once more, by read_product;
+  /// a warning says where they cannot be.
+  bool measure_chords = false;
+  Progress progress;
 };
 
 /// Carries the product `input` across a mapping: one file for every time, of the kind of the input, in which
-/// positions, normals and tangents are those of Ψ(t) and all else is as it was (carry_product). Many times
-/// cost one look-up. All files are written, or none is left. Throws as carry_product and apply_mapping.
+/// positions, normals and tangents are those of Ψ(t), but of parts that keep their shape, and all else is as
+/// it was (carry_product). Many times cost one look-up. All files are written, or none is left. Throws as
+/// carry_product and apply_mapping.
 ProductSummary apply_to_product(const std::filesystem::path& input,
                                 const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
                                 const RigidTransform& target_from_source, const std::vector<double>& times,
-                                const MotionOptions& motion = {}, const Progress& progress = {});
+                                const ApplyToProductOptions& options = {});
 
 }  // namespace bespoke

@@ -16,12 +16,18 @@ namespace fs = std::filesystem;
 struct Format {
   std::string_view ending;
   CarrySummary (*carry)(const InputFile&, std::vector<OutputFile>&, const PointMotion&, const Progress&);
+  std::vector<PartPoints> (*find_parts)(const InputFile&, const std::vector<RigidPart>&,
+                                        const Progress&) = nullptr;  ///< where the format knows parts
 };
 
-constexpr std::array formats{Format{".obj", carry_obj},   Format{".ply", carry_ply},
-                             Format{".stl", carry_stl},   Format{".off", carry_off},
-                             Format{".gltf", carry_gltf}, Format{".glb", carry_gltf},
-                             Format{".xyz", carry_xyz},   Format{".csv", carry_csv}};
+constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts},
+                             Format{".ply", carry_ply, find_ply_parts},
+                             Format{".stl", carry_stl},
+                             Format{".off", carry_off},
+                             Format{".gltf", carry_gltf, find_gltf_parts},
+                             Format{".glb", carry_gltf, find_gltf_parts},
+                             Format{".xyz", carry_xyz},
+                             Format{".csv", carry_csv}};
 
 const Format* find_format(const fs::path& path) {
   std::string ending = path.extension().string();
@@ -46,7 +52,7 @@ std::string product_endings() {
 }
 
 CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& outputs,
-                           const PointMotion& motion, const Progress& progress) {
+                           const PointMotion& motion, const CarryOptions& options) {
   if (outputs.size() != motion.frames)
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for a motion of " +
                        std::to_string(motion.frames) + " frames; the numbers must be equal");
@@ -56,9 +62,18 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
     if (find_format(output) != format)
       throw InvalidInput(output.string() + ": must have the ending of " + input.string());
   const InputFile file(input);
+  MotionWithParts own{motion, {}};
+  if (!options.parts.empty()) {
+    if (!format->find_parts)
+      throw InvalidInput(input.string() +
+                         ": only OBJ, PLY and glTF files have parts that can keep their shape");
+    own = with_rigid_parts(motion, format->find_parts(file, options.parts, options.progress), input);
+  }
   CarrySummary summary;
-  write_outputs(
-      outputs, [&](std::vector<OutputFile>& open) { summary = format->carry(file, open, motion, progress); });
+  write_outputs(outputs, [&](std::vector<OutputFile>& open) {
+    summary = format->carry(file, open, own.motion, options.progress);
+  });
+  summary.parts = std::move(own.parts);
   return summary;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/product/point_motion.h"
+#include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
 
 namespace bespoke {
@@ -15,6 +16,12 @@ struct CarrySummary {
   std::size_t directions = 0;         ///< normals and tangents that were carried
   std::vector<std::string> warnings;  ///< what the file holds that was left as it is, a sentence each
   std::vector<std::filesystem::path> companions;  ///< written besides the outputs: buffers beside a .gltf
+  std::vector<PartSummary> parts;                 ///< that kept their shape
+};
+
+struct CarryOptions {
+  std::vector<RigidPart> parts;  ///< that keep their shape
+  Progress progress;
 };
 
 /// Carries a product: writes the file `input` once for every frame of the motion, with positions, normals
@@ -27,13 +34,16 @@ struct CarrySummary {
 /// back as it was keeps its characters. The vertices of a glTF mesh move where its node shows it; a mesh that
 /// nodes show in several places becomes several.
 ///
+/// Points of the options' parts move with their part, and so does what lies at the same places; no two parts
+/// may have a place in common.
+///
 /// Blocks of a file are read, moved and written on all threads; memory does not grow with the file but for
-/// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending and for images
-/// that the file's numbers cannot hold, FormatError naming the line, the byte or the element at fault, and
-/// what the motion throws. Each output is complete or untouched.
+/// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending, an unknown
+/// part and for images that the file's numbers cannot hold, FormatError naming the line, the byte or the
+/// element at fault, and what the motion throws. Each output is complete or untouched.
 CarrySummary carry_product(const std::filesystem::path& input,
                            const std::vector<std::filesystem::path>& outputs, const PointMotion& motion,
-                           const Progress& progress = {});
+                           const CarryOptions& options = {});
 
 /// Whether the ending of the name is that of a kind of product.
 bool has_product_ending(const std::filesystem::path& path);

@@ -17,6 +17,13 @@ struct PointMotion {
   /// Where the columns of x (3×n, mesh units) go: one 3×n matrix a frame.
   std::function<std::vector<Points>(const Points& x)> images;
 
+  /// The same at points that are none of the product's, which a caller may want to count apart; empty where
+  /// `images` does for them too.
+  std::function<std::vector<Points>(const Points& x)> images_elsewhere;
+  std::vector<Points> at_other_points(const Points& x) const {
+    return images_elsewhere ? images_elsewhere(x) : images(x);
+  }
+
   /// The motion's Jacobians at the columns of x: one 3×3n matrix a frame, three columns a point, entry (i, j)
   /// the derivative of coordinate i by x_j.
   std::function<std::vector<Points>(const Points& x)> jacobians;

@@ -28,6 +28,16 @@ Json unmet_vertices(const std::vector<UnmetVertex>& unmet) {
   return list;
 }
 
+Json parts(const std::vector<PartSummary>& summaries) {
+  Json list = Json::array();
+  for (const PartSummary& part : summaries)
+    list.push_back({{"name", part.name},
+                    {"points", part.points},
+                    {"scale", part.scale},
+                    {"distance_from_map", to_json(part.distances)}});
+  return list;
+}
+
 }  // namespace
 
 std::size_t peak_memory() {
@@ -69,13 +79,20 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
 std::string apply_report(const std::vector<AppliedProduct>& products, const std::vector<double>& times,
                          double seconds) {
   Json entries = Json::array();
-  for (const AppliedProduct& product : products)
+  for (const AppliedProduct& product : products) {
     entries.push_back({{"name", product.name},
                        {"points", product.summary.points.points},
                        {"in_band", product.summary.points.in_band},
                        {"affine_only", product.summary.points.affine_only},
                        {"seconds", product.summary.points.seconds},
                        {"warnings", product.summary.warnings}});
+    if (const auto& chord = product.summary.chord)
+      entries.back()["chord_error"] = {{"length", chord->length},
+                                       {"place", {chord->place[0], chord->place[1], chord->place[2]}},
+                                       {"edges", chord->edges},
+                                       {"splits", product.summary.splits}};
+    if (!product.summary.parts.empty()) entries.back()["parts"] = parts(product.summary.parts);
+  }
   const Json json = {{"command", "apply"},
                      {"times", times},
                      {"products", std::move(entries)},

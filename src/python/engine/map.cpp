@@ -116,8 +116,8 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
                        const py::object& callback) {
   const MotionOptions options = motion(map, path, order);
   const ProductSummary summary = released(callback, [&](const Progress& progress) {
-    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times, options,
-                            progress);
+    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times,
+                            {options, {}, false, progress});
   });
   return apply_report({{product.filename().string(), summary}}, times, summary.points.seconds);
 }

@@ -72,17 +72,14 @@ class GltfCarrier {
     };
     const Points x = read(task.positions);
     const Points base = task.base == task.positions ? x : read(task.base);
-    const bool with_jacobians = task.role != GltfRole::position;
-    const std::vector<LocalMotion> at_base = local_motion(x, task.place, with_jacobians);
+    const std::vector<LocalMotion> at_base = local_motion(x, task);
     std::vector<Points> moved;
     for (const LocalMotion& motion : at_base) moved.push_back(carried(task.role, base, motion));
     if (!task.difference) return moved;
 
     const Points difference = read(*task.difference);
     const std::vector<LocalMotion> at_morph =
-        task.difference_of_positions
-            ? local_motion(x + read(*task.difference_of_positions), task.place, with_jacobians)
-            : at_base;
+        task.difference_of_positions ? local_motion(x + read(*task.difference_of_positions), task) : at_base;
     // Only what the motion changes is added, so that a difference that stays keeps its bits.
     for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
       const Points morphed = base + difference;
@@ -94,15 +91,16 @@ class GltfCarrier {
 
   /// With y = L x + b the scene's point and Ψ the scene's motion, x + L⁻¹ (Ψ(y) − y), which is x itself where
   /// nothing moves, and L⁻¹ ∇Ψ L.
-  std::vector<LocalMotion> local_motion(const Points& x, std::size_t place, bool with_jacobians) const {
-    const AffineMap& scene_from_mesh = plan_.places[place];
+  std::vector<LocalMotion> local_motion(const Points& x, const GltfTask& task) const {
+    const AffineMap& scene_from_mesh = plan_.places[task.place];
     const Matrix3 back = scene_from_mesh.linear.inverse();
-    const Points y = scene_from_mesh * x;
+    const Points y = in_scene(scene_from_mesh, x);
+    const bool with_jacobians = task.role != GltfRole::position;
     std::vector<Points> images, jacobians;
     if (with_jacobians)
       jacobians = motion_.jacobians(y);
     else
-      images = motion_.images(y);
+      images = task.difference ? motion_.at_other_points(y) : motion_.images(y);
     std::vector<LocalMotion> result(motion_.frames);
     for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
       if (!with_jacobians) {

@@ -100,6 +100,28 @@ BindPose bind_pose(const GltfFile& file, const GltfPart& skin, const std::vector
 
 }  // namespace
 
+Points in_scene(const AffineMap& scene_from_mesh, const Points& x) {
+  Points y(3, x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i) y.col(i) = scene_from_mesh * Vector3(x.col(i));
+  return y;
+}
+
+std::vector<bool> nodes_below(const GltfFile& file, const std::string& name) {
+  const std::vector<GltfPart> nodes = file.root().elements("nodes");
+  std::vector<bool> is_below(nodes.size());
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].has("name") && nodes[i].text("name") == name) open.push_back(i);
+  while (!open.empty()) {
+    const std::size_t node = open.back();
+    open.pop_back();
+    if (is_below[node]) continue;
+    is_below[node] = true;
+    for (const std::size_t child : nodes[node].indices("children", nodes.size())) open.push_back(child);
+  }
+  return is_below;
+}
+
 GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& accessors) {
   const std::vector<GltfPart> nodes = file.root().elements("nodes");
   const std::vector<GltfPart> skins = file.root().elements("skins");

@@ -19,6 +19,12 @@ struct GltfScene {
   std::vector<std::string> warnings;
 };
 
+/// The same bits for a point, whatever its neighbours.
+Points in_scene(const AffineMap& scene_from_mesh, const Points& x);
+
+/// The nodes of a name, and all below them.
+std::vector<bool> nodes_below(const GltfFile& file, const std::string& name);
+
 /// Which meshes the nodes show, and where. A skinned mesh is where its joints hold it in its bind pose, not
 /// where its node is. Throws FormatError naming the JSON pointer at fault, and InvalidInput for instances.
 GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& accessors);

@@ -39,7 +39,7 @@ TextRecords PlyText::records(const TextBlock& block) const {
     if (element == header_.vertex)
       read_vertex(words, records);
     else
-      read_other(words, header_.elements[element]);
+      read_other(words, header_.elements[element], records);
     if (!words.word().empty()) words.fail("more words than the element has properties");
   }
   return records;
@@ -66,15 +66,18 @@ void PlyText::read_vertex(TextWords& words, TextRecords& records) const {
   if (header_.normal) records.normals.push_back(normal);
 }
 
-void PlyText::read_other(TextWords& words, const PlyElement& element) const {
+void PlyText::read_other(TextWords& words, const PlyElement& element, TextRecords& records) const {
   const std::uint64_t vertices = header_.elements[header_.vertex].count;
   for (const PlyProperty& property : element.properties) {
     const long long count = property.count ? list_length(words) : 1;
     const bool is_face = is_face_list(element, property);
+    if (is_face) records.faces.push_back(static_cast<std::uint32_t>(count));
     for (long long k = 0; k < count; ++k) {
       if (is_face) {
-        const std::string fault = ply_index_fault(static_cast<double>(words.integer("corner")), vertices);
+        const long long corner = words.integer("corner");
+        const std::string fault = ply_index_fault(static_cast<double>(corner), vertices);
         if (!fault.empty()) words.fail(fault);
+        records.faces.push_back(static_cast<std::uint32_t>(corner));
       } else if (words.word().empty()) {
         words.fail("missing " + property.name);
       }

@@ -18,7 +18,7 @@ class PlyText : public TextFormat {
 
  private:
   void read_vertex(TextWords& words, TextRecords& records) const;
-  void read_other(TextWords& words, const PlyElement& element) const;
+  void read_other(TextWords& words, const PlyElement& element, TextRecords& records) const;
   static long long list_length(TextWords& words);
 
   const std::filesystem::path& path_;

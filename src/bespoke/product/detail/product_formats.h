@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/detail/part_motion.h"
 #include "bespoke/product/detail/product_file.h"
 
 namespace bespoke {
@@ -22,5 +23,14 @@ CarrySummary carry_csv(const InputFile& file, std::vector<OutputFile>& outputs, 
                        const Progress& progress);
 CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
                         const Progress& progress);
+
+/// The points of parts that keep their shape. Throws InvalidInput, listing the names that are known, for one
+/// that is not, and what the reading of the file throws.
+std::vector<PartPoints> find_obj_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                       const Progress& progress);
+std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                       const Progress& progress);
+std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                        const Progress& progress);
 
 }  // namespace bespoke

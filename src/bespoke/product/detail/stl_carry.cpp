@@ -181,7 +181,7 @@ CarrySummary carry_binary(const InputFile& file, std::vector<OutputFile>& output
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(frames[frame]);
       },
       progress);
-  return {3 * facets, facets, {}, {}};
+  return {3 * facets, facets, {}, {}, {}};
 }
 
 }  // namespace

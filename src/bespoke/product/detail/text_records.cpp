@@ -117,7 +117,7 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(texts[frame]);
       },
       progress);
-  return {all.points, all.normals, {}, {}};
+  return {all.points, all.normals, {}, {}, {}};
 }
 
 }  // namespace bespoke

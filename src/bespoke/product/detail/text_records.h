@@ -16,6 +16,7 @@ namespace bespoke {
 struct TextRecords {
   std::vector<NumberTriple> points;
   std::vector<NumberTriple> normals;
+  std::vector<std::uint32_t> faces;  ///< of each the number of its corners, and the corners; of PLY only
 };
 
 /// A text format whose normals stand beside their points.

@@ -1,0 +1,46 @@
+#include "bespoke/apply/convert_product.h"
+
+#include <string>
+#include <utility>
+
+#include "bespoke/apply/refine_product.h"
+#include "bespoke/error.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+
+ProductSummary convert_product(const std::filesystem::path& input,
+                               const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
+                               const RigidTransform& target_from_source, const std::vector<double>& times,
+                               const ConvertOptions& options) {
+  if (outputs.size() != times.size() || times.empty())
+    throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
+                       " times; the numbers must be equal, and not zero");
+  const Stopwatch watch;
+  Product product = read_product(input);
+  ProductSummary summary;
+  summary.warnings = {"only faces and texture coordinates were kept"};
+  try {
+    const ImageOfPoints image = image_at(elastic, target_from_source, times.back(), options.motion);
+    if (options.refine) {
+      RefinedProduct refined = refine_product(std::move(product), image, *options.refine);
+      product = std::move(refined.product);
+      summary.chord = refined.chord;
+      summary.splits = refined.splits;
+    } else if (options.measure_chords) {
+      summary.chord = worst_chord(product, image);
+    }
+    AppliedPoints moved = apply_mapping(elastic, target_from_source, product.vertices, times, options.motion);
+    summary.points = moved.summary;
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      product.vertices = std::move(moved.frames[k]);
+      write_product(outputs[k], product);
+    }
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(input.string() + ": " + error.what());
+  }
+  summary.points.seconds = watch.seconds();
+  return summary;
+}
+
+}  // namespace bespoke

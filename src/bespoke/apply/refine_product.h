@@ -1,0 +1,21 @@
+#pragma once
+
+#include "bespoke/apply/chord_error.h"
+
+namespace bespoke {
+
+struct RefinedProduct {
+  Product product;         ///< the vertices of the input first, in their order
+  std::size_t splits = 0;  ///< edges that were split, each a new vertex
+  ChordError chord;        ///< of the refined product
+};
+
+/// Splits, in rounds, every edge whose chord error exceeds `length` (> 0, mesh units) at its middle, until
+/// none does. Triangles become two, three or four; a polygon of more corners gets the middles as further
+/// corners. Texture coordinates are interpolated. What polygons share stays shared, and edges at the same
+/// places are split alike, so that no gaps open. Throws InvalidInput unless the length is positive, and for
+/// one that would take more than `most_vertices`, or that does not suffice after twenty rounds.
+RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length,
+                              std::size_t most_vertices = std::size_t{1} << 26);
+
+}  // namespace bespoke

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/disjoint_sets.h"
+#include "bespoke/product/detail/ply_binary.h"
+#include "bespoke/product/detail/ply_text.h"
+#include "bespoke/product/detail/product_formats.h"
+
+namespace bespoke {
+namespace {
+
+/// What a block holds that tells components apart.
+struct BlockContent {
+  std::vector<double> coordinates;   ///< three a vertex
+  std::vector<std::uint32_t> faces;  ///< of each the number of its corners, and the corners
+};
+
+BlockContent read_binary(const PlyBlock& block, const PlyHeader& header) {
+  BlockContent content;
+  if (block.element == header.elements.size()) return content;
+  const PlyElement& element = header.elements[block.element];
+  if (block.element == header.vertex) {
+    const PlyOffsets offsets = vertex_offsets(header, block);
+    for (const auto& position : offsets.position)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        content.coordinates.push_back(read_value(block.bytes.data() + position[axis],
+                                                 element.properties[header.position[axis]].type,
+                                                 header.encoding));
+    return content;
+  }
+  const char* at = block.bytes.data();
+  for (std::uint64_t i = 0; i < block.count; ++i)
+    for (const PlyProperty& property : element.properties) {
+      std::size_t values = 1;
+      if (property.count) {
+        values = static_cast<std::size_t>(read_value(at, *property.count, header.encoding));
+        at += size(*property.count);
+      }
+      const bool is_face = is_face_list(element, property);
+      if (is_face) content.faces.push_back(static_cast<std::uint32_t>(values));
+      for (std::size_t k = 0; k < values; ++k, at += size(property.type))
+        if (is_face)
+          content.faces.push_back(static_cast<std::uint32_t>(read_value(at, property.type, header.encoding)));
+    }
+  return content;
+}
+
+/// All vertices, and which are connected.
+class Components {
+ public:
+  explicit Components(const PlyHeader& header)
+      : sets_(static_cast<int>(header.elements[header.vertex].count)) {}
+
+  void add(BlockContent&& content) {
+    coordinates_.insert(coordinates_.end(), content.coordinates.begin(), content.coordinates.end());
+    const std::vector<std::uint32_t>& faces = content.faces;
+    for (std::size_t at = 0; at < faces.size(); at += 1 + faces[at])
+      for (std::size_t k = 2; k <= faces[at]; ++k)
+        sets_.join(static_cast<int>(faces[at + 1]), static_cast<int>(faces[at + k]));
+  }
+
+  /// The coordinates of each part's vertices.
+  std::vector<std::vector<double>> of_parts(const std::vector<RigidPart>& parts,
+                                            const std::filesystem::path& path) {
+    const std::size_t count = coordinates_.size() / 3;
+    std::vector<std::size_t> number(count);  // of a component, at its least vertex
+    std::size_t components = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      if (least(i) == i) number[i] = ++components;
+    std::vector<std::vector<double>> result(parts.size());
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const std::string& name = parts[part].name;
+      long long wanted = 0;
+      if (!read_integer(name.data(), name.data() + name.size(), wanted)) wanted = 0;
+      for (std::size_t i = 0; i < count; ++i)
+        if (number[least(i)] == static_cast<std::size_t>(std::max(wanted, 0LL)))
+          result[part].insert(result[part].end(), &coordinates_[3 * i], &coordinates_[3 * i] + 3);
+      if (result[part].empty())
+        refuse_part(name,
+                    "its components are 1 to " + std::to_string(components) +
+                        ", in the order of their first vertices",
+                    path);
+    }
+    return result;
+  }
+
+ private:
+  std::size_t least(std::size_t vertex) {
+    return static_cast<std::size_t>(sets_.least(static_cast<int>(vertex)));
+  }
+
+  DisjointSets sets_;
+  std::vector<double> coordinates_;
+};
+
+}  // namespace
+
+std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                       const Progress& progress) {
+  const PlyHeader header = read_ply_header(file);
+  if (header.elements[header.vertex].count > std::numeric_limits<int>::max())
+    throw InvalidInput(file.path().string() + ": has too many vertices to tell its components");
+  Components components(header);
+  if (header.encoding == PlyHeader::Encoding::ascii) {
+    const PlyText format(file.path(), header);
+    TextCutter cutter = format.cutter();
+    walk_blocks(
+        file, format.begin(), [&](const Window& window) { return cutter(window); },
+        [&](const TextBlock& block) {
+          TextRecords records = format.records(block);
+          BlockContent content{{}, std::move(records.faces)};
+          for (const NumberTriple& point : records.points)
+            for (const NumberText& number : point) content.coordinates.push_back(number.value);
+          return content;
+        },
+        [&](const TextBlock&, BlockContent&& content) { components.add(std::move(content)); }, progress);
+    format.require_complete(cutter.sums());
+  } else {
+    PlyCutter cutter(file, header);
+    walk_blocks(
+        file, header.size, [&](const Window& window) { return cutter(window); },
+        [&](const PlyBlock& block) { return read_binary(block, header); },
+        [&](const PlyBlock&, BlockContent&& content) { components.add(std::move(content)); }, progress);
+  }
+  return parts_of(parts, components.of_parts(parts, file.path()));
+}
+
+}  // namespace bespoke
