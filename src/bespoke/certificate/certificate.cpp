@@ -14,7 +14,11 @@
 namespace bespoke {
 namespace {
 
+// A map that folds at all often folds in millions of cells, and an asset keeps the list.
 constexpr std::size_t largest_number_of_places = 1000;
+
+// Between two calls of progress; the partition does not depend on the number of threads, so counts and places
+// do not.
 constexpr std::size_t roots_per_step = 64;
 
 CellCounts certify_all(const Certifier& certifier, const Progress& progress) {
@@ -61,6 +65,7 @@ Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine,
   if (!std::isfinite(t)) throw InvalidInput("the time t of a certificate is not finite");
   if (!(affine.linear.allFinite() && affine.offset.allFinite()))
     throw InvalidInput("the affine part of a map to certify is not finite");
+  // The gradient of (1−t) x + t E(x) where u is zero.
   const Matrix3 linear = (1 - t) * Matrix3::Identity() + t * affine.linear;
   const Certifier certifier(pyramid, affine.linear, t);
   const CellCounts found = certify_all(certifier, progress);

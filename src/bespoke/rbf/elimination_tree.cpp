@@ -82,6 +82,8 @@ class Dissection {
     for (auto i = set.begin(); i != set.end(); ++i)
       label_[std::size_t(*i)] = i < middle ? left_label : right_label;
 
+    // Points of one half that have a neighbour in the other: taken out, no entry of the matrix joins what is
+    // left of the halves. Either half's serve; the fewer make the smaller front.
     const auto touching = [&](auto begin, auto end, int other_label) {
       std::vector<int> result;
       for (auto i = begin; i != end; ++i)

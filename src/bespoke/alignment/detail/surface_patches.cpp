@@ -44,6 +44,8 @@ std::vector<int> patches_of_vertices(const Points& vertices, const VertexShares&
   const Vector3 center = vertices * shares.areas / shares.areas.sum();
   for (Eigen::Index i = 0; i < size; ++i)
     nearest[i] = shares.areas[i] > 0 ? (vertices.col(i) - center).squaredNorm() : -1;
+  // Farthest-point sampling, whose seeds are as far apart as their number allows; the first is the vertex
+  // farthest from the centre of area, a place that does not depend on the order of the vertices.
   for (int k = 0; k < count; ++k) {
     Eigen::Index seed = 0;
     if (!(nearest.maxCoeff(&seed) > 0)) break;

@@ -57,6 +57,8 @@ std::string seal(const AssetSections& sections) {
 }
 
 AssetSections unseal(std::string_view bytes) {
+  // What is cheap and says most comes first: a file cut short fails by its size or its magic, and only a
+  // whole one is hashed.
   require(bytes.size() >= trailer_size, "has " + std::to_string(bytes.size()) +
                                             " bytes, less than the trailer of an asset: not a bespoke asset");
   const std::string_view content = bytes.substr(0, bytes.size() - trailer_size);

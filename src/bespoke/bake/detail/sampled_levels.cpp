@@ -47,6 +47,8 @@ void SampledLevels::sum_at(std::size_t level, const LeafCoordinates& leaf, NodeB
     if (found != no_leaf) blocks[block] = at.samples[static_cast<std::size_t>(found)];
     complete = complete && found != no_leaf;
   }
+  // Samples are of the whole u, so a leaf of this level needs no coarser one; only where one of the eight
+  // leaves around the block is missing does the sum of the coarser levels stand in.
   if (!complete) coarse_sum_at(level, leaf, sum);
   for (int node = 0; node < block_nodes; ++node) {
     const BlockValue from = block_values[node];

@@ -33,6 +33,10 @@ struct Follower {
   Vector3 rest;
 };
 
+/// As similar as possible (after Sorkine, Alexa 2007): places x' and similarities M of nodes that minimise
+///   Σ |x'ⱼ − x'ᵢ − Mᵢ (xⱼ − xᵢ)|² + β Σ |Mᵢ − Mⱼ|² + Σ wₖ |carried anchor k − its target|²
+/// over edges (i, j) and anchors k, in alternation: similarities with fixed places, then places with fixed
+/// similarities.
 class NodePose {
  public:
   NodePose(const AnchorPoseInput& input, const PoseSettings& settings)
@@ -127,6 +131,8 @@ class NodePose {
     return result;
   }
 
+  /// The normal matrix of the places: graph Laplacian and anchors. Similarities stand on the right-hand side
+  /// only, so one factorisation serves all iterations.
   void factorise() {
     std::vector<Eigen::Triplet<double>> entries;
     for (const Edge& edge : edges_) {
@@ -206,6 +212,7 @@ AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& set
   if (input.anchor_sources.cols() == 0) return result;
   NodePose pose(input, settings);
   for (int iteration = 0; iteration < settings.iterations; ++iteration) {
+    // A large β first spreads a turn over a whole limb; a small one later lets it gather at the joint.
     const double share = double(iteration) / std::max(1, settings.iterations - 1);
     pose.iterate(settings.first_smoothness *
                  std::pow(settings.last_smoothness / settings.first_smoothness, share));

@@ -21,6 +21,8 @@ BoundaryMatcher::BoundaryMatcher(const BoundaryMatchInput& input, const Boundary
   if (input.anchors.cols() == 0 && rule_ == BoundaryRule::automatic) return;
   const Eigen::Matrix2Xi& edges = input.source_rest.boundary_edges();
   const Points& rest = input.source_rest.mesh().vertices;
+  // A vertex counts for the length of boundary it stands for, half of both its edges, so that the density of
+  // vertices does not matter.
   std::map<int, double> length;
   DisjointSets boundaries(static_cast<int>(rest.cols()));
   for (const auto& edge : edges.colwise()) {
@@ -69,6 +71,9 @@ void BoundaryMatcher::decide(const Points& vertices) {
     matched_boundaries_ = boundaries_;
     return;
   }
+  // Both models were cut at the same place where most of a boundary lies near the target's. How near is
+  // judged by the distance of the anchors: the farther they are, the less the coarse warp knows about the
+  // place.
   std::vector<int> agree(accepted_.size(), 0), total(accepted_.size(), 0);
   for (std::size_t k = 0; k < vertices_.size(); ++k) {
     const BoundaryMatch found = closest(vertices_[k], vertices);

@@ -57,8 +57,11 @@ Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale
   Eigen::Matrix<double, 7, 1> right_side = Eigen::Matrix<double, 7, 1>::Zero();
   for (const PlaneResidual& r : residuals) {
     const Vector3 arm = r.point - center;
+    // Cauchy's weights: where the models differ, the residual is no misfit of the similarity.
     const double outlier = r.distance / robust_scale;
     const double weight = r.weight / (1 + outlier * outlier);
+    // Derivatives of n · x by a small rotation vector, a translation and the logarithm of the scale: point to
+    // plane (Chen, Medioni 1992).
     Eigen::Matrix<double, 7, 1> row;
     row << arm.cross(r.normal), r.normal, arm.dot(r.normal);
     normal_matrix += weight * row * row.transpose();
@@ -92,6 +95,7 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
     const auto residuals = plane_residuals(moved, areas, target, limits, settings.max_samples);
     if (residuals.empty()) return {start, within, false};
     fit.residual = quantile(residuals, settings.quantile);
+    // Most pairs are no similar copies; they shall not pay for all iterations.
     const bool give_up =
         iteration >= settings.trial_iterations && !(fit.residual <= settings.hopeless * tolerance);
     if (iteration == settings.max_iterations || give_up) break;
