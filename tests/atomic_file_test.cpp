@@ -3,9 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <csignal>
 #include <fstream>
+#include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bespoke/error.h"
@@ -19,6 +26,8 @@ namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 class WriteAtomically : public ::testing::Test {
  protected:
@@ -33,8 +42,22 @@ class WriteAtomically : public ::testing::Test {
     return result;
   }
 
+  /// The signal that ended a child process which ran the body, or 0.
+  static int in_child(const std::function<void()>& body) {
+    const pid_t child = fork();
+    if (child == 0) {
+      body();
+      _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
+  }
+
   test::ScratchDirectory directory_;
 };
+
+constexpr std::array kinds{TemporaryFile::unnamed_where_possible, TemporaryFile::named};
 
 TEST_F(WriteAtomically, CreatesAndReplaces) {
   const fs::path path = directory_ / "file.txt";
@@ -45,15 +68,75 @@ TEST_F(WriteAtomically, CreatesAndReplaces) {
   EXPECT_THAT(names(), ElementsAre("file.txt"));
 }
 
-TEST_F(WriteAtomically, WritesToAHiddenNeighbourWithTheSameEnding) {
-  const fs::path path = directory_ / "mesh.obj";
-  write_atomically(path, [&](const fs::path& temporary) {
-    EXPECT_EQ(temporary.parent_path(), path.parent_path());
-    EXPECT_EQ(temporary.extension(), ".obj");
-    EXPECT_EQ(temporary.filename().string().front(), '.');
-    EXPECT_FALSE(fs::exists(path));
-  });
-  EXPECT_EQ(test::read_text(path), "");
+TEST_F(WriteAtomically, ShowsNothingBeforeTheEnd) {
+  for (const TemporaryFile kind : kinds) {
+    write_atomically(
+        directory_ / "mesh.obj",
+        [&](const fs::path& temporary) {
+          std::ofstream(temporary) << "v 0 0 0";
+          EXPECT_EQ(names().size(), kind == TemporaryFile::named ? 1u : 0u);
+          for (const std::string& name : names()) EXPECT_THAT(name, StartsWith(".mesh.obj."));
+        },
+        kind);
+    EXPECT_EQ(test::read_text(directory_ / "mesh.obj"), "v 0 0 0");
+    EXPECT_THAT(names(), ElementsAre("mesh.obj"));
+    fs::remove(directory_ / "mesh.obj");
+  }
+}
+
+TEST_F(WriteAtomically, LeavesNothingOfAKilledWriter) {
+  const auto killed = [](const fs::path& temporary) {
+    std::ofstream(temporary) << "half of the ne" << std::flush;
+    std::raise(SIGKILL);
+  };
+  EXPECT_EQ(in_child([&] { write_atomically(directory_ / "file.txt", killed); }), SIGKILL);
+  EXPECT_THAT(names(), IsEmpty());
+  EXPECT_EQ(in_child([&] { write_atomically(directory_ / "file.txt", killed, TemporaryFile::named); }),
+            SIGKILL);
+  EXPECT_THAT(names(), SizeIs(1));
+  // The next process that writes there.
+  EXPECT_EQ(in_child([&] { write_atomically(directory_ / "other.txt", text("new"), TemporaryFile::named); }),
+            0);
+  EXPECT_THAT(names(), ElementsAre("other.txt"));
+}
+
+TEST_F(WriteAtomically, LeavesTheTemporariesOfOthersThatLive) {
+  write_atomically(
+      directory_ / "file.txt",
+      [&](const fs::path& temporary) {
+        std::ofstream(temporary) << "new";
+        EXPECT_EQ(in_child([&] {
+                    write_atomically(directory_ / "other.txt", text("other"), TemporaryFile::named);
+                  }),
+                  0);
+      },
+      TemporaryFile::named);
+  EXPECT_EQ(test::read_text(directory_ / "file.txt"), "new");
+  EXPECT_THAT(names(), ElementsAre("file.txt", "other.txt"));
+}
+
+TEST_F(WriteAtomically, ReplacesWhatAKilledReplacementLeft) {
+  test::write_text(directory_ / "file.txt", "old");
+  test::write_text(directory_ / ".file.txt.bespoke-new", "never renamed");
+  write_atomically(directory_ / "file.txt", text("new"));
+  EXPECT_EQ(test::read_text(directory_ / "file.txt"), "new");
+  EXPECT_THAT(names(), ElementsAre("file.txt"));
+}
+
+TEST_F(WriteAtomically, TakesOneOfManyWritersAtATime) {
+  const fs::path path = directory_ / "file.txt";
+  write_atomically(path, text(std::string(5000, '0')));
+  std::vector<std::thread> writers;
+  for (char letter = 'a'; letter < 'e'; ++letter)
+    writers.emplace_back([&, letter] {
+      for (int i = 0; i < 50; ++i) {
+        write_atomically(path, text(std::string(5000, letter)));
+        const std::string found = test::read_text(path);
+        EXPECT_EQ(found, std::string(5000, found.front()));
+      }
+    });
+  for (std::thread& writer : writers) writer.join();
+  EXPECT_THAT(names(), ElementsAre("file.txt"));
 }
 
 TEST_F(WriteAtomically, LeavesTheOldContentAndNothingElseWhenTheWriterThrows) {
@@ -112,9 +195,10 @@ TEST_F(WriteAtomically, KeepsThePermissionsOfAnExistingFile) {
 }
 
 TEST_F(WriteAtomically, FailsWhenTheWriterLeavesNoFile) {
-  EXPECT_THROW(
-      write_atomically(directory_ / "file.txt", [](const fs::path& temporary) { fs::remove(temporary); }),
-      FileError);
+  EXPECT_THROW(write_atomically(
+                   directory_ / "file.txt", [](const fs::path& temporary) { fs::remove(temporary); },
+                   TemporaryFile::named),
+               FileError);
 }
 
 }  // namespace

@@ -1,13 +1,18 @@
 #include "bespoke/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "bespoke/error.h"
 
@@ -22,59 +27,146 @@ namespace fs = std::filesystem;
 
 class Descriptor {
  public:
+  Descriptor() = default;
   Descriptor(const fs::path& path, int flags, mode_t mode = 0) : number_(::open(path.c_str(), flags, mode)) {}
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
+  ~Descriptor() { close(); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    close();
+    number_ = std::exchange(other.number_, -1);
+    return *this;
+  }
   int number() const { return number_; }
+  bool is_open() const { return number_ >= 0; }
 
  private:
-  int number_;
+  void close() {
+    if (number_ >= 0) ::close(number_);
+  }
+
+  int number_ = -1;
 };
 
-/// A new, empty file beside the target; gone with the object unless it has been renamed.
+constexpr std::string_view part_ending = ".bespoke-part";
+constexpr std::string_view new_ending = ".bespoke-new";
+
+// Others take a name, or a file, away only by doing the same at the same moment.
+constexpr int most_attempts = 1000;
+
+fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+
+/// `.NAME` and something, beside the target.
+fs::path hidden_neighbour(const fs::path& target, const std::string& ending) {
+  std::string name(".");
+  name += target.filename().string();
+  return target.parent_path() / name.append(ending);
+}
+
+/// Removes the named temporaries of a directory whose writers are gone: they hold their locks no longer.
+void remove_abandoned(const fs::path& directory) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(part_ending)) continue;
+    const Descriptor file(entry.path(), O_RDWR | O_CLOEXEC);
+    if (file.is_open() && ::flock(file.number(), LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+  }
+}
+
+void remove_abandoned_once(const fs::path& directory) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  const std::lock_guard lock(mutex);
+  if (seen.insert(fs::absolute(directory)).second) remove_abandoned(directory);
+}
+
+/// A new, empty file on the target's file system; gone with the object, unless it was put into place.
 class Temporary {
  public:
-  explicit Temporary(const fs::path& target) : target_(target) {
-    static std::atomic<unsigned> counter{0};
-    // Names of other processes may be in the way: their ids repeat over time and between machines that
-    // share a disk.
-    for (int attempt = 0; attempt < 100; ++attempt) {
-      std::string name(".");
-      name += target.stem().string() + '.' + std::to_string(::getpid()) + '-' + std::to_string(counter++);
-      path_ = target.parent_path() / (name + target.extension().string());
-      const Descriptor file(path_, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-      if (file.number() >= 0) return;
-      if (errno != EEXIST) break;
-    }
-    fail("cannot create a file for", target, errno);
+  Temporary(const fs::path& target, TemporaryFile kind) : target_(target) {
+    if (kind == TemporaryFile::unnamed_where_possible) open_unnamed();
+    if (!file_.is_open()) open_named();
   }
   ~Temporary() {
-    if (!path_.empty()) ::unlink(path_.c_str());
+    if (!name_.empty()) ::unlink(name_.c_str());
   }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
 
-  const fs::path& path() const { return path_; }
+  fs::path path() const { return name_.empty() ? descriptor_path() : name_; }
 
   void flush() const {
-    const Descriptor file(path_, O_RDONLY | O_CLOEXEC);
-    if (file.number() < 0 || ::fsync(file.number()) != 0) fail("cannot write", target_, errno);
-    struct stat old;
-    if (::stat(target_.c_str(), &old) == 0 && ::fchmod(file.number(), old.st_mode & 07777) != 0)
+    struct stat own, old;
+    if (!name_.empty() && ::stat(name_.c_str(), &own) != 0) fail("cannot write", target_, errno);
+    if (::fsync(file_.number()) != 0) fail("cannot write", target_, errno);
+    if (::stat(target_.c_str(), &old) == 0 && ::fchmod(file_.number(), old.st_mode & 07777) != 0)
       fail("cannot keep the permissions of", target_, errno);
   }
 
-  void rename() {
-    if (::rename(path_.c_str(), target_.c_str()) != 0) fail("cannot replace", target_, errno);
-    path_.clear();
+  void put_into_place() {
+    if (name_.empty())
+      link_into_place();
+    else if (::rename(name_.c_str(), target_.c_str()) != 0)
+      fail("cannot replace", target_, errno);
+    name_.clear();
   }
 
  private:
+  // Where proc is mounted, this names the file to whoever opens it in this process.
+  fs::path descriptor_path() const { return "/proc/self/fd/" + std::to_string(file_.number()); }
+
+  void open_unnamed() {
+    file_ = Descriptor(directory_of(target_), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    if (file_.is_open() && ::access(descriptor_path().c_str(), W_OK) != 0) file_ = Descriptor();
+  }
+
+  void open_named() {
+    static std::atomic<unsigned> counter{0};
+    remove_abandoned_once(directory_of(target_));
+    // Names of other processes may be in the way: their ids repeat over time and between machines that
+    // share a disk. And who removes abandoned files may have been faster than the lock.
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+      std::string ending(".");
+      ending += std::to_string(::getpid()) + '-' + std::to_string(counter++);
+      fs::path name = hidden_neighbour(target_, ending.append(part_ending));
+      file_ = Descriptor(name, O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+      if (!file_.is_open() && errno != EEXIST) break;
+      struct stat status;
+      if (!file_.is_open() || ::flock(file_.number(), LOCK_EX | LOCK_NB) != 0 ||
+          ::fstat(file_.number(), &status) != 0 || status.st_nlink == 0)
+        continue;
+      name_ = std::move(name);
+      return;
+    }
+    fail("cannot create a file for", target_, errno);
+  }
+
+  bool link_to(const fs::path& name) const {
+    return ::linkat(AT_FDCWD, descriptor_path().c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  }
+
+  /// A link does not replace a file, but a rename does. Whoever finds another's file between the two renames
+  /// it, for it is complete; so a name that is gone was renamed.
+  void link_into_place() const {
+    if (link_to(target_)) return;
+    const fs::path name = hidden_neighbour(target_, std::string(new_ending));
+    for (int attempt = 0; errno == EEXIST && attempt < most_attempts; ++attempt) {
+      const bool is_mine = link_to(name);
+      if (!is_mine && errno != EEXIST) break;
+      const bool renamed = ::rename(name.c_str(), target_.c_str()) == 0 || errno == ENOENT;
+      if (is_mine && renamed) return;
+      if (!renamed) break;
+      errno = EEXIST;
+    }
+    const int error = errno;
+    ::unlink(name.c_str());
+    fail("cannot replace", target_, error);
+  }
+
   fs::path target_;
-  fs::path path_;
+  fs::path name_;  // empty while the file has none
+  Descriptor file_;
 };
 
 fs::path followed(const fs::path& path) {
@@ -86,24 +178,25 @@ fs::path followed(const fs::path& path) {
 }
 
 void flush_directory(const fs::path& target) {
-  const fs::path directory = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  const fs::path directory = directory_of(target);
   const Descriptor descriptor(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Some file systems cannot flush a directory (EINVAL), and one may be writable but not readable: the
   // rename has happened, so neither is a failure.
-  if (descriptor.number() >= 0 && ::fsync(descriptor.number()) != 0 && errno == EIO)
+  if (descriptor.is_open() && ::fsync(descriptor.number()) != 0 && errno == EIO)
     fail("cannot write the directory", directory, errno);
 }
 
 }  // namespace
 
-void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write,
+                      TemporaryFile kind) {
   const fs::path target = followed(path);
   std::error_code ignored;
   if (target.filename().empty() || fs::is_directory(target, ignored)) fail("cannot write", path, EISDIR);
-  Temporary temporary(target);
+  Temporary temporary(target, kind);
   write(temporary.path());
   temporary.flush();
-  temporary.rename();
+  temporary.put_into_place();
   flush_directory(target);
 }
 
