@@ -17,6 +17,7 @@ void add_samples_command(CLI::App& app);
 void add_view_command(CLI::App& app);
 void add_pick_command(CLI::App& app);
 void add_anchors_command(CLI::App& app);
+void add_report_command(CLI::App& app);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

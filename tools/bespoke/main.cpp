@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   add_view_command(app);
   add_pick_command(app);
   add_anchors_command(app);
+  add_report_command(app);
 
   remember_arguments(argc, argv);
   remember_interruptions();

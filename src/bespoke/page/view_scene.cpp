@@ -8,6 +8,7 @@
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/error.h"
 #include "bespoke/page/detail/display_mesh.h"
+#include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/mesh_record.h"
 #include "bespoke/page/detail/packed_arrays.h"
 #include "bespoke/page/detail/places.h"
@@ -230,17 +231,8 @@ class SceneMaker {
   }
 
   Json quality(const Progress& progress) const {
-    const auto count = static_cast<Eigen::Index>(input_.asset.record.anchors.size());
-    Points sources(3, count), targets(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      sources.col(i) = input_.asset.record.anchors[static_cast<std::size_t>(i)].a;
-      targets.col(i) = input_.asset.record.anchors[static_cast<std::size_t>(i)].b;
-    }
-    const MappingQuality found = mapping_quality(
-        {input_.source, input_.target, chain_, rigid_, sources, targets, input_.products}, {}, progress);
-    std::vector<std::string> names;
-    for (const NamedProduct& product : input_.products) names.push_back(product.name);
-    return Json::parse(quality_json(found, names, input_.asset.record.unit));
+    return Json::parse(quality_json(input_quality(input_, chain_, progress), product_names(input_),
+                                    input_.asset.record.unit));
   }
 
   const ViewInput& input_;
