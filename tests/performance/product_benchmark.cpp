@@ -132,12 +132,12 @@ void CopyPly(benchmark::State& state) { Copy(state, ply_grid()); }
 void CopyGlb(benchmark::State& state) { Copy(state, glb_grid()); }
 
 // Bytes of the input per second on all cores.
-BENCHMARK(CarryObj)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(CarryPly)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(CarryGlb)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(CopyObj)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(CopyPly)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(CopyGlb)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(CarryObj)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(CarryPly)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(CarryGlb)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(CopyObj)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(CopyPly)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(CopyGlb)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace bespoke

@@ -47,6 +47,27 @@ RecordEnd skip_property(std::string_view bytes, std::uint64_t more, const PlyPro
   return RecordEnd::found;
 }
 
+/// Whether all of a list's values number one of the vertices.
+bool are_vertices(const char* bytes, std::uint64_t values, PlyScalar type, PlyHeader::Encoding encoding,
+                  std::uint64_t vertices) {
+  if ((type == PlyScalar::int32 || type == PlyScalar::uint32) &&
+      encoding == PlyHeader::Encoding::little_endian) {
+    // What most files have. A negative number is a large one here.
+    std::uint32_t largest = 0;
+    for (std::uint64_t i = 0; i < values; ++i, bytes += sizeof largest) {
+      std::uint32_t index;
+      std::memcpy(&index, bytes, sizeof index);
+      largest = std::max(largest, index);
+    }
+    return largest < vertices && (type == PlyScalar::uint32 || largest <= 0x7fffffff);
+  }
+  for (std::uint64_t i = 0; i < values; ++i, bytes += size(type)) {
+    const double value = read_value(bytes, type, encoding);
+    if (!(value >= 0 && value < static_cast<double>(vertices))) return false;
+  }
+  return true;
+}
+
 bool is_blank(char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t' || c == '\0'; }
 
 }  // namespace
@@ -91,11 +112,13 @@ std::size_t PlyCutter::cut_records(std::string_view bytes, std::uint64_t more, c
     return static_cast<std::size_t>(count) * *record;
   }
   const std::uint64_t vertices = header_.elements[header_.vertex].count;
-  const auto vertices_as_double = static_cast<double>(vertices);
+  std::vector<bool> is_face;
+  for (const PlyProperty& property : element.properties) is_face.push_back(is_face_list(element, property));
   std::size_t end = 0;
   for (count = 0; count < most && end < bytes_a_block; ++count) {
     std::size_t at = end;
-    for (const PlyProperty& property : element.properties) {
+    for (std::size_t k = 0; k < element.properties.size(); ++k) {
+      const PlyProperty& property = element.properties[k];
       std::uint64_t values = 0;
       const RecordEnd found = skip_property(bytes, more, property, header_.encoding, at, values);
       if (found == RecordEnd::behind_the_bytes) return end;
@@ -105,12 +128,14 @@ std::size_t PlyCutter::cut_records(std::string_view bytes, std::uint64_t more, c
       };
       if (found == RecordEnd::behind_the_file) fail("the file ends here");
       if (found == RecordEnd::negative) fail("a list of negative length");
-      if (!is_face_list(element, property)) continue;
+      if (!is_face[k]) continue;
+      const char* const first = bytes.data() + at - values * size(property.type);
+      if (are_vertices(first, values, property.type, header_.encoding, vertices)) continue;
       const std::size_t width = size(property.type);
       for (const char* index = bytes.data() + at - values * width; index != bytes.data() + at;
            index += width) {
         const double value = read_value(index, property.type, header_.encoding);
-        if (!(value >= 0 && value < vertices_as_double)) fail(ply_index_fault(value, vertices));
+        if (!(value >= 0 && value < static_cast<double>(vertices))) fail(ply_index_fault(value, vertices));
       }
     }
     end = at;
@@ -162,8 +187,12 @@ PlyOffsets vertex_offsets(const PlyHeader& header, const PlyBlock& block) {
   const auto triple = [&](const std::array<std::size_t, 3>& of) {
     return std::array{starts[of[0]], starts[of[1]], starts[of[2]]};
   };
+  const std::optional<std::size_t> record = header.elements[block.element].record_size();
   for (std::uint64_t i = 0; i < block.count; ++i) {
-    for (std::size_t k = 0; k < properties.size(); ++k) {
+    // Records of one size differ by it alone.
+    if (record && i > 0)
+      for (std::size_t& start : starts) start += *record;
+    for (std::size_t k = 0; k < properties.size() && (!record || i == 0); ++k) {
       starts[k] = at;
       std::uint64_t values = 0;
       skip_property(block.bytes, 0, properties[k], header.encoding, at, values);
