@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+#include <utility>
+
 #include "bespoke/anchors/anchors.h"
 #include "command/example_pair.h"
 
@@ -32,14 +35,13 @@ TEST(AnchorsCommand, NamesWhatIsSuspicious) {
   EXPECT_THAT(sound.out, HasSubstr("nothing is suspicious"));
   Anchors anchors = read_anchors(pair.file("anchors.json"));
   std::swap(anchors.pairs[2].b, anchors.pairs[9].b);
-  std::string rows;
+  std::ostringstream rows;
   for (const AnchorPair& each : anchors.pairs) {
-    rows += each.name;
-    for (const Vector3& x : {each.a, each.b})
-      for (int axis = 0; axis < 3; ++axis) rows += "," + std::to_string(x[axis]);
-    rows += "\n";
+    rows << each.name;
+    for (const Vector3& x : {each.a, each.b}) rows << ',' << x.x() << ',' << x.y() << ',' << x.z();
+    rows << '\n';
   }
-  write_text(pair.file("swapped.csv"), rows);
+  write_text(pair.file("swapped.csv"), rows.str());
   const ProgramResult swapped = bespoke({"anchors", "audit", pair.file("swapped.csv")});
   EXPECT_EQ(swapped.exit_code, 0) << swapped.err;
   EXPECT_THAT(swapped.out, HasSubstr("p2"));

@@ -57,5 +57,20 @@ TEST(ViewCommand, RefusesOtherModelsAndFindings) {
   EXPECT_FALSE(pair.has("view.html"));
 }
 
+TEST(ReportCommand, WritesPicturesBesideMarkdownAndIntoHtml) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto report = [&](const std::string& output) {
+    return bespoke({"report", pair.file("map.vdb"), "--source", pair.file("source.obj"), "--target",
+                    pair.file("target.obj"), "-o", pair.file(output)});
+  };
+  EXPECT_EQ(report("map.md").exit_code, 0);
+  EXPECT_TRUE(pair.has("map_surface_front.png"));
+  EXPECT_THAT(read_text(pair.file("map.md")), HasSubstr("](map_surface_front.png)"));
+  EXPECT_EQ(report("map.html").exit_code, 0);
+  EXPECT_THAT(read_text(pair.file("map.html")), HasSubstr("data:image/png;base64,"));
+  EXPECT_EQ(report("map.pdf").exit_code, 1);
+}
+
 }  // namespace
 }  // namespace bespoke::test
