@@ -53,6 +53,17 @@ TEST_F(CarryStl, OfBytesChangesPointsAndNormalsAndNothingElse) {
   EXPECT_THAT(complaint("a.stl", head + facet(std::nanf(""), 0) + facet(0, 0)), HasSubstr("facet 0 of 2"));
 }
 
+TEST_F(CarryStl, KeepsTheSignsOfZerosAndWhatIsNoNormal) {
+  std::string stl = std::string(80, 's') + bytes(2u);
+  for (const float x : {-0.0f, 1.0f, -0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, -0.0f})
+    stl += bytes(x);
+  stl += bytes(std::uint16_t{0});
+  for (const float x : {std::nanf(""), 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f})
+    stl += bytes(x);
+  stl += bytes(std::uint16_t{0});
+  EXPECT_EQ(carried("a.stl", stl, identity_motion()), stl);
+}
+
 TEST_F(CarryStl, NamesTheLineOfWhatIsWrong) {
   const std::string begin = "solid\nfacet normal 0 0 1\nouter loop\n";
   EXPECT_THAT(complaint("a.stl", begin + "vertex 0 0 0\nvertex 1 x 0\n"), HasSubstr("a.stl:5: y: 'x'"));

@@ -5,6 +5,7 @@ namespace {
 
 /// `moved` as long as `direction`; `direction` itself where either has no direction.
 Vector3 with_length_of(const Vector3& direction, const Vector3& moved) {
+  if (moved == direction) return direction;  // its zeros keep their signs
   const double length = direction.norm();
   const double moved_length = moved.norm();
   if (!(length > 0 && moved_length > 0 && std::isfinite(length / moved_length))) return direction;
