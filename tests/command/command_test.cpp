@@ -27,7 +27,7 @@ TEST(Command, SaysItsVersion) {
 TEST(Command, ExplainsItselfWithExamples) {
   EXPECT_THAT(bespoke({"--help"}).out, HasSubstr("Exit codes"));
   for (const std::string name :
-       {"fit", "apply", "info", "check", "invert", "compose", "measure", "samples"}) {
+       {"fit", "apply", "info", "check", "invert", "compose", "measure", "batch", "samples"}) {
     const ProgramResult help = bespoke({name, "--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Examples:\n  bespoke " + name));

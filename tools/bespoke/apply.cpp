@@ -2,20 +2,17 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
-#include "bespoke/asset/asset_io.h"
-#include "bespoke/certificate/inverse.h"
-#include "bespoke/lattice/baked_map.h"
+#include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
-#include "run_options.h"
-#include "stored_exact_map.h"
 #include "time_option.h"
 
 namespace bespoke::command {
@@ -96,19 +93,29 @@ std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments)
     throw CLI::ValidationError("-o", "takes one product, but " + std::to_string(arguments.products.size()) +
                                          " are given; use --out-dir DIR");
   std::vector<std::vector<fs::path>> plan;
-  std::vector<fs::path> outputs;
   for (const std::string& product : arguments.products) {
     const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
                                                    : fs::path(arguments.output);
     require_known_endings(arguments, product, path);
     plan.push_back(frame_paths(path, arguments.frames));
-    outputs.insert(outputs.end(), plan.back().begin(), plan.back().end());
   }
-  if (!arguments.report.empty()) outputs.emplace_back(arguments.report);
-  std::vector<fs::path> inputs(arguments.products.begin(), arguments.products.end());
-  inputs.emplace_back(arguments.map);
-  require_safe_outputs(inputs, outputs);
   return plan;
+}
+
+std::vector<JobFile> inputs(const ApplyArguments& arguments) {
+  std::vector<JobFile> files{{"map", arguments.map}};
+  for (const std::string& product : arguments.products) files.push_back({"product", product});
+  return files;
+}
+
+std::vector<JobFile> outputs(const ApplyArguments& arguments,
+                             const std::vector<std::vector<fs::path>>& plan) {
+  std::vector<JobFile> files;
+  for (const std::vector<fs::path>& frames : plan)
+    for (const fs::path& frame : frames)
+      files.push_back({arguments.output.empty() ? "out-dir" : "output", frame});
+  if (!arguments.report.empty()) files.push_back({"report", arguments.report});
+  return files;
 }
 
 std::vector<double> times(const ApplyArguments& arguments) {
@@ -118,32 +125,15 @@ std::vector<double> times(const ApplyArguments& arguments) {
   return times;
 }
 
-/// The way back through the map's own cells; turns the asset's rigid part round as well.
-std::shared_ptr<const ElasticMap> inverse_map(const ApplyArguments& arguments, Asset& asset) {
-  if (!whole_certificate(asset).is_bijection())
-    throw InvalidInput(arguments.map + ": is not certified as a bijection, so it has no inverse");
-  const RigidTransform target_from_source = asset.target_from_source;
-  asset.target_from_source = inverse(target_from_source);
-  std::vector<std::shared_ptr<const ElasticMap>> way_back;
-  for (auto step = asset.steps.rbegin(); step != asset.steps.rend(); ++step) {
-    const auto baked = std::make_shared<BakedMap>(step->affine, std::move(step->pyramid));
-    // The inverse refers to the baked map, which therefore goes last.
-    way_back.emplace_back(new InverseMap(*baked, target_from_source),
-                          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
-  }
-  return std::make_shared<ElasticChain>(std::move(way_back));
+MapForm map_form(const ApplyArguments& arguments) {
+  if (arguments.inverse) return MapForm::inverse;
+  return arguments.exact ? MapForm::exact : MapForm::grids;
 }
 
-std::shared_ptr<const ElasticMap> elastic_map(const ApplyArguments& arguments, Asset& asset) {
-  if (arguments.inverse) return inverse_map(arguments, asset);
-  if (arguments.exact) return stored_exact_map(arguments.map, asset);
-  return std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));
-}
-
-/// The asset's own path, but for orders that do not know it.
-MotionOptions motion_options(const ApplyArguments& arguments, const Asset& asset) {
+/// The map's own path, but for orders that do not know it.
+MotionOptions motion_options(const ApplyArguments& arguments, const OpenedMap& map) {
   const MappingOrder order = arguments.order.value_or(MappingOrder::elastic_first);
-  RotationPath path = arguments.path.value_or(asset.path);
+  RotationPath path = arguments.path.value_or(map.path);
   if (!arguments.path && path == RotationPath::flow && order != MappingOrder::elastic_first)
     path = RotationPath::geodesic;
   return {path, order};
@@ -151,60 +141,76 @@ MotionOptions motion_options(const ApplyArguments& arguments, const Asset& asset
 
 /// Carries the file as it is, or, to become another kind of file or to be refined, its faces.
 ProductSummary apply_one(const ApplyArguments& arguments, const std::string& name,
-                         const std::vector<fs::path>& outputs, const ElasticMap& elastic, const Asset& asset,
+                         const std::vector<fs::path>& outputs, const OpenedMap& map,
                          const Progress& progress) {
-  const MotionOptions motion = motion_options(arguments, asset);
-  const double diagonal = asset.record.source.box.diagonal().norm();
+  const MotionOptions motion = motion_options(arguments, map);
   const bool measure_chords = !arguments.report.empty() && is_mesh_ending(name);
   if (arguments.refine || !keeps_kind(name, outputs.front())) {
     std::optional<double> refine;
-    if (arguments.refine) refine = arguments.refine->in_mesh_units(diagonal);
-    return convert_product(name, outputs, elastic, asset.target_from_source, times(arguments),
+    if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);
+    return convert_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
                            {motion, refine, measure_chords});
   }
-  return apply_to_product(name, outputs, elastic, asset.target_from_source, times(arguments),
+  return apply_to_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
                           {motion, parts(arguments), measure_chords, progress});
 }
 
-void run(const ApplyArguments& arguments, const Progress& progress) {
+std::vector<JobFigure> figures(const std::vector<AppliedProduct>& applied) {
+  std::size_t points = 0, in_band = 0;
+  for (const AppliedProduct& product : applied) {
+    points += product.summary.points.points;
+    in_band += product.summary.points.in_band;
+  }
+  return {{"products", applied.size()}, {"points", points}, {"in_band", in_band}};
+}
+
+void print_summary(const fs::path& output, const ProductSummary& summary) {
+  std::printf("%s: %s\n", output.c_str(), to_string(summary.points).c_str());
+  if (summary.chord)
+    std::printf("%s: %zu edges split; %s\n", output.c_str(), summary.splits,
+                to_string(*summary.chord).c_str());
+  for (const PartSummary& part : summary.parts)
+    std::printf("%s: %s\n", output.c_str(), to_string(part).c_str());
+}
+
+void run(const ApplyArguments& arguments, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
+  const Progress& progress = context.progress;
   if (!arguments.out_dir.empty()) fs::create_directories(arguments.out_dir);
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
-  Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  const std::shared_ptr<const ElasticMap> elastic = elastic_map(arguments, asset);
+  require_safe_outputs(inputs(arguments), outputs(arguments, plan));
+  const std::shared_ptr<const OpenedMap> map =
+      context.maps.open(arguments.map, map_form(arguments), {.untrusted = arguments.untrusted});
 
-  OutputFiles outputs;
+  OutputFiles files;
   std::vector<AppliedProduct> applied;
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
     progress.step("apply", i, arguments.products.size());
     const std::string& name = arguments.products[i];
-    ProductSummary summary = apply_one(arguments, name, plan[i], *elastic, asset, progress);
-    outputs.add(plan[i]);
-    outputs.add(summary.companions);
+    ProductSummary summary = apply_one(arguments, name, plan[i], *map, progress);
+    files.add(plan[i]);
+    files.add(summary.companions);
+    std::vector<fs::path>& further = context.findings.further_outputs;
+    further.insert(further.end(), summary.companions.begin(), summary.companions.end());
     applied.push_back({fs::path(name).filename().string(), std::move(summary)});
   }
   progress.step("apply", arguments.products.size(), arguments.products.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty())
-    outputs.write_text(arguments.report, apply_report(applied, times(arguments), seconds));
-  outputs.keep();
+    files.write_text(arguments.report, apply_report(applied, times(arguments), seconds));
+  files.keep();
 
-  if (arguments.run.quiet) return;
+  context.findings.figures = figures(applied);
   for (std::size_t i = 0; i < applied.size(); ++i) {
-    std::printf("%s: %s\n", plan[i].back().c_str(), to_string(applied[i].summary.points).c_str());
-    if (applied[i].summary.chord)
-      std::printf("%s: %zu edges split; %s\n", plan[i].back().c_str(), applied[i].summary.splits,
-                  to_string(*applied[i].summary.chord).c_str());
-    for (const PartSummary& part : applied[i].summary.parts)
-      std::printf("%s: %s\n", plan[i].back().c_str(), to_string(part).c_str());
+    if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
     for (const std::string& warning : applied[i].summary.warnings)
-      std::fprintf(stderr, "bespoke: warning: %s: %s\n", arguments.products[i].c_str(), warning.c_str());
+      context.warn(arguments.products[i] + ": " + warning);
   }
 }
 
 }  // namespace
 
-void add_apply_command(CLI::App& app) {
+void add_apply_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ApplyArguments>();
   CLI::App* apply = app.add_subcommand("apply", "Carry products across a map");
   apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
@@ -263,8 +269,10 @@ void add_apply_command(CLI::App& app) {
       "  bespoke apply map.vdb dress.obj -o dress_on_man.obj\n"
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
       "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24");
-  apply->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  apply->callback([arguments, take] {
+    const ApplyArguments given = std::exchange(*arguments, {});
+    take({given.run, inputs(given), outputs(given, plan_outputs(given)), given.map,
+          [given](const RunContext& context) { run(given, context); }});
   });
 }
 

@@ -1,12 +1,13 @@
-#include <iostream>
 #include <memory>
+#include <sstream>
+#include <utility>
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "commands.h"
-#include "run_options.h"
+#include "output_files.h"
 #include "time_option.h"
 
 namespace bespoke::command {
@@ -14,6 +15,7 @@ namespace {
 
 struct CheckArguments {
   std::string map;
+  std::string output;
   double t = 1;
   bool json = false;
   bool untrusted = false;
@@ -22,37 +24,51 @@ struct CheckArguments {
 
 constexpr std::size_t printed_places = 10;
 
-void print_places(const Certificate& certificate) {
-  const std::size_t count = std::min(printed_places, certificate.places.size());
-  for (std::size_t i = 0; i < count; ++i)
-    std::cout << "  level " << certificate.places[i].level << " at "
-              << certificate.places[i].center.transpose() << ": det " << certificate.places[i].determinant
-              << '\n';
-  if (certificate.places.size() > count)
-    std::cout << "  and " << certificate.folded + certificate.undecided - count << " more\n";
+std::vector<JobFile> inputs(const CheckArguments& arguments) { return {{"map", arguments.map}}; }
+
+std::vector<JobFile> outputs(const CheckArguments& arguments) {
+  return named_files({{"output", arguments.output}});
 }
 
-void run(const CheckArguments& arguments, const Progress& progress) {
+void print_places(const Certificate& certificate, std::ostream& out) {
+  const std::size_t count = std::min(printed_places, certificate.places.size());
+  for (std::size_t i = 0; i < count; ++i)
+    out << "  level " << certificate.places[i].level << " at " << certificate.places[i].center.transpose()
+        << ": det " << certificate.places[i].determinant << '\n';
+  if (certificate.places.size() > count)
+    out << "  and " << certificate.folded + certificate.undecided - count << " more\n";
+}
+
+std::string answer(const CheckArguments& arguments, const Certificate& certificate) {
+  if (arguments.json) return to_json(certificate).dump(2) + "\n";
+  std::ostringstream text;
+  text << to_string(certificate) << '\n';
+  print_places(certificate, text);
+  return text.str();
+}
+
+void run(const CheckArguments& arguments, const RunContext& context) {
+  require_safe_outputs(inputs(arguments), outputs(arguments));
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  const Certificate certificate = certify_map(asset, arguments.t, progress);
-  if (arguments.json) {
-    std::cout << to_json(certificate).dump(2) << '\n';
-  } else {
-    std::cout << to_string(certificate) << '\n';
-    print_places(certificate);
-  }
+  const Certificate certificate = certify_map(asset, arguments.t, context.progress);
+  write_answer(arguments.output, answer(arguments, certificate), context);
+  context.findings.figures = {{"bijection", certificate.is_bijection()},
+                              {"least_determinant", certificate.least_determinant},
+                              {"folded", certificate.folded},
+                              {"undecided", certificate.undecided}};
   if (!certificate.is_bijection())
     throw SolverError(arguments.map + ": not proved to be a bijection at t = " + std::to_string(arguments.t));
 }
 
 }  // namespace
 
-void add_check_command(CLI::App& app) {
+void add_check_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* check =
       app.add_subcommand("check", "Prove from the file alone that a map does not fold, or say where it does");
   check->add_option("MAP", arguments->map, "Asset, .vdb")->required();
   add_time_option(*check, arguments->t, "Time of the motion, 0 = identity, 1 = the map (default: 1)");
+  check->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
   check->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
   check->add_flag("--untrusted", arguments->untrusted,
                   "Check the file in a child process under limits first");
@@ -62,8 +78,9 @@ void add_check_command(CLI::App& app) {
       "Examples:\n"
       "  bespoke check map.vdb\n"
       "  bespoke check map.vdb --t 0.5 --json");
-  check->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  check->callback([arguments, take] {
+    const CheckArguments given = std::exchange(*arguments, {});
+    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
-#include "output_files.h"
 
 namespace bespoke::command {
 namespace {
@@ -16,21 +16,30 @@ struct ComposeArguments {
   DerivedMapOptions options;
 };
 
-void run(const ComposeArguments& arguments, const Progress& progress) {
+std::vector<JobFile> inputs(const ComposeArguments& arguments) {
+  return {{"ab", arguments.first}, {"bc", arguments.second}};
+}
+
+std::vector<JobFile> outputs(const ComposeArguments& arguments) {
+  return {{"output", arguments.options.output}};
+}
+
+void run(const ComposeArguments& arguments, const RunContext& context) {
   const DerivedMapOptions& options = arguments.options;
-  require_safe_outputs({arguments.first, arguments.second}, {options.output});
+  require_safe_outputs(inputs(arguments), outputs(arguments));
   const Asset first = read_asset(arguments.first, {.untrusted = options.untrusted});
   const Asset second = read_asset(arguments.second, {.untrusted = options.untrusted});
   const BakeOptions bake =
       options.bake(first.record.source, std::max(first.record.tolerance, second.record.tolerance));
   const MeetingModels meeting =
       arguments.any_models ? MeetingModels::may_differ : MeetingModels::must_be_the_same;
-  write_derived_map(options, compose_maps(first, second, bake, meeting, progress), "deviation");
+  write_derived_map(options, context, compose_maps(first, second, bake, meeting, context.progress),
+                    "deviation");
 }
 
 }  // namespace
 
-void add_compose_command(CLI::App& app) {
+void add_compose_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ComposeArguments>();
   CLI::App* compose = app.add_subcommand("compose", "Join two maps into one: a to c from a to b and b to c");
   compose->add_option("AB", arguments->first, "Asset of the map from a to b")->required();
@@ -44,8 +53,11 @@ void add_compose_command(CLI::App& app) {
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb --tolerance 0.01%");
-  compose->callback([arguments] {
-    run_with(arguments->options.run, [&](const Progress& progress) { run(*arguments, progress); });
+  compose->callback([arguments, take] {
+    const ComposeArguments given = std::exchange(*arguments, {});
+    take({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
+            run(given, context);
+          }});
   });
 }
 

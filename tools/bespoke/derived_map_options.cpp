@@ -24,10 +24,16 @@ void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
   add_run_options(app, options.run);
 }
 
-void write_derived_map(const DerivedMapOptions& options, const DerivedMap& derived, const char* deviation) {
+void write_derived_map(const DerivedMapOptions& options, const RunContext& context, const DerivedMap& derived,
+                       const char* deviation) {
   OutputFiles outputs;
   outputs.write(options.output, [&](const auto& path) { write_asset(path, derived.asset); });
   outputs.keep();
+  context.findings.figures = {{"deviation_max", derived.deviation.max},
+                              {"bake_error_max", derived.bake.error.max},
+                              {"tolerance_met", derived.bake.tolerance_met},
+                              {"bijection", whole_certificate(derived.asset).is_bijection()},
+                              {"voxels", voxel_count(derived.asset)}};
   if (options.run.quiet) return;
   std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());
   std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(derived.asset)).c_str());

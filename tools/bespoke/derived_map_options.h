@@ -5,7 +5,7 @@
 
 #include "bespoke/pipeline/derive_map.h"
 #include "length_option.h"
-#include "run_options.h"
+#include "planned_run.h"
 
 namespace bespoke::command {
 
@@ -25,6 +25,7 @@ void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
                              const std::string& tolerance_description);
 
 /// Writes the asset and prints its summaries; `deviation` names what the map's deviation is.
-void write_derived_map(const DerivedMapOptions& options, const DerivedMap& derived, const char* deviation);
+void write_derived_map(const DerivedMapOptions& options, const RunContext& context, const DerivedMap& derived,
+                       const char* deviation);
 
 }  // namespace bespoke::command

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
@@ -13,9 +14,9 @@
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "length_option.h"
+#include "memory_option.h"
 #include "name_option.h"
 #include "output_files.h"
-#include "run_options.h"
 
 namespace bespoke::command {
 namespace {
@@ -43,14 +44,21 @@ void require_consistent(const FitArguments& arguments) {
     throw CLI::ValidationError("--anchor-sigma", "is of the pairs of --anchors, which is missing");
   if (!arguments.confidence_out.empty() && !arguments.fitted.empty())
     throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
-  std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
-  std::vector<std::filesystem::path> outputs{arguments.output};
-  for (const std::string* input : {&arguments.anchors, &arguments.fitted})
-    if (!input->empty()) inputs.emplace_back(*input);
-  for (const std::string* output : {&arguments.fitted_out, &arguments.confidence_out, &arguments.report})
-    if (!output->empty()) outputs.emplace_back(*output);
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
-  require_safe_outputs(inputs, outputs);
+}
+
+std::vector<JobFile> inputs(const FitArguments& arguments) {
+  return named_files({{"source", arguments.source},
+                      {"target", arguments.target},
+                      {"anchors", arguments.anchors},
+                      {"fitted", arguments.fitted}});
+}
+
+std::vector<JobFile> outputs(const FitArguments& arguments) {
+  return named_files({{"output", arguments.output},
+                      {"fitted-out", arguments.fitted_out},
+                      {"confidence-out", arguments.confidence_out},
+                      {"report", arguments.report}});
 }
 
 /// One number a line, in the order of the source's vertices.
@@ -80,17 +88,17 @@ void print_stages(const MadeMap& made, const Anchors& anchors) {
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
 }
 
-void warn_of_far_anchors(const std::string& role, const TriangleMesh& model, const Points& anchors,
-                         const std::string& unit) {
+void warn_of_far_anchors(const RunContext& context, const std::string& role, const TriangleMesh& model,
+                         const Points& anchors, const std::string& unit) {
   const AnchorPlacement placement = anchor_placement(model, anchors);
   if (placement.is_far())
-    std::fprintf(stderr, "bespoke: warning: %s: %s; are both in one unit%s%s?\n", role.c_str(),
-                 to_string(placement).c_str(), unit.empty() ? "" : ", ", unit.c_str());
+    context.warn(role + ": " + to_string(placement) + "; are both in one unit" + (unit.empty() ? "" : ", ") +
+                 unit + "?");
 }
 
-void warn_of_contradictions(const Anchors& anchors) {
+void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
   const std::string text = to_string(contradicting_anchors(anchors), anchors);
-  if (!text.empty()) std::fprintf(stderr, "bespoke: warning: %s\n", text.c_str());
+  if (!text.empty()) context.warn(text);
 }
 
 /// Why the bake's error exceeds the tolerance, and what lowers it.
@@ -106,16 +114,31 @@ std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeS
   return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
 }
 
-void warn_of_missed_tolerance(const FitArguments& arguments, const MakeMapOptions& options,
-                              const MadeMap& made) {
+void warn_of_missed_tolerance(const RunContext& context, const FitArguments& arguments,
+                              const MakeMapOptions& options, const MadeMap& made) {
   const BakeSummary& bake = *made.fit.summary.bake;
   if (bake.tolerance_met) return;
-  std::fprintf(stderr, "bespoke: warning: the bake's largest error %.4g exceeds the tolerance %.4g; %s\n",
-               bake.error.max, options.bake.tolerance, cause_of_missed_tolerance(arguments, bake).c_str());
+  char text[120];
+  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
+                bake.error.max, options.bake.tolerance);
+  context.warn(text + cause_of_missed_tolerance(arguments, bake));
 }
 
-void run(const FitArguments& arguments, const Progress& progress) {
-  require_consistent(arguments);
+std::vector<JobFigure> figures(const MadeMap& made) {
+  const FitSummary& summary = made.fit.summary;
+  return {{"vertex_residual_p95", summary.elastic.vertex_residuals.p95},
+          {"vertex_residual_max", summary.elastic.vertex_residuals.max},
+          {"anchor_residual_max", summary.elastic.anchor_residuals.max},
+          {"unmet_vertices", summary.elastic.unmet.size()},
+          {"bake_error_max", summary.bake->error.max},
+          {"tolerance_met", summary.bake->tolerance_met},
+          {"bijection", whole_certificate(made.asset).is_bijection()},
+          {"steps", made.asset.steps.size()},
+          {"voxels", voxel_count(made.asset)}};
+}
+
+void run(const FitArguments& arguments, const RunContext& context) {
+  require_safe_outputs(inputs(arguments), outputs(arguments));
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;
   const TriangleMesh source = read_model("source", arguments.source, quiet);
@@ -129,32 +152,33 @@ void run(const FitArguments& arguments, const Progress& progress) {
         arguments.anchors +
         ": the fit needs 3 anchor pairs that are not collinear; there are 0; without --anchors "
         "models in similar pose are aligned by their surfaces");
-  warn_of_far_anchors("source", source, source_points(anchors), anchors.unit);
-  warn_of_far_anchors("target", target, target_points(anchors), anchors.unit);
-  warn_of_contradictions(anchors);
+  warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
+  warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
+  warn_of_contradictions(context, anchors);
   rate_anchors(anchors, arguments, diagonal(source.vertices));
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
-  const MadeMap made = make_map(input, options, progress);
+  const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
     throw SolverError("the map is not certified as a bijection: " + to_string(whole_certificate(made.asset)));
-  progress.check();
+  context.progress.check();
 
-  OutputFiles outputs;
-  outputs.write(arguments.output, [&](const auto& path) { write_asset(path, made.asset); });
+  OutputFiles files;
+  files.write(arguments.output, [&](const auto& path) { write_asset(path, made.asset); });
   if (!arguments.fitted_out.empty())
-    outputs.write(arguments.fitted_out, [&](const auto& path) {
+    files.write(arguments.fitted_out, [&](const auto& path) {
       write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces});
     });
   if (!arguments.confidence_out.empty())
-    outputs.write_text(arguments.confidence_out, confidence_lines(made.fit.confidence));
+    files.write_text(arguments.confidence_out, confidence_lines(made.fit.confidence));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!arguments.report.empty()) outputs.write_text(arguments.report, fit_report(input, made, seconds));
-  outputs.keep();
+  if (!arguments.report.empty()) files.write_text(arguments.report, fit_report(input, made, seconds));
+  files.keep();
 
-  warn_of_missed_tolerance(arguments, options, made);
+  context.findings.figures = figures(made);
+  warn_of_missed_tolerance(context, arguments, options, made);
   if (quiet) return;
   print_stages(made, anchors);
   std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
@@ -268,22 +292,14 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
 
 }  // namespace
 
-void add_fit_command(CLI::App& app) {
+void add_fit_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* fit = app.add_subcommand("fit", "Compute the map between two reference models and store it");
   add_file_options(*fit, *arguments);
   add_method_options(*fit, *arguments);
   add_length_options(*fit, *arguments);
-  fit->add_option("--max-memory", arguments->max_memory,
-                  "Bytes that a stage may take, for instance 4GiB (default: 8GiB)")
-      ->transform(CLI::AsSizeValue(false))
-      // Runs first, although it comes second; "-1" would wrap to more than any machine has.
-      ->transform(CLI::Validator(
-          [](std::string& text) {
-            return text.starts_with('-') ? "'" + text + "' is not a number of bytes" : std::string();
-          },
-          ""))
-      ->type_name("BYTES");
+  add_memory_option(*fit, arguments->max_memory,
+                    "Bytes that a stage may take, for instance 4GiB (default: 8GiB)");
   add_run_options(*fit, arguments->run);
   fit->footer(
       "Examples:\n"
@@ -291,8 +307,10 @@ void add_fit_command(CLI::App& app) {
       "  bespoke fit woman.obj man.obj -o map.vdb\n"
       "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --paper --lambda 5%\n"
       "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb --report report.json");
-  fit->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  fit->callback([arguments, take] {
+    const FitArguments given = std::exchange(*arguments, {});
+    require_consistent(given);
+    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

@@ -1,9 +1,9 @@
 #include <memory>
+#include <utility>
 
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
-#include "output_files.h"
 
 namespace bespoke::command {
 namespace {
@@ -13,17 +13,23 @@ struct InvertArguments {
   DerivedMapOptions options;
 };
 
-void run(const InvertArguments& arguments, const Progress& progress) {
+std::vector<JobFile> inputs(const InvertArguments& arguments) { return {{"map", arguments.map}}; }
+
+std::vector<JobFile> outputs(const InvertArguments& arguments) {
+  return {{"output", arguments.options.output}};
+}
+
+void run(const InvertArguments& arguments, const RunContext& context) {
   const DerivedMapOptions& options = arguments.options;
-  require_safe_outputs({arguments.map}, {options.output});
+  require_safe_outputs(inputs(arguments), outputs(arguments));
   const Asset asset = read_asset(arguments.map, {.untrusted = options.untrusted});
   const BakeOptions bake = options.bake(asset.record.target, asset.record.tolerance);
-  write_derived_map(options, invert_map(asset, bake, progress), "round trip");
+  write_derived_map(options, context, invert_map(asset, bake, context.progress), "round trip");
 }
 
 }  // namespace
 
-void add_invert_command(CLI::App& app) {
+void add_invert_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<InvertArguments>();
   CLI::App* invert = app.add_subcommand("invert", "Make the map from the target back to the source");
   invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
@@ -34,8 +40,11 @@ void add_invert_command(CLI::App& app) {
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"
       "  bespoke invert ab.vdb -o ba.vdb --tolerance 0.01%");
-  invert->callback([arguments] {
-    run_with(arguments->options.run, [&](const Progress& progress) { run(*arguments, progress); });
+  invert->callback([arguments, take] {
+    const InvertArguments given = std::exchange(*arguments, {});
+    take({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
+            run(given, context);
+          }});
   });
 }
 

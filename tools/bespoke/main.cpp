@@ -16,13 +16,14 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 wrong arguments, 2 bad input, 3 the fit did not succeed,\n"
       "4 file or memory trouble, 130 or 143 interrupted.\n\n"
       "bespoke SUBCOMMAND --help explains a subcommand with examples.");
-  add_fit_command(app);
-  add_apply_command(app);
+  add_fit_command(app, run_at_once);
+  add_apply_command(app, run_at_once);
   add_info_command(app);
-  add_check_command(app);
-  add_invert_command(app);
-  add_compose_command(app);
-  add_measure_command(app);
+  add_check_command(app, run_at_once);
+  add_invert_command(app, run_at_once);
+  add_compose_command(app, run_at_once);
+  add_measure_command(app, run_at_once);
+  add_batch_command(app);
   add_export_command(app);
   add_samples_command(app);
   add_view_command(app);

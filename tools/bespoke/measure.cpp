@@ -1,25 +1,26 @@
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mesh/mesh_io.h"
 #include "bespoke/mesh/product_io.h"
+#include "bespoke/pipeline/open_map.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
 #include "commands.h"
 #include "map_models.h"
-#include "run_options.h"
-#include "stored_exact_map.h"
+#include "output_files.h"
 
 namespace bespoke::command {
 namespace {
 
 struct MeasureArguments {
   std::string map;
+  std::string output;
   std::string source;
   std::string target;
   std::vector<std::string> products;
@@ -29,7 +30,26 @@ struct MeasureArguments {
   RunOptions run;
 };
 
-void run(const MeasureArguments& arguments, const Progress& progress) {
+std::vector<JobFile> inputs(const MeasureArguments& arguments) {
+  std::vector<JobFile> files{
+      {"map", arguments.map}, {"source", arguments.source}, {"target", arguments.target}};
+  for (const std::string& product : arguments.products) files.push_back({"product", product});
+  return files;
+}
+
+std::vector<JobFile> outputs(const MeasureArguments& arguments) {
+  return named_files({{"output", arguments.output}});
+}
+
+std::vector<JobFigure> figures(const MappingQuality& quality) {
+  return {{"source_to_target_p95", quality.surfaces.a_to_b.p95},
+          {"target_to_source_p95", quality.surfaces.b_to_a.p95},
+          {"hausdorff", quality.surfaces.hausdorff},
+          {"flipped_faces", quality.flipped_faces}};
+}
+
+void run(const MeasureArguments& arguments, const RunContext& context) {
+  require_safe_outputs(inputs(arguments), outputs(arguments));
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
   const TriangleMesh source = read_triangle_mesh(arguments.source);
   const TriangleMesh target = read_triangle_mesh(arguments.target);
@@ -55,14 +75,17 @@ void run(const MeasureArguments& arguments, const Progress& progress) {
     elastic = std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
   const MappingQuality quality = mapping_quality(
       {source, target, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
-      progress);
-  std::cout << (arguments.json ? quality_json(quality, names, asset.record.unit)
-                               : quality_text(quality, names, asset.record.unit));
+      context.progress);
+  context.findings.figures = figures(quality);
+  write_answer(arguments.output,
+               arguments.json ? quality_json(quality, names, asset.record.unit)
+                              : quality_text(quality, names, asset.record.unit),
+               context);
 }
 
 }  // namespace
 
-void add_measure_command(CLI::App& app) {
+void add_measure_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* measure = app.add_subcommand("measure", "Put numbers on a map, and on what it does to products");
   measure->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
@@ -76,6 +99,7 @@ void add_measure_command(CLI::App& app) {
       ->add_option("--product", arguments->products,
                    "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
       ->type_name("MESH");
+  measure->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
   measure->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
   measure->add_flag("--exact", arguments->exact,
                     "Measure the exact map that --keep-exact stored, not the grids");
@@ -88,8 +112,9 @@ void add_measure_command(CLI::App& app) {
       "  bespoke measure map.vdb --source woman.obj --target man.obj --product dress.obj --product "
       "shoes.obj\n"
       "  bespoke measure map.vdb --source woman.obj --target man.obj --json | jq .distortion");
-  measure->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  measure->callback([arguments, take] {
+    const MeasureArguments given = std::exchange(*arguments, {});
+    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

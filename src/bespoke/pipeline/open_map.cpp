@@ -29,7 +29,7 @@ std::shared_ptr<const ElasticMap> inverse_map(const std::filesystem::path& path,
 
 OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {
   Asset asset = read_asset(path, options);
-  OpenedMap map{nullptr, asset.target_from_source, asset.path};
+  OpenedMap map{nullptr, asset.target_from_source, asset.path, asset.record.source.box.diagonal().norm()};
   switch (form) {
     case MapForm::grids:
       map.elastic = std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));

@@ -21,6 +21,7 @@ struct OpenedMap {
   std::shared_ptr<const ElasticMap> elastic;
   RigidTransform target_from_source;  ///< turned round in the inverse
   RotationPath path = RotationPath::geodesic;
+  double source_diagonal = 0;  ///< of the source's bounding box, mesh units
 };
 
 /// Throws as read_asset; InvalidInput when the asset has no such map.

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace bespoke {
+
+/// What the file system says of a file without reading it.
+struct FileStamp {
+  std::uint64_t bytes = 0;
+  std::int64_t modified = 0;  ///< nanoseconds since 1970
+
+  bool operator==(const FileStamp&) const = default;
+};
+
+/// Empty when there is no such file.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
+
+/// Whether a file with this stamp may change without getting another one, because it changed just now: file
+/// systems tick in some milliseconds.
+bool is_too_fresh(const FileStamp& stamp);
+
+/// SHA-256 of files, each read once as long as its stamp stays. Thread-safe.
+class FileHashes {
+ public:
+  /// Throws FileError when the file cannot be read.
+  std::string of(const std::filesystem::path& path);
+
+ private:
+  struct Known {
+    FileStamp stamp;
+    std::string hash;
+  };
+
+  std::mutex mutex_;
+  std::map<std::filesystem::path, Known> known_;
+};
+
+}  // namespace bespoke

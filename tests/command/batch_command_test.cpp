@@ -1,0 +1,310 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "command/example_pair.h"
+
+namespace bespoke::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class BatchCommand : public testing::Test {
+ protected:
+  std::string file(const std::string& name) const { return pair_.file(name); }
+  std::string read(const std::string& name) const { return read_text(file(name)); }
+
+  json fit(const std::string& output) const {
+    return {{"command", "fit"},
+            {"source", file("source.obj")},
+            {"target", file("target.obj")},
+            {"anchors", file("anchors.json")},
+            {"tolerance", "0.5%"},
+            {"output", file(output)}};
+  }
+  json apply(const std::string& map, const std::string& output) const {
+    return {
+        {"command", "apply"}, {"map", file(map)}, {"product", file("product.obj")}, {"output", file(output)}};
+  }
+  /// The manifest of the jobs, a line each.
+  std::string manifest(const std::vector<json>& jobs) const {
+    std::string text;
+    for (const json& job : jobs) text += job.dump() + "\n";
+    write_text(file("jobs.jsonl"), text);
+    return file("jobs.jsonl");
+  }
+  ProgramResult batch(const std::vector<json>& jobs, const std::vector<std::string>& extra = {}) const {
+    std::vector<std::string> arguments{"batch", manifest(jobs)};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    return bespoke(arguments);
+  }
+  std::vector<json> log(const std::string& name) const {
+    std::vector<json> records;
+    std::istringstream lines(read(name));
+    for (std::string line; std::getline(lines, line);) records.push_back(json::parse(line));
+    return records;
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
+  json inverse = apply("map.vdb", "back.ply");
+  inverse["inverse"] = true;
+  inverse["product"] = file("target.obj");
+  json frames = apply("map.vdb", "frame.obj");
+  frames["frames"] = 3;
+  const ProgramResult result = batch(
+      {apply("map.vdb", "out.obj"),
+       frames,
+       inverse,
+       {{"command", "invert"}, {"map", file("map.vdb")}, {"output", file("inverse.vdb")}},
+       {{"command", "compose"},
+        {"ab", file("map.vdb")},
+        {"bc", file("inverse.vdb")},
+        {"output", file("there.vdb")}},
+       {{"command", "check"}, {"map", file("there.vdb")}, {"json", true}, {"output", file("check.json")}},
+       {{"command", "measure"},
+        {"map", file("map.vdb")},
+        {"source", file("source.obj")},
+        {"target", file("target.obj")},
+        {"product", {file("product.obj"), file("source.obj")}},
+        {"output", file("measure.txt")}},
+       fit("map.vdb")},
+      {"--log", file("log.jsonl")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+
+  const auto expect_same = [&](const std::vector<std::string>& arguments, const std::string& output,
+                               const std::string& batched) {
+    const ProgramResult single = bespoke(arguments);
+    ASSERT_EQ(single.exit_code, 0) << single.err;
+    const std::string bytes = output.empty() ? single.out : read(output);
+    EXPECT_FALSE(bytes.empty());
+    EXPECT_TRUE(bytes == read(batched)) << batched;
+  };
+  ASSERT_EQ(pair_.fit("single.vdb").exit_code, 0);
+  EXPECT_TRUE(read("single.vdb") == read("map.vdb"));
+  expect_same({"apply", file("map.vdb"), file("product.obj"), "-o", file("s.obj")}, "s.obj", "out.obj");
+  expect_same({"apply", file("map.vdb"), file("product.obj"), "-o", file("f.obj"), "--frames", "3"},
+              "f_002.obj", "frame_002.obj");
+  expect_same({"apply", file("map.vdb"), file("target.obj"), "-o", file("s.ply"), "--inverse"}, "s.ply",
+              "back.ply");
+  expect_same({"invert", file("map.vdb"), "-o", file("i.vdb")}, "i.vdb", "inverse.vdb");
+  expect_same({"compose", file("map.vdb"), file("i.vdb"), "-o", file("c.vdb")}, "c.vdb", "there.vdb");
+  expect_same({"check", file("c.vdb"), "--json", "-q"}, "", "check.json");
+  expect_same({"measure", file("map.vdb"), "--source", file("source.obj"), "--target", file("target.obj"),
+               "--product", file("product.obj"), "--product", file("source.obj"), "-q"},
+              "", "measure.txt");
+
+  const std::vector<json> records = log("log.jsonl");
+  ASSERT_EQ(records.size(), 8u);
+  for (const json& record : records) {
+    EXPECT_EQ(record["state"], "done");
+    EXPECT_GT(record["seconds"], 0);
+    EXPECT_GT(record["memory"], 1000000);
+  }
+  EXPECT_EQ(records[0]["line"], 8);  // all others need it
+  EXPECT_EQ(records[0]["figures"]["bijection"], true);
+}
+
+TEST_F(BatchCommand, RepeatsNothingThatIsUpToDate) {
+  const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "moved/out.obj")};
+  ASSERT_EQ(batch(jobs).exit_code, 0);
+  const auto time = fs::last_write_time(file("moved/out.obj"));
+  fs::last_write_time(file("source.obj"), fs::last_write_time(file("source.obj")) + std::chrono::hours(1));
+  const ProgramResult again = batch(jobs, {"--json"});
+  EXPECT_THAT(again.out, HasSubstr("\"up-to-date\":2"));
+  EXPECT_EQ(fs::last_write_time(file("moved/out.obj")), time);
+  EXPECT_THAT(batch(jobs, {"--dry-run"}).out, StartsWith("0 of 2 jobs"));
+  write_text(file("product.obj"), read("product.obj") + "# changed\n");
+  const ProgramResult dry = batch(jobs, {"--dry-run"});
+  EXPECT_THAT(dry.out,
+              AllOf(HasSubstr("line 2: apply"), HasSubstr("product.obj has changed"), HasSubstr("1 of 2")));
+  EXPECT_EQ(fs::last_write_time(file("moved/out.obj")), time);
+  EXPECT_THAT(batch(jobs, {"--json"}).out, AllOf(HasSubstr("\"up-to-date\":1"), HasSubstr("\"done\":1")));
+  EXPECT_THAT(read("moved/out.obj"), EndsWith("# changed\n"));
+}
+
+TEST_F(BatchCommand, RefusesBadManifestsBeforeAnythingRuns) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  const json good = apply("map.vdb", "good.obj");
+  const auto with = [&](const char* key, const json& value) {
+    json job = apply("map.vdb", "out.obj");
+    job[key] = value;
+    return job;
+  };
+  const auto without = [&](const char* key) {
+    json job = apply("map.vdb", "out.obj");
+    job.erase(key);
+    return job;
+  };
+  struct Bad {
+    std::vector<json> jobs;
+    const char* message;  // of line 2
+  };
+  for (const Bad& bad : {
+           Bad{{good, with("speed", 3)}, "unknown key \"speed\""},
+           Bad{{good, with("threads", 3)}, "for the whole batch"},
+           Bad{{good, with("command", "knit")}, "unknown command \"knit\""},
+           Bad{{good, without("map")}, "\"map\" is missing"},
+           Bad{{good, without("output")}, "-o OUT"},
+           Bad{{good, with("product", file("absent.obj"))}, "absent.obj does not exist"},
+           Bad{{good, with("output", file("good.obj"))}, "is written by line 1"},
+           Bad{{good, with("output", file("product.obj"))}, "also what the job writes"},
+           Bad{{good, with("t", "half")}, "half"},
+           Bad{{good, with("exact", 1)}, "either true or false"},
+           Bad{{good, with("map", {file("map.vdb"), file("map.vdb")})}, "takes one value"},
+           Bad{{good, with("output", file("out.step"))}, "out.step"},
+           Bad{{good, json::array({1})}, "not a JSON object"},
+           Bad{{good,
+                {{"command", "invert"}, {"map", file("y.vdb")}, {"output", file("x.vdb")}},
+                {{"command", "invert"}, {"map", file("x.vdb")}, {"output", file("y.vdb")}}},
+               "waits for itself: line 2"},
+       }) {
+    const ProgramResult result = batch(bad.jobs, {"--keep-going"});
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("jobs.jsonl:2: "), HasSubstr(bad.message), HasSubstr("nothing was run\n")));
+    EXPECT_FALSE(pair_.has("good.obj")) << bad.message;
+  }
+  EXPECT_THAT(batch({}).err, HasSubstr("holds no job"));
+  EXPECT_EQ(bespoke({"batch", file("absent.jsonl")}).exit_code, 4);
+  for (const std::string shard : {"0/2", "3/2", "1", "a/b", "1/2x"})
+    EXPECT_EQ(batch({good}, {"--shard", shard}).exit_code, 1) << shard;
+  EXPECT_THAT(batch({good}, {"--max-memory", "1MB"}).err,
+              AllOf(HasSubstr("jobs.jsonl:1"), HasSubstr("--max-memory is 2 MB")));
+  EXPECT_FALSE(pair_.has("good.obj"));
+}
+
+TEST_F(BatchCommand, TakesCsv) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  write_text(file("jobs.csv"), "command,map,product,output,t\napply," + file("map.vdb") + "," +
+                                   file("product.obj") + "," + file("a.obj") + ",\napply," + file("map.vdb") +
+                                   "," + file("product.obj") + "," + file("b.obj") + ",0\n");
+  EXPECT_EQ(bespoke({"batch", file("jobs.csv"), "-q"}).exit_code, 0);
+  EXPECT_EQ(read_obj_points(file("b.obj")), read_obj_points(file("product.obj")));
+  EXPECT_NE(read("a.obj"), read("b.obj"));
+}
+
+TEST_F(BatchCommand, NamesTheLineOfAJobThatFails) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  // Large, so that it starts first.
+  write_text(file("broken.obj"), "v 0 0\n#" + std::string(1 << 20, 'x') + "\n");
+  json broken = apply("map.vdb", "broken_out.obj");
+  broken["product"] = file("broken.obj");
+  const std::vector<json> jobs{broken, apply("map.vdb", "out.obj")};
+  const ProgramResult stopped = batch(jobs, {"--jobs", "1", "--log", file("log.jsonl")});
+  EXPECT_EQ(stopped.exit_code, 3);
+  EXPECT_THAT(stopped.err, AllOf(HasSubstr("jobs.jsonl:1: apply: "), HasSubstr("broken.obj"),
+                                 HasSubstr("1 of 2 jobs failed, 1 did not run")));
+  EXPECT_EQ(log("log.jsonl")[1]["state"], "not-run");
+  EXPECT_FALSE(pair_.has("out.obj"));
+  const ProgramResult result = batch(jobs, {"--keep-going", "--progress", "openjd"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_TRUE(pair_.has("out.obj"));
+  EXPECT_FALSE(pair_.has("broken_out.obj"));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("openjd_progress: 100.0\n"),
+                                HasSubstr("openjd_status: 1 of 2 done"), HasSubstr("openjd_fail: ")));
+}
+
+TEST_F(BatchCommand, StopsBetweenJobsOnASignal) {
+  std::vector<json> jobs;
+  for (int i = 0; i < 30; ++i) {
+    jobs.push_back(fit("m" + std::to_string(i) + ".vdb"));
+    jobs.back()["tolerance"] = "0.2%";
+  }
+  RunningProgram program(
+      {BESPOKE_COMMAND, "batch", manifest(jobs), "--jobs", "1", "--log", file("log.jsonl")});
+  ASSERT_TRUE(program.wait_for_error_text("1 running"));
+  program.send(SIGTERM);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.exit_code, 128 + SIGTERM) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("did not run"));
+  const std::vector<json> records = log("log.jsonl");
+  ASSERT_EQ(records.size(), 30u);
+  const auto done =
+      std::count_if(records.begin(), records.end(), [](const json& r) { return r["state"] == "done"; });
+  EXPECT_GE(done, 1);
+  EXPECT_LT(done, 30);
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(pair_.has("m" + std::to_string(i) + ".vdb"), i < done);
+}
+
+/// What jobs have written in a directory, by name; records aside, which hold times.
+std::map<std::string, std::string> products(const std::string& directory) {
+  std::map<std::string, std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(directory)) {
+    const std::string name = fs::relative(entry.path(), directory).string();
+    if (entry.is_regular_file() && !name.ends_with(".bespoke-jobs.jsonl"))
+      found[name] = read_text(entry.path());
+  }
+  return found;
+}
+
+/// Two fits and eight products of each, into a directory.
+std::vector<json> season(const ExamplePair& pair, const std::string& directory) {
+  std::vector<json> jobs;
+  for (const std::string size : {"s", "m"}) {
+    const std::string map = directory + "/" + size + ".vdb";
+    for (int i = 0; i < 8; ++i)
+      jobs.push_back({{"command", "apply"},
+                      {"map", map},
+                      {"product", pair.file("product.obj")},
+                      {"t", 0.125 * (i + 1)},
+                      {"output", directory + "/" + size + "/" + std::to_string(i) + ".obj"}});
+    jobs.push_back({{"command", "fit"},
+                    {"source", pair.file("source.obj")},
+                    {"target", pair.file("target.obj")},
+                    {"anchors", pair.file("anchors.json")},
+                    {"tolerance", size == "s" ? "0.5%" : "0.4%"},
+                    {"output", map}});
+  }
+  return jobs;
+}
+
+TEST_F(BatchCommand, ReachesTheSameStateWhateverIsKilled) {
+  ASSERT_EQ(batch(season(pair_, file("undisturbed")), {"-q"}).exit_code, 0);
+  const auto wanted = products(file("undisturbed"));
+  ASSERT_EQ(wanted.size(), 18u);
+
+  constexpr int kills = 12;
+  std::mt19937 random(12);
+  const std::string path = manifest(season(pair_, file("killed")));
+  const std::vector<std::vector<std::string>> workers{
+      {"--threads", "1"}, {"--threads", "3"}, {"--shard", "1/2"}, {"--shard", "2/2", "--threads", "2"}};
+  for (int kill = 0; kill < kills; ++kill) {
+    std::vector<std::unique_ptr<RunningProgram>> programs;
+    // Now and then two of them write the same files.
+    for (int i = 0; i <= kill % 3; ++i) {
+      std::vector<std::string> arguments{BESPOKE_COMMAND, "batch", path, "-q"};
+      const auto& worker = workers[random() % workers.size()];
+      arguments.insert(arguments.end(), worker.begin(), worker.end());
+      programs.push_back(std::make_unique<RunningProgram>(arguments));
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 400));
+    for (const auto& program : programs) program->send(SIGKILL);
+    for (const auto& program : programs) program->wait();
+    for (const auto& [name, bytes] : fs::exists(file("killed")) ? products(file("killed")) : wanted) {
+      ASSERT_TRUE(wanted.contains(name)) << name << " after kill " << kill;
+      ASSERT_TRUE(bytes == wanted.at(name)) << name << " after kill " << kill;
+    }
+  }
+  EXPECT_EQ(bespoke({"batch", path, "-q", "--threads", "2"}).exit_code, 0);
+  EXPECT_TRUE(products(file("killed")) == wanted);
+}
+
+}  // namespace
+}  // namespace bespoke::test

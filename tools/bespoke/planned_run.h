@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/batch/batch_job.h"
+#include "bespoke/batch/opened_maps.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+
+/// What a run has of whoever started it: the command line, or a batch.
+struct RunContext {
+  const Progress& progress;
+  OpenedMaps& maps;
+  JobFindings& findings;
+  /// One sentence; the command line prints it, a batch keeps it in its log.
+  std::function<void(const std::string&)> warn;
+  /// What a run without an output is for: printed, but not in a batch.
+  std::function<void(const std::string&)> print;
+};
+
+/// A subcommand's arguments, checked as far as they can be without reading a file.
+struct PlannedRun {
+  RunOptions options;
+  std::vector<JobFile> inputs;
+  std::vector<JobFile> outputs;
+  std::optional<std::filesystem::path> shared_map;  ///< an input that is opened through RunContext::maps
+  std::function<void(const RunContext&)> run;       ///< may be called once
+};
+
+/// Takes a run that a subcommand has planned: starts it at once, or keeps it.
+using TakePlan = std::function<void(PlannedRun)>;
+
+/// Starts it, with progress, warnings and results on the terminal.
+void run_at_once(PlannedRun planned);
+
+/// Those of the files that have a name.
+std::vector<JobFile> named_files(std::vector<JobFile> files);
+
+/// require_safe_outputs of what is planned.
+void require_safe_outputs(const std::vector<JobFile>& inputs, const std::vector<JobFile>& outputs);
+
+/// Writes what a subcommand was asked for to the file, or prints it where there is none.
+void write_answer(const std::string& output, const std::string& text, const RunContext& context);
+
+}  // namespace bespoke::command
