@@ -91,8 +91,7 @@ TEST_F(JobRecordsTest, TakesADamagedRecordForNone) {
     test::write_text(record, text.substr(0, size));
     EXPECT_THAT(reason(job()), HasSubstr("no record")) << size;
   }
-  for (const char* damaged :
-       {"[]", "{\"version\":1}", "{\"inputs\":3,\"outputs\":[],\"options\":{}}"}) {
+  for (const char* damaged : {"[]", "{\"version\":1}", "{\"inputs\":3,\"outputs\":[],\"options\":{}}"}) {
     test::write_text(record, damaged);
     EXPECT_THAT(reason(job()), HasSubstr("no record")) << damaged;
   }

@@ -9,23 +9,21 @@
 #include "bespoke/lattice/baked_map.h"
 
 namespace bespoke {
-namespace {
 
-/// The way back through the map's own cells.
-std::shared_ptr<const ElasticMap> inverse_map(const std::filesystem::path& path, Asset& asset) {
-  if (!whole_certificate(asset).is_bijection())
-    throw InvalidInput(path.string() + ": is not certified as a bijection, so it has no inverse");
+std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
+                                              const RigidTransform& target_from_source) {
+  for (const MapStep& step : steps)
+    if (!step.certificate.is_bijection())
+      throw InvalidInput("the map is not certified as a bijection, so it has no inverse");
   std::vector<std::shared_ptr<const ElasticMap>> way_back;
-  for (auto step = asset.steps.rbegin(); step != asset.steps.rend(); ++step) {
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     const auto baked = std::make_shared<BakedMap>(step->affine, std::move(step->pyramid));
     // The inverse refers to the baked map, which therefore goes last.
-    way_back.emplace_back(new InverseMap(*baked, asset.target_from_source),
+    way_back.emplace_back(new InverseMap(*baked, target_from_source),
                           [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
   }
   return std::make_shared<ElasticChain>(std::move(way_back));
 }
-
-}  // namespace
 
 OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {
   Asset asset = read_asset(path, options);
@@ -38,7 +36,9 @@ OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAs
       map.elastic = stored_exact_map(path, asset);
       break;
     case MapForm::inverse:
-      map.elastic = inverse_map(path, asset);
+      if (!whole_certificate(asset).is_bijection())
+        throw InvalidInput(path.string() + ": is not certified as a bijection, so it has no inverse");
+      map.elastic = inverse_map(std::move(asset.steps), asset.target_from_source);
       map.target_from_source = inverse(asset.target_from_source);
       break;
   }

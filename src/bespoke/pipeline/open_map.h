@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/mapping/elastic_map.h"
@@ -27,6 +28,11 @@ struct OpenedMap {
 /// Throws as read_asset; InvalidInput when the asset has no such map.
 OpenedMap open_map(const std::filesystem::path& path, MapForm form = MapForm::grids,
                    const ReadAssetOptions& options = {});
+
+/// The way back of a map through its own cells, in the target frame: Ψ⁻¹ = Γ⁻¹ ∘ this. Throws InvalidInput
+/// unless every step is certified as a bijection.
+std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
+                                              const RigidTransform& target_from_source);
 
 /// The exact map that `fit --keep-exact` stored in the asset read from `path`. Throws InvalidInput when there
 /// is none, FormatError for bytes that are not one.

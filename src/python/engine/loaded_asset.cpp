@@ -1,28 +1,9 @@
 #include "loaded_asset.h"
 
-#include "bespoke/certificate/inverse.h"
-#include "bespoke/lattice/baked_map.h"
+#include "bespoke/pipeline/open_map.h"
 
 namespace bespoke::python {
 namespace py = pybind11;
-namespace {
-
-/// The way back through the map's own cells.
-std::shared_ptr<const ElasticMap> inverse_map(const Asset& asset) {
-  if (!whole_certificate(asset).is_bijection())
-    throw InvalidInput("the map is not certified as a bijection, so it has no inverse");
-  std::vector<std::shared_ptr<const ElasticMap>> way_back;
-  for (auto step = asset.steps.rbegin(); step != asset.steps.rend(); ++step) {
-    const auto baked = std::make_shared<BakedMap>(step->affine, step->pyramid);
-    // The inverse refers to the baked map, which therefore goes last.
-    way_back.emplace_back(new InverseMap(*baked, asset.target_from_source),
-                          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
-  }
-  return std::make_shared<ElasticChain>(std::move(way_back));
-}
-
-}  // namespace
-
 const ElasticMap& LoadedAsset::remembered(std::shared_ptr<const ElasticMap>& form,
                                           std::shared_ptr<const ElasticMap> (*make)(const Asset&)) {
   const std::lock_guard lock(making_);
@@ -43,7 +24,8 @@ const ElasticMap& LoadedAsset::certified_map() {
 }
 
 Points LoadedAsset::preimages(const Points& y) {
-  const ElasticMap& back = remembered(inverse_, &inverse_map);
+  const ElasticMap& back = remembered(
+      inverse_, [](const Asset& asset) { return inverse_map(asset.steps, asset.target_from_source); });
   return bespoke::inverse(asset_.target_from_source) * back(y);
 }
 
