@@ -156,12 +156,15 @@ class Temporary {
       if (!is_mine && errno != EEXIST) break;
       const bool renamed = ::rename(name.c_str(), target_.c_str()) == 0 || errno == ENOENT;
       if (is_mine && renamed) return;
-      if (!renamed) break;
+      if (!renamed) {
+        // Mine or another's, it cannot replace the target for either.
+        const int error = errno;
+        ::unlink(name.c_str());
+        fail("cannot replace", target_, error);
+      }
       errno = EEXIST;
     }
-    const int error = errno;
-    ::unlink(name.c_str());
-    fail("cannot replace", target_, error);
+    fail("cannot replace", target_, errno);
   }
 
   fs::path target_;

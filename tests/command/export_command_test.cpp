@@ -109,6 +109,7 @@ TEST_F(ExportCommand, RefusesWithoutLeavingAnything) {
   refused({"--grid", "-3", "-o", pair_.file("map.vti")}, 1, "--grid");
   refused({"-o", pair_.file("map.vti")}, 1, "--grid");
   refused({"--grid", "3%", "--space", "up", "-o", pair_.file("map.nrrd")}, 1, "--space");
+  refused({"--grid", "3%", "--space", "ras", "-o", pair_.file("map.vti")}, 1, "own frame");
 }
 
 }  // namespace

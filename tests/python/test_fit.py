@@ -49,6 +49,21 @@ def test_given_fit_needs_no_anchors(pair):
     assert np.linalg.norm(image - fitted.vertices, axis=1).max() < 3 * fit.map.info.tolerance
 
 
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"source": "body.obj"}, "source must be a bespoke.Mesh, not str"),
+        ({"fitted": np.zeros((3, 3))}, "fitted must be a bespoke.Mesh, not ndarray"),
+        ({"anchors": "pairs.json"}, "bespoke.read_anchors"),
+        ({"anchors": [((0, 0, 0), (1, 1, 1))]}, "anchor 0 must be a bespoke.Anchor, not tuple"),
+    ],
+)
+def test_what_is_no_model_or_anchor_is_named(pair, changed, words):
+    arguments = {"source": pair.source, "target": pair.target, "anchors": pair.anchors} | changed
+    with pytest.raises(TypeError, match=words):
+        bespoke.fit(**arguments)
+
+
 def test_progress_is_told_and_may_stop(pair):
     stages = []
     bespoke.fit(

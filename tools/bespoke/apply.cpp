@@ -208,6 +208,27 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   }
 }
 
+/// What keeps its shape, and where edges follow the map's.
+void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
+  apply
+      .add_option(
+          "--rigid", arguments.rigid,
+          "A part that keeps its shape: it is turned and shifted as its mapped points ask for best. An OBJ "
+          "group, object or material, a glTF node, or a PLY component by its number; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  apply
+      .add_option("--similar", arguments.similar,
+                  "The same of a part that may also be scaled as a whole; repeatable")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  add_length_option(
+      apply, "--refine", arguments.refine,
+      "Split straight edges where the map bends them until the middle of an edge's image is no farther "
+      "than this from the image of its middle; keeps faces and texture coordinates only (default: none "
+      "is split)");
+}
+
 }  // namespace
 
 void add_apply_command(CLI::App& app, const TakePlan& take) {
@@ -242,23 +263,7 @@ void add_apply_command(CLI::App& app, const TakePlan& take) {
       ->add_flag("--inverse", arguments->inverse,
                  "Carry products of the target back to the source, through the cells of a certified map")
       ->excludes(exact);
-  apply
-      ->add_option(
-          "--rigid", arguments->rigid,
-          "A part that keeps its shape: it is turned and shifted as its mapped points ask for best. An OBJ "
-          "group, object or material, a glTF node, or a PLY component by its number; repeatable")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  apply
-      ->add_option("--similar", arguments->similar,
-                   "The same of a part that may also be scaled as a whole; repeatable")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  add_length_option(
-      *apply, "--refine", arguments->refine,
-      "Split straight edges where the map bends them until the middle of an edge's image is no farther "
-      "than this from the image of its middle; keeps faces and texture coordinates only (default: none "
-      "is split)");
+  add_shape_options(*apply, *arguments);
   apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
       ->type_name("FILE");
   apply->add_flag("--untrusted", arguments->untrusted,

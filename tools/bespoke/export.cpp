@@ -44,6 +44,10 @@ std::string content(const ExportArguments& arguments, const AssetRecord& record)
 
 void run(const ExportArguments& arguments, const Progress& progress) {
   require_image_ending(arguments.output);
+  if (arguments.space && !says_world_space(arguments.output))
+    throw CLI::ValidationError(
+        "--space",
+        arguments.output + " does not say which way its axes point: it is in the models' own frame");
   require_safe_outputs({arguments.map}, {arguments.output});
   const ReadAssetOptions reading{.untrusted = arguments.untrusted};
   const AssetRecord record = read_asset(arguments.map, reading).record;

@@ -11,10 +11,12 @@ namespace {
 
 struct ImageFormat {
   std::string_view ending;
+  bool says_world_space;
   void (*write)(std::ostream& out, const DisplacementImage& image, const ImageNotes& notes);
 };
 
-constexpr std::array image_formats{ImageFormat{".vti", &write_vti}, ImageFormat{".nrrd", &write_nrrd}};
+constexpr std::array image_formats{ImageFormat{".vti", false, &write_vti},
+                                   ImageFormat{".nrrd", true, &write_nrrd}};
 
 const ImageFormat& format_of(const std::filesystem::path& path) {
   for (const ImageFormat& format : image_formats)
@@ -37,6 +39,8 @@ void write_displacement_image(const std::filesystem::path& path, const Displacem
 }
 
 void require_image_ending(const std::filesystem::path& path) { format_of(path); }
+
+bool says_world_space(const std::filesystem::path& path) { return format_of(path).says_world_space; }
 
 std::string image_endings() {
   std::string endings;

@@ -33,6 +33,10 @@ void write_displacement_image(const std::filesystem::path& path, const Displacem
 /// Throws as write_displacement_image for an ending that it does not know.
 void require_image_ending(const std::filesystem::path& path);
 
+/// Whether files of this ending say which way the axes point; the others are in the models' own frame. Throws
+/// as write_displacement_image.
+bool says_world_space(const std::filesystem::path& path);
+
 /// ".vti, .nrrd".
 std::string image_endings();
 

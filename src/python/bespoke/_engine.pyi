@@ -9,6 +9,7 @@ _Faces = npt.NDArray[np.int32]
 _Progress = Callable[[str, int, int], object] | None
 _Length = float | str | None
 _Triple = tuple[float, float, float]
+AnchorFields = tuple[str, _Triple, _Triple, float | None, float | None]  # name, a, b, weight, sigma
 
 class Error(Exception): ...
 class InvalidInput(Error, ValueError): ...
@@ -44,13 +45,11 @@ class Map:
 
 def read_mesh(path: str) -> tuple[_Points, _Faces]: ...
 def write_mesh(path: str, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None: ...
-def read_anchors(
-    path: str,
-) -> tuple[str, list[tuple[str, _Triple, _Triple, float | None, float | None]]]: ...
+def read_anchors(path: str) -> tuple[str, list[AnchorFields]]: ...
 def fit(
     source: tuple[npt.ArrayLike, npt.ArrayLike],
     target: tuple[npt.ArrayLike, npt.ArrayLike],
-    anchors: Iterable[tuple[str, _Triple, _Triple, float | None, float | None]],
+    anchors: Iterable[AnchorFields],
     unit: str,
     fitted: tuple[npt.ArrayLike, npt.ArrayLike] | None,
     add_corners: bool,

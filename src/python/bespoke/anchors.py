@@ -38,3 +38,13 @@ def read_anchors(path: str | os.PathLike[str]) -> Anchors:
     """
     unit, pairs = _engine.read_anchors(os.fspath(path))
     return Anchors((Anchor(a, b, name, sigma, weight) for name, a, b, weight, sigma in pairs), unit)
+
+
+def _pairs(anchors: Iterable[Anchor]) -> list[_engine.AnchorFields]:
+    if isinstance(anchors, (str, bytes, os.PathLike)):
+        raise TypeError("anchors must be bespoke.Anchor objects; bespoke.read_anchors reads them from a file")
+    pairs = list(anchors)
+    for number, pair in enumerate(pairs):
+        if not isinstance(pair, Anchor):
+            raise TypeError(f"anchor {number} must be a bespoke.Anchor, not {type(pair).__name__}")
+    return [(pair.name, pair.a, pair.b, pair.weight, pair.sigma) for pair in pairs]

@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from .anchors import Anchor
+from .anchors import Anchor, _pairs
 from .maps import Length, Map, Progress
-from .meshes import Mesh
+from .meshes import Mesh, _arrays
 from .summaries import FitReport
 
 
@@ -58,7 +58,7 @@ def fit(
     "10%" of the source's diagonal, `max_memory` is in bytes. Without anchors models in similar pose are aligned by their
     surfaces, or refused. Given the same input, the map is the command's, bit for bit.
 
-    Raises InvalidInput, SolverError (also when models cannot be aligned with certainty), MemoryLimitError.
+    Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be aligned with certainty), MemoryLimitError.
     """
     options = {
         "surface_fit": surface_fit,
@@ -80,11 +80,11 @@ def fit(
         "max_memory": max_memory,
     }
     engine, vertices, confidence, report = _engine.fit(
-        (source.vertices, source.faces),
-        (target.vertices, target.faces),
-        [(pair.name, pair.a, pair.b, pair.weight, pair.sigma) for pair in anchors],
+        _arrays(source, "source"),
+        _arrays(target, "target"),
+        _pairs(anchors),
         getattr(anchors, "unit", ""),
-        None if fitted is None else (fitted.vertices, fitted.faces),
+        None if fitted is None else _arrays(fitted, "fitted"),
         add_corners,
         options,
         progress,

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from .meshes import Mesh
+from .meshes import Mesh, _arrays
 from .summaries import ApplySummary, Certificate, Info, Quality
 
 Progress = Callable[[str, int, int], object]
@@ -134,8 +134,8 @@ class Map:
         return Quality._from(
             json.loads(
                 self._engine.measure(
-                    (source.vertices, source.faces),
-                    (target.vertices, target.faces),
+                    _arrays(source, "source"),
+                    _arrays(target, "target"),
                     [os.fspath(product) for product in products],
                     progress,
                 )

@@ -24,6 +24,12 @@ class Mesh:
         return float(np.linalg.norm(np.ptp(np.asarray(self.vertices), axis=0)))
 
 
+def _arrays(mesh: Mesh, what: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    if not isinstance(mesh, Mesh):
+        raise TypeError(f"{what} must be a bespoke.Mesh, not {type(mesh).__name__}; bespoke.read_mesh reads one from a file")
+    return mesh.vertices, mesh.faces
+
+
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Reads OBJ, PLY, STL or OFF, by the ending of the name; polygons become triangles.
 
