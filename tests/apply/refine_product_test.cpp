@@ -150,13 +150,16 @@ TEST(RefineProduct, RefusesWhatTakesTooMuch) {
   };
   EXPECT_THAT(refusal(0, bend), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(1e-6, bend), HasSubstr("more than 1000 vertices"));
+  // Known from the first edges, not found out by splitting.
+  EXPECT_THAT(test::error_message<InvalidInput>([] { refine_product(fan(), bend, 1e-17); }),
+              HasSubstr("a chord error of 1e-17 would take more than 67108864 vertices"));
   // A map that jumps is not met by any refinement.
   const auto jump = [](const Points& x) {
     Points y = x;
     for (Eigen::Index i = 0; i < x.cols(); ++i) y(2, i) = x(0, i) > 0.7 ? 1 : 0;
     return y;
   };
-  EXPECT_THAT(refusal(0.1, jump), HasSubstr("more than"));
+  EXPECT_THAT(refusal(0.1, jump), HasSubstr("ask for less"));
 }
 
 }  // namespace

@@ -37,12 +37,12 @@ TEST(DisplacementImage, IsExactForAffineMaps) {
     return Points((a * x).colwise() + Vector3(3, -2, 1));
   };
   const DisplacementImage image = sample_displacements(affine, box, 0.4, plenty);
-  EXPECT_LT(sampling_error(image, affine, 5000).max, 1e-6);
+  EXPECT_LT(sampling_error(image, affine, box, 5000).max, 1e-6);
 }
 
 TEST(DisplacementImage, MissesASmoothMapByTheSquareOfItsSpacing) {
-  const double coarse = sampling_error(sample_displacements(&wave, box, 0.2, plenty), &wave, 20000).p99;
-  const double fine = sampling_error(sample_displacements(&wave, box, 0.1, plenty), &wave, 20000).p99;
+  const double coarse = sampling_error(sample_displacements(&wave, box, 0.2, plenty), &wave, box, 20000).p99;
+  const double fine = sampling_error(sample_displacements(&wave, box, 0.1, plenty), &wave, box, 20000).p99;
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 

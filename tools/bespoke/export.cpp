@@ -55,11 +55,10 @@ void run(const ExportArguments& arguments, const Progress& progress) {
   const PointFunction image = [&](const Points& x) {
     return apply_mapping(*map.elastic, map.target_from_source, x, {1.0}, {map.path}).frames.front();
   };
-  const Box& model = arguments.pull ? record.target.box : record.source.box;
+  const Box box = reached(arguments.pull ? record.target.box : record.source.box, record.lambda);
   const double spacing = arguments.grid->in_mesh_units(record.source.box.diagonal().norm());
-  const DisplacementImage sampled =
-      sample_displacements(image, reached(model, record.lambda), spacing, most_memory, progress);
-  const Statistics error = sampling_error(sampled, image, error_points, progress);
+  const DisplacementImage sampled = sample_displacements(image, box, spacing, most_memory, progress);
+  const Statistics error = sampling_error(sampled, image, box, error_points, progress);
 
   OutputFiles outputs;
   const ImageNotes notes{content(arguments, record), arguments.space.value_or(WorldSpace::lps)};

@@ -1,10 +1,24 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <string>
 
 #include "commands.h"
 #include "exit_code.h"
 #include "interruption.h"
 #include "page_output.h"
+
+namespace {
+
+/// Without this the parser says only that a subcommand is missing.
+void require_known_subcommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  for (const CLI::App* subcommand : app.get_subcommands({}))
+    if (subcommand->check_name(argv[1])) return;
+  throw CLI::ParseError("there is no subcommand '" + std::string(argv[1]) + "'; bespoke --help lists them",
+                        CLI::ExitCodes::ExtrasError);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace bespoke::command;
@@ -35,6 +49,7 @@ int main(int argc, char** argv) {
   remember_interruptions();
   return exit_code_of([&] {
     try {
+      require_known_subcommand(app, argc, argv);
       app.parse(argc, argv);
     } catch (const CLI::Success& request) {
       app.exit(request);  // --help and --version print and are done

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <optional>
 #include <set>
 #include <string>
@@ -182,12 +183,25 @@ Middles chosen_edges(const Product& product, const Eigen::Matrix2Xi& edges, cons
   return middles;
 }
 
+/// Vertices that the edges end with where the map is smooth: as many pieces divide a chord error by their
+/// number's square.
+double expected_vertices(Eigen::Index vertices, const Eigen::VectorXd& errors, double length) {
+  return static_cast<double>(vertices) +
+         (errors.array() > length).select((errors / length).cwiseSqrt().array() - 1, 0).sum();
+}
+
+std::string in_short(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
 }  // namespace
 
 RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length,
                               std::size_t most_vertices) {
   if (!(length > 0))
-    throw InvalidInput("a product cannot be refined to a chord error of " + std::to_string(length) +
+    throw InvalidInput("a product cannot be refined to a chord error of " + in_short(length) +
                        "; it must be positive");
   RefinedProduct refined;
   refined.product = std::move(product);
@@ -197,11 +211,16 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
     const Eigen::VectorXd errors = chord_errors(vertices, image(vertices), edges, image);
     const Middles middles = chosen_edges(refined.product, edges, errors, length);
     if (middles.size() == 0) break;
-    if (round == most_rounds || static_cast<std::size_t>(vertices.cols()) + middles.size() > most_vertices)
-      throw InvalidInput(
-          "a chord error of " + std::to_string(length) + " would take more than " +
-          std::to_string(round == most_rounds ? static_cast<std::size_t>(vertices.cols()) : most_vertices) +
-          " vertices; the largest is " + std::to_string(errors.maxCoeff()) + ", ask for less");
+    if (round == most_rounds)
+      throw InvalidInput("a chord error of " + in_short(length) + " is not met after " +
+                         std::to_string(most_rounds) + " halvings of edges; " + in_short(errors.maxCoeff()) +
+                         " is left, ask for less");
+    const double needed = std::max(static_cast<double>(vertices.cols()) + static_cast<double>(middles.size()),
+                                   expected_vertices(vertices.cols(), errors, length));
+    if (needed > static_cast<double>(most_vertices))
+      throw InvalidInput("a chord error of " + in_short(length) + " would take more than " +
+                         std::to_string(most_vertices) + " vertices; the largest is " +
+                         in_short(errors.maxCoeff()) + ", ask for less");
     refined.splits += middles.size();
     split(refined.product, middles);
   }

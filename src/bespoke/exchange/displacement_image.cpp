@@ -92,8 +92,8 @@ DisplacementImage sample_displacements(const PointFunction& image, const Box& bo
   return sampled;
 }
 
-Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, std::size_t points,
-                          const Progress& progress) {
+Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, const Box& box,
+                          std::size_t points, const Progress& progress) {
   std::mt19937_64 engine(seed);
   std::vector<double> errors;
   while (errors.size() < points) {
@@ -102,8 +102,7 @@ Statistics sampling_error(const DisplacementImage& sampled, const PointFunction&
     for (Eigen::Index column = 0; column < x.cols(); ++column)
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double fraction = static_cast<double>(engine() >> 11) * 0x1p-53;
-        x(axis, column) =
-            sampled.origin(axis) + sampled.spacing * fraction * double(sampled.size[std::size_t(axis)] - 1);
+        x(axis, column) = box.min()[axis] + fraction * box.sizes()[axis];
       }
     const Points difference = x + sampled(x) - image(x);
     for (Eigen::Index column = 0; column < x.cols(); ++column)

@@ -31,9 +31,9 @@ struct DisplacementImage {
 DisplacementImage sample_displacements(const PointFunction& image, const Box& box, double spacing,
                                        std::size_t max_memory, const Progress& progress = {});
 
-/// |what the image makes of x − image(x)| at random points between the nodes, mesh units: the same points for
-/// the same grid.
-Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, std::size_t points,
-                          const Progress& progress = {});
+/// |what the image makes of x − image(x)| at random points of the box, which the grid covers, mesh units: the
+/// same points for the same box.
+Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, const Box& box,
+                          std::size_t points, const Progress& progress = {});
 
 }  // namespace bespoke
