@@ -11,6 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 const std::string viewers = BESPOKE_SOURCE_DIR "/samples/viewers";
+const std::string plugin = viewers + "/paraview/plugin/bespoke_maps.py";
 const std::string laws = BESPOKE_SOURCE_DIR "/tests/viewers";
 
 TEST(Blender, LawsOfTheAddOnHold) {
@@ -24,6 +25,76 @@ TEST(Blender, LawsOfTheAddOnHold) {
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("held: t_moves_meshes_where_the_add_on_is_absent"));
   EXPECT_THAT(run.out, Not(HasSubstr("broken: "))) << run.err;
+}
+
+class ParaView : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (run_program({"pvbatch", "--version"}).exit_code != 0)
+      GTEST_SKIP() << "pvbatch (paraview) is not installed";
+    if (run_program({"/usr/bin/python3", "-c", "import numpy, paraview, pyopenvdb"}).exit_code != 0)
+      GTEST_SKIP() << "ParaView's Python lacks pyopenvdb, NumPy or paraview itself (python3-paraview)";
+    ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+    ASSERT_EQ(pair_.apply("map.vdb", {"-o", pair_.file("moved.obj")}).exit_code, 0);
+  }
+
+  // With what ParaView needs from Python 3.11 on.
+  static ProgramResult run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"env", "PYTHONPATH=" + viewers + "/paraview/python311"});
+    return run_program(arguments);
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_F(ParaView, LawsOfThePluginHold) {
+  const std::string directory = std::filesystem::path(pair_.file("map.vdb")).parent_path();
+  const ProgramResult result = run({"pvbatch", laws + "/paraview_laws.py", directory, plugin});
+  EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+  EXPECT_THAT(result.out, HasSubstr("held: contour_of_the_distance_is_the_source"));
+}
+
+TEST_F(ParaView, RefusesWhatIsNoMap) {
+  write_text(pair_.file("other.py"), R"(
+import sys
+import paraview.simple as pv
+import pyopenvdb as vdb
+grid = vdb.FloatGrid()
+grid.name = 'density'
+grid.fill((0, 0, 0), (3, 3, 3), 1.0)
+vdb.write(sys.argv[2], [grid])
+pv.LoadPlugin(sys.argv[1], ns=globals())
+BespokeMap(FileName=sys.argv[2]).UpdatePipeline()
+)");
+  const ProgramResult result = run({"pvbatch", pair_.file("other.py"), plugin, pair_.file("smoke.vdb")});
+  EXPECT_THAT(result.out + result.err, HasSubstr("smoke.vdb is no map of bespoke"));
+}
+
+TEST_F(ParaView, DrawsThePictureOfTheManualAndItsStateLoads) {
+  if (run_program({"which", "xvfb-run"}).exit_code != 0) GTEST_SKIP() << "xvfb-run (xvfb) is not installed";
+  const std::vector<std::string> display{"xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset",
+                                         "pvbatch"};
+  std::vector<std::string> draw = display;
+  draw.insert(draw.end(), {viewers + "/paraview/picture.py", pair_.file("map.vdb"), pair_.file("product.obj"),
+                           pair_.file("map.png"), pair_.file("map.pvsm")});
+  const ProgramResult drawn = run(draw);
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.out << drawn.err;
+  EXPECT_GT(std::filesystem::file_size(pair_.file("map.png")), 10'000u);
+  write_text(pair_.file("load.py"), R"(
+import sys
+import paraview.simple as pv
+pv.LoadPlugin(sys.argv[1])
+pv.LoadState(sys.argv[2])
+names = [name for name, _ in pv.GetSources()]
+print(*sorted(names))
+pv.SaveScreenshot(sys.argv[3])
+)");
+  std::vector<std::string> load = display;
+  load.insert(load.end(), {pair_.file("load.py"), plugin, pair_.file("map.pvsm"), pair_.file("again.png")});
+  const ProgramResult loaded = run(load);
+  ASSERT_EQ(loaded.exit_code, 0) << loaded.out << loaded.err;
+  EXPECT_THAT(loaded.out, HasSubstr("BespokeCarry1 BespokeCarry2 BespokeCarry3 BespokeMap1"));
+  EXPECT_GT(std::filesystem::file_size(pair_.file("again.png")), 10'000u);
 }
 
 }  // namespace
