@@ -58,6 +58,7 @@ TEST_F(ReadManifest, TakesOneObjectALine) {
 
 TEST_F(ReadManifest, TakesATableWithAHeader) {
   const Manifest manifest = read("m.csv",
+                                 "\xEF\xBB\xBF"  // as spreadsheets begin it
                                  "command,map,product,output,inverse\n"
                                  "apply,m.vdb,\"a, \"\"b\"\".obj\",out.obj,true\n"
                                  "apply,m.vdb,c.obj,d.obj,\n");

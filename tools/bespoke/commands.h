@@ -9,6 +9,7 @@ namespace bespoke::command {
 /// Each adds one subcommand, which runs while the arguments are parsed.
 void add_export_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
+void add_grade_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
 void add_view_command(CLI::App& app);

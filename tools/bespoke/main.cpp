@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   add_compose_command(app, run_at_once);
   add_measure_command(app, run_at_once);
   add_batch_command(app);
+  add_grade_command(app);
   add_export_command(app);
   add_samples_command(app);
   add_view_command(app);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "bespoke/error.h"
@@ -15,6 +16,7 @@ namespace bespoke {
 namespace {
 
 constexpr const char* command_key = "command";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // which spreadsheets write
 
 [[noreturn]] void fail(const std::string& what) { throw FormatError(what); }
 
@@ -123,6 +125,7 @@ Manifest read_lines(const std::filesystem::path& path, const Take& take) {
   std::size_t number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
+    if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (is_blank(line)) continue;
     try {
