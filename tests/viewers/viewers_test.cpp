@@ -14,6 +14,17 @@ const std::string viewers = BESPOKE_SOURCE_DIR "/samples/viewers";
 const std::string plugin = viewers + "/paraview/plugin/bespoke_maps.py";
 const std::string laws = BESPOKE_SOURCE_DIR "/tests/viewers";
 
+// What vdb_print and the NanoVDB tools say of an asset is tested with the asset.
+TEST(VdbView, ShowsAMap) {
+  for (const char* program : {"vdb_view", "xvfb-run", "script"})
+    if (run_program({"which", program}).exit_code != 0) GTEST_SKIP() << program << " is not installed";
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const ProgramResult run =
+      run_program({"/usr/bin/python3", laws + "/vdb_view_draws.py", pair.file("map.vdb")});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+}
+
 TEST(Blender, LawsOfTheAddOnHold) {
   if (run_program({"blender", "--version"}).exit_code != 0) GTEST_SKIP() << "blender is not installed";
   const ExamplePair pair;
