@@ -1,11 +1,10 @@
 # Everything the library links, for the build and, installed, for consumers of the package. Order matters:
-# OpenVDB's module directory has a FindTBB of its own that clashes with TBBConfig, so TBB, Eigen and OpenMesh
-# are found before that directory is appended.
+# OpenVDB's module directory has a FindTBB of its own that clashes with TBBConfig, so TBB and Eigen are
+# found before that directory is appended.
 include(CMakeFindDependencyMacro)
 find_dependency(Threads)
 find_dependency(TBB CONFIG)
 find_dependency(Eigen3 3.3 CONFIG)
-find_dependency(OpenMesh CONFIG)
 find_dependency(nlohmann_json CONFIG)
 find_dependency(OpenSSL COMPONENTS Crypto)
 find_dependency(ZLIB)

@@ -3,7 +3,7 @@
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "samples.h"
 
 namespace bespoke {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "command/fit_command.h"
 #include "support/shapes.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "support/run_program.h"
 
 namespace bespoke {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "bespoke/elastic/csrbf.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/front_cholesky.h"
 #include "bespoke/rbf/kernels.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <random>
 
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "support/shapes.h"
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/report/report.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bespoke/elastic/multiscale.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "support/random_points.h"
 #include "support/shapes.h"

@@ -15,7 +15,7 @@
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/mapping/composed_map.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {

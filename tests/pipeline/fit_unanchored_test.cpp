@@ -8,7 +8,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "samples.h"
 #include "support/random_points.h"
 

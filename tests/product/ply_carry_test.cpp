@@ -144,7 +144,9 @@ TEST_F(CarryPly, NamesThePlaceOfWhatIsWrong) {
   EXPECT_THAT(
       complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
       HasSubstr("vertices have no x, y and z"));
-  EXPECT_THAT(complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nend_header\n1\n"),
+  EXPECT_THAT(complaint("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty float y\n"
+                        "property float z\nend_header\n1 2 3\n"),
               HasSubstr("whole-number type"));
   std::string binary = head + faces;
   binary.replace(binary.find("ascii"), 5, "binary_little_endian");

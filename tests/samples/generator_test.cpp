@@ -10,7 +10,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "mannequin.h"
 #include "samples.h"
 #include "support/file_text.h"

@@ -11,7 +11,7 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "output_files.h"
 

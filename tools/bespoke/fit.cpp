@@ -9,7 +9,7 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/report/report.h"
 #include "commands.h"

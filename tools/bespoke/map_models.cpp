@@ -2,8 +2,8 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_io.h"
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/mesh_io.h"
+#include "bespoke/product/product_io.h"
 
 namespace bespoke::command {
 

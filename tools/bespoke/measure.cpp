@@ -6,8 +6,8 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
-#include "bespoke/mesh/mesh_io.h"
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/mesh_io.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/pipeline/open_map.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"

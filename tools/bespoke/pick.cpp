@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/page/pick_scene.h"
 #include "commands.h"
 #include "output_files.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/page/view_scene.h"
 #include "commands.h"
 #include "map_models.h"

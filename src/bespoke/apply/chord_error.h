@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bespoke/apply/apply_mapping.h"
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/product_io.h"
 
 namespace bespoke {
 

@@ -183,7 +183,8 @@ std::string content_hash(const TriangleMesh& mesh) {
   const std::int64_t counts[2] = {mesh.vertices.cols(), mesh.faces.cols()};
   Sha256 hash;
   hash.update(counts, sizeof counts);
-  hash.update(mesh.vertices.data(), static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double));
+  const Points rounded = mesh.vertices.cast<float>().cast<double>();
+  hash.update(rounded.data(), static_cast<std::size_t>(rounded.size()) * sizeof(double));
   hash.update(mesh.faces.data(), static_cast<std::size_t>(mesh.faces.size()) * sizeof(int));
   return hash.finish();
 }

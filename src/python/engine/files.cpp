@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "bespoke/anchors/anchors.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "numpy_points.h"
 #include "parts.h"
 

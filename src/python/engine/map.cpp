@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/derive_map.h"
 #include "bespoke/pipeline/summary_json.h"

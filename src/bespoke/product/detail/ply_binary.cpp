@@ -199,8 +199,28 @@ PlyOffsets vertex_offsets(const PlyHeader& header, const PlyBlock& block) {
     }
     offsets.position.push_back(triple(header.position));
     if (header.normal) offsets.normal.push_back(triple(*header.normal));
+    if (header.texture)
+      offsets.texture.push_back({starts[(*header.texture)[0]], starts[(*header.texture)[1]]});
   }
   return offsets;
+}
+
+std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block) {
+  std::vector<std::uint32_t> faces;
+  const PlyElement& element = header.elements[block.element];
+  std::size_t at = 0;
+  for (std::uint64_t i = 0; i < block.count; ++i)
+    for (const PlyProperty& property : element.properties) {
+      std::uint64_t values = 0;
+      skip_property(block.bytes, 0, property, header.encoding, at, values);
+      if (!is_face_list(element, property)) continue;
+      faces.push_back(static_cast<std::uint32_t>(values));
+      const std::size_t width = size(property.type);
+      for (std::uint64_t k = values; k > 0; --k)
+        faces.push_back(static_cast<std::uint32_t>(
+            read_value(block.bytes.data() + at - k * width, property.type, header.encoding)));
+    }
+  return faces;
 }
 
 }  // namespace bespoke

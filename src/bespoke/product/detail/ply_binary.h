@@ -36,11 +36,15 @@ class PlyCutter {
   std::uint64_t done_ = 0;  ///< of the element
 };
 
-/// Where a block's vertices have the properties that are carried: three offsets into its bytes a vertex.
+/// Where a block's vertices have their positions, normals and texture coordinates: offsets into its bytes.
 struct PlyOffsets {
   std::vector<std::array<std::size_t, 3>> position, normal;
+  std::vector<std::array<std::size_t, 2>> texture;
 };
 PlyOffsets vertex_offsets(const PlyHeader& header, const PlyBlock& block);
+
+/// The faces of a block: of each the number of its corners, and the corners.
+std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block);
 
 /// A value as the file stores it.
 double read_value(const char* bytes, PlyScalar type, PlyHeader::Encoding encoding);

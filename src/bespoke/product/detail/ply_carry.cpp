@@ -107,6 +107,15 @@ void carry_binary(const InputFile& file, std::vector<OutputFile>& outputs, const
       progress);
 }
 
+void require_real(const InputFile& file, const PlyHeader& header) {
+  const PlyElement& vertex = header.elements[header.vertex];
+  for (const auto& triple : {std::optional(header.position), header.normal})
+    for (std::size_t axis = 0; triple && axis < 3; ++axis)
+      if (const PlyProperty& property = vertex.properties[(*triple)[axis]]; !is_real(property.type))
+        throw FormatError(file.path().string() + ": the property " + property.name +
+                          " is of a whole-number type, which holds no carried coordinates");
+}
+
 void warn_of_faces(const PlyHeader& header, CarrySummary& summary) {
   for (const PlyElement& element : header.elements)
     for (const PlyProperty& property : element.properties)
@@ -119,6 +128,7 @@ void warn_of_faces(const PlyHeader& header, CarrySummary& summary) {
 CarrySummary carry_ply(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
                        const Progress& progress) {
   const PlyHeader header = read_ply_header(file);
+  require_real(file, header);
   CarrySummary summary;
   if (header.encoding == PlyHeader::Encoding::ascii) {
     summary = carry_text(file, outputs, PlyText(file.path(), header), motion, progress);

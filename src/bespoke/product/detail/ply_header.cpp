@@ -56,18 +56,15 @@ PlyProperty property(TextWords& words) {
 }
 
 /// The properties of these names; none unless all are there.
-std::optional<std::array<std::size_t, 3>> triple(const PlyElement& element,
-                                                 const std::array<const char*, 3>& names,
-                                                 const InputFile& file) {
-  std::array<std::size_t, 3> found{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto named = [&](const PlyProperty& p) { return p.name == names[axis] && !p.count; };
+template <std::size_t n>
+std::optional<std::array<std::size_t, n>> find_properties(const PlyElement& element,
+                                                          const std::array<const char*, n>& names) {
+  std::array<std::size_t, n> found{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto named = [&](const PlyProperty& p) { return p.name == names[i] && !p.count; };
     const auto at = std::find_if(element.properties.begin(), element.properties.end(), named);
     if (at == element.properties.end()) return std::nullopt;
-    if (!is_real(at->type))
-      throw FormatError(file.path().string() + ": the property " + at->name +
-                        " is of a whole-number type, which holds no carried coordinates");
-    found[axis] = static_cast<std::size_t>(at - element.properties.begin());
+    found[i] = static_cast<std::size_t>(at - element.properties.begin());
   }
   return found;
 }
@@ -78,10 +75,13 @@ void find_vertices(const InputFile& file, PlyHeader& header) {
   if (at == header.elements.end() || at->count == 0)
     throw FormatError(file.path().string() + ": the file has no vertices");
   header.vertex = static_cast<std::size_t>(at - header.elements.begin());
-  const auto position = triple(*at, {"x", "y", "z"}, file);
+  const auto position = find_properties<3>(*at, {"x", "y", "z"});
   if (!position) throw FormatError(file.path().string() + ": vertices have no x, y and z");
   header.position = *position;
-  header.normal = triple(*at, {"nx", "ny", "nz"}, file);
+  header.normal = find_properties<3>(*at, {"nx", "ny", "nz"});
+  // The names that several programs use.
+  for (const auto& names : {std::array{"u", "v"}, std::array{"s", "t"}, std::array{"texture_u", "texture_v"}})
+    if (!header.texture) header.texture = find_properties<2>(*at, names);
 }
 
 }  // namespace

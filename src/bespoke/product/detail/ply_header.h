@@ -40,6 +40,7 @@ struct PlyHeader {
   std::size_t vertex = 0;                            ///< the element "vertex"
   std::array<std::size_t, 3> position{};             ///< its properties x, y, z
   std::optional<std::array<std::size_t, 3>> normal;  ///< nx, ny, nz
+  std::optional<std::array<std::size_t, 2>> texture;
 };
 
 /// Throws FormatError naming the line at fault.

@@ -47,12 +47,13 @@ TextRecords PlyText::records(const TextBlock& block) const {
 
 void PlyText::read_vertex(TextWords& words, TextRecords& records) const {
   const std::vector<PlyProperty>& properties = header_.elements[header_.vertex].properties;
-  NumberTriple position, normal;
+  NumberTriple position, normal, texture;
   for (std::size_t i = 0; i < properties.size(); ++i) {
     NumberText* slot = nullptr;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (header_.position[axis] == i) slot = &position[axis];
       if (header_.normal && (*header_.normal)[axis] == i) slot = &normal[axis];
+      if (header_.texture && axis < 2 && (*header_.texture)[axis] == i) slot = &texture[axis];
     }
     if (slot) {
       *slot = words.number(properties[i].name.c_str());
@@ -64,6 +65,7 @@ void PlyText::read_vertex(TextWords& words, TextRecords& records) const {
   }
   records.points.push_back(position);
   if (header_.normal) records.normals.push_back(normal);
+  if (header_.texture) records.texture.push_back({texture[0].value, texture[1].value});
 }
 
 void PlyText::read_other(TextWords& words, const PlyElement& element, TextRecords& records) const {

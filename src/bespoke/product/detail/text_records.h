@@ -16,7 +16,8 @@ namespace bespoke {
 struct TextRecords {
   std::vector<NumberTriple> points;
   std::vector<NumberTriple> normals;
-  std::vector<std::uint32_t> faces;  ///< of each the number of its corners, and the corners; of PLY only
+  std::vector<std::uint32_t> faces;            ///< of each the number of its corners, and the corners
+  std::vector<std::array<double, 2>> texture;  ///< of each point, of PLY files that have some
 };
 
 /// A text format whose normals stand beside their points.

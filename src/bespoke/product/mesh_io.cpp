@@ -1,6 +1,6 @@
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/product_io.h"
 
 namespace bespoke {
 

@@ -1,4 +1,4 @@
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/product_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <thread>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_io.h"
-#include "mesh/mesh_files.h"
+#include "bespoke/product/mesh_io.h"
+#include "product/mesh_files.h"
+#include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -23,6 +24,7 @@ using ReadProduct = test::MeshFiles;
 using WriteProduct = test::MeshFiles;
 using ReadTriangleMesh = test::MeshFiles;
 using test::ply;
+using test::random_points;
 using test::square_obj;
 
 TEST_F(ReadProduct, NeedsAFileWithVertices) {
@@ -54,11 +56,57 @@ TEST_F(WriteProduct, IsReadBackAsTheSameFloats) {
   for (const char* name : {"a.obj", "a.ply", "a.off"}) {
     write_product(directory_ / name, product);
     const Product back = read_product(directory_ / name);
-    EXPECT_EQ(back.vertices, product.vertices.cast<float>().cast<double>()) << name;
+    EXPECT_EQ(back.vertices.cast<float>(), product.vertices.cast<float>()) << name;
     EXPECT_EQ(back.polygon_start, product.polygon_start) << name;
     EXPECT_EQ(back.corners, product.corners) << name;
     EXPECT_FALSE(back.has_normals) << name;
   }
+}
+
+// A model of one unit, a million units from the origin: floats lie 0.06 apart there.
+TEST_F(WriteProduct, TakesDoublesWhereFloatsAreTooCoarse) {
+  TriangleMesh far = shapes::icosphere(2);
+  far.vertices.colwise() += Vector3(1e6, -2e6, 0);
+  for (const char* name : {"a.obj", "a.ply", "a.off"}) {
+    write_triangle_mesh(directory_ / name, far);
+    EXPECT_EQ(read_triangle_mesh(directory_ / name).vertices, far.vertices) << name;
+  }
+}
+
+TEST_F(WriteProduct, HoldsPolygonsOfAnyLength) {
+  Product disk;
+  disk.vertices = random_points(300, 1);
+  disk.polygon_start = {0, 300};
+  for (int i = 0; i < 300; ++i) disk.corners.push_back(i);
+  for (const char* name : {"a.obj", "a.ply", "a.off"}) {
+    write_product(directory_ / name, disk);
+    EXPECT_EQ(read_product(directory_ / name).corners, disk.corners) << name;
+  }
+}
+
+TEST_F(ReadProduct, KeepsEveryDigit) {
+  EXPECT_EQ(read_product(file("a.obj", "v 0.1 1e-300 123456789.123456789\n")).vertices,
+            Points(Vector3(0.1, 1e-300, 123456789.123456789)));
+}
+
+// Larger than a block, so that blocks are read at the same time and counts are carried over.
+TEST_F(ReadProduct, ReadsManyBlocksInTheirOrder) {
+  Product many;
+  many.vertices = random_points(200'000, 2);
+  many.polygon_start = {0};
+  for (int i = 0; i + 2 < 200'000; i += 2) {
+    many.corners.insert(many.corners.end(), {i, i + 1, i + 2});
+    many.polygon_start.push_back(static_cast<int>(many.corners.size()));
+  }
+  many.texture = random_points(static_cast<Eigen::Index>(many.corners.size()), 3).topRows<2>();
+  for (const char* name : {"a.obj", "a.ply", "a.off"}) {
+    write_product(directory_ / name, many);
+    const Product back = read_product(directory_ / name);
+    EXPECT_EQ(back.vertices.cast<float>(), many.vertices.cast<float>()) << name;
+    EXPECT_EQ(back.corners, many.corners) << name;
+    EXPECT_EQ(back.polygon_start, many.polygon_start) << name;
+  }
+  EXPECT_EQ(read_product(directory_ / "a.obj").texture.cast<float>(), many.texture.cast<float>());
 }
 
 TEST_F(WriteProduct, OfWhatWasReadGivesTheSameBytes) {
@@ -74,7 +122,7 @@ TEST_F(WriteProduct, KeepsTextureOfEveryCorner) {
   Product product = two_polygons();
   product.texture = Eigen::Matrix2Xd{{0, 0.5, 0.5, 0, 0.1f, 1, 1}, {0.75, 0.25, 0, 0, 0.3f, 0, 0}};
   write_product(directory_ / "a.obj", product);
-  EXPECT_EQ(read_product(directory_ / "a.obj").texture, product.texture);
+  EXPECT_EQ(read_product(directory_ / "a.obj").texture.cast<float>(), product.texture.cast<float>());
 }
 
 TEST_F(WriteProduct, RecomputesNormals) {

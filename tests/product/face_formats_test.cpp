@@ -5,7 +5,8 @@
 #include <cstring>
 #include <string>
 
-#include "mesh/mesh_files.h"
+#include "product/mesh_files.h"
+#include "product/product_files.h"
 
 namespace bespoke {
 namespace {
@@ -16,15 +17,9 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 using MeshFormats = test::MeshFiles;
+using test::bytes;
 using test::ply;
 using test::square_obj;
-
-template <class Value>
-std::string bytes(Value value, bool big_endian = false) {
-  std::string result(sizeof value, '\0');
-  std::memcpy(result.data(), &value, sizeof value);
-  return big_endian ? std::string(result.rbegin(), result.rend()) : result;
-}
 
 TEST_F(MeshFormats, KeepsPolygonsOrderAndTextureOfObj) {
   const Product product =
@@ -76,30 +71,31 @@ TEST_F(MeshFormats, MayBeAPointSet) {
 TEST_F(MeshFormats, NamesTheLineOfABadNumberInObj) {
   const std::string good = "# a\nv 0 0 0\nv 1 0 0\n";
   EXPECT_THAT(complaint("a.obj", good + "v 1 abc 0\n"),
-              AllOf(HasSubstr("a.obj:4: y: 'abc' is not a number"), Not(HasSubstr("\n"))));
-  EXPECT_THAT(complaint("a.obj", good + "v 1 nan 0\n"), HasSubstr("a.obj:4: y: 'nan' is not finite"));
+              AllOf(HasSubstr("a.obj:4: y: 'abc' is not a finite number"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(complaint("a.obj", good + "v 1 nan 0\n"), HasSubstr("a.obj:4: y: 'nan' is not a finite"));
   EXPECT_THAT(complaint("a.obj", good + "v inf 1 0\n"), HasSubstr(":4: x"));
-  EXPECT_THAT(complaint("a.obj", good + "v 1e39 1 0\n"), HasSubstr("not finite in single precision"));
+  EXPECT_THAT(complaint("a.obj", good + "v 1e39 1 0\n"),
+              HasSubstr(":4: x is not finite in single precision"));
   EXPECT_THAT(complaint("a.obj", good + "v 1 2\n"), HasSubstr(":4: missing z"));
-  EXPECT_THAT(complaint("a.obj", good + "v 1 2 0x10\n"), HasSubstr("'0x10' is not a number"));
-  EXPECT_THAT(complaint("a.obj", good + "v 1,5 2 0\n"), HasSubstr("'1,5' is not a number"));
+  EXPECT_THAT(complaint("a.obj", good + "v 1 2 0x10\n"), HasSubstr("'0x10' is not a finite number"));
+  EXPECT_THAT(complaint("a.obj", good + "v 1,5 2 0\n"), HasSubstr("'1,5' is not a finite number"));
   EXPECT_THAT(complaint("a.obj", good + "vt nan 0\n"), HasSubstr(":4: texture coordinate"));
   EXPECT_THAT(complaint("a.obj", "v 1 \\\n2 \\\n3\nv x 0 0\n"), HasSubstr("a.obj:4: x"));
-  EXPECT_THAT(complaint("a.obj", std::string("v 1 2 \x01\n")), HasSubstr("'?' is not a number"));
+  EXPECT_THAT(complaint("a.obj", std::string("v 1 2 \x01\n")), HasSubstr(":1: missing z"));
 }
 
 TEST_F(MeshFormats, NamesTheLineOfABadFaceInObj) {
   const auto face = [&](const std::string& line) { return complaint("a.obj", square_obj + line + "\n"); };
   EXPECT_THAT(face("f 1 2 99"), HasSubstr("a.obj:8: a face names vertex 99 of 4"));
-  EXPECT_THAT(face("f 1 2 0"), HasSubstr(":8: a face names vertex 0 of 4"));
+  EXPECT_THAT(face("f 1 2 0"), HasSubstr(":8: a face has the corner '0'"));
   EXPECT_THAT(face("f 1 2 -5"), HasSubstr(":8: a face names vertex -5 of 4"));
   EXPECT_THAT(face("f 1/1 2/2 3/4"), HasSubstr("a face names texture coordinate 4 of 3"));
   EXPECT_THAT(face("f 1//1 2//1 3//1"), HasSubstr("a face names normal 1 of 0"));
   EXPECT_THAT(face("f 1 2"), HasSubstr("a face of 2 corners"));
   EXPECT_THAT(face("f"), HasSubstr("a face of 0 corners"));
   EXPECT_THAT(face("f 1 2 2 3"), HasSubstr("a face names vertex 2 twice"));
-  EXPECT_THAT(face("f 1 2 x"), HasSubstr("a face has the index 'x'"));
-  EXPECT_THAT(face("f 1 2 3.0"), HasSubstr("a face has the index '3.0'"));
+  EXPECT_THAT(face("f 1 2 x"), HasSubstr("a face has the corner 'x'"));
+  EXPECT_THAT(face("f 1 2 3.0"), HasSubstr("a face has the corner '3.0'"));
   EXPECT_THAT(face("f 1/1 2/2 3"), HasSubstr("the corners of a face differ"));
   for (const char* corner : {"3/", "3//", "/3", "3/1/", "3/1/1/1", "//"})
     EXPECT_THAT(face(std::string("f 1 2 ") + corner), HasSubstr(":8: a face has the corner")) << corner;
@@ -113,7 +109,7 @@ TEST_F(MeshFormats, UnderstandsOffWithCommentsColoursAndNormals) {
       file("a.off",
            "# made by hand\nCNOFF 3 1 0 # counts\n\n0 0 0 0 0 1 255 0 0\n# between\n1 0 0 0 0 1 0 255 0\n"
            "0 1e-20 0 0 0 1 0 0 255\n3 2 1 0 0.5 0.5 0.5\n"));
-  EXPECT_EQ(product.vertices, (Points{{0, 1, 0}, {0, 0, 1e-20f}, {0, 0, 0}}));
+  EXPECT_EQ(product.vertices, (Points{{0, 1, 0}, {0, 0, 1e-20}, {0, 0, 0}}));
   EXPECT_THAT(product.corners, ElementsAre(2, 1, 0));
   EXPECT_TRUE(product.has_normals);
 }
@@ -185,14 +181,15 @@ TEST_F(MeshFormats, NamesThePlaceOfABadPly) {
               HasSubstr("ends before end_header"));
   EXPECT_THAT(
       complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
-      HasSubstr("vertices have no y"));
+      HasSubstr("vertices have no x, y and z"));
   EXPECT_THAT(complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n1\n"),
               HasSubstr("a.ply:4: unknown type 'quad'"));
-  const std::string nan = bytes(0.0f) + bytes(std::nan("")) + bytes(0.0f);
-  EXPECT_THAT(complaint("a.ply", ply("binary_little_endian", nan)),
-              HasSubstr("a.ply: vertex 0 of 4: y is not finite"));
-  std::string four;
+  std::string four, nan;
   for (int i = 0; i < 4; ++i) four += bytes(static_cast<float>(i)) + bytes(0.0) + bytes(0.0f);
+  for (int i = 0; i < 4; ++i) nan += bytes(0.0f) + bytes(i == 2 ? std::nan("") : 0.0) + bytes(0.0f);
+  const std::string triangle = '\x03' + bytes(0) + bytes(1) + bytes(2);
+  EXPECT_THAT(complaint("a.ply", ply("binary_little_endian", nan + triangle)),
+              HasSubstr("a.ply: vertex 2: y is not finite"));
   EXPECT_THAT(
       complaint("a.ply", ply("binary_little_endian", four + '\x03' + bytes(0) + bytes(1) + bytes(-1))),
       HasSubstr("a.ply: face 0 of 1: a face names vertex -1"));
@@ -230,17 +227,18 @@ TEST_F(MeshFormats, JoinsTheCornersOfStl) {
 TEST_F(MeshFormats, NamesThePlaceOfABadStl) {
   EXPECT_THAT(complaint("a.stl", std::string(80, ' ') + bytes(1u) +
                                      stl_facet({0, std::nan(""), 0}, {1, 0, 0}, {0, 1, 0})),
-              HasSubstr("facet 0 has a coordinate that is not finite"));
+              HasSubstr("facet 0 of 1 has a coordinate that is not finite"));
   EXPECT_THAT(complaint("a.stl", std::string(80, ' ') + bytes(0u)), HasSubstr("no facets"));
   EXPECT_THAT(
       complaint("a.stl", std::string(80, ' ') + bytes(3u) + stl_facet({0, 0, 0}, {1, 0, 0}, {0, 1, 0})),
       HasSubstr("of 3 facets has 234 bytes, this one has 134"));
   const std::string begin = "solid\nfacet normal 0 0 1\nouter loop\n";
   EXPECT_THAT(complaint("a.stl", begin + "vertex 0 0 0\nvertex 1 x 0\n"),
-              HasSubstr("a.stl:5: y: 'x' is not a number"));
+              HasSubstr("a.stl:5: y: 'x' is not a finite number"));
   EXPECT_THAT(complaint("a.stl", begin + "vertex 0 0 0\nvertex 1 0 0\nendloop\n"),
-              HasSubstr("a.stl:6: a loop of 2 vertices"));
-  EXPECT_THAT(complaint("a.stl", begin + "vertex 0 0 0\n"), HasSubstr("the file ends inside of a loop"));
+              HasSubstr("a.stl:6: 'endloop' where vertex must stand"));
+  EXPECT_THAT(complaint("a.stl", begin + "vertex 0 0 0\n"),
+              HasSubstr("the file ends before the facet's vertex"));
   EXPECT_THAT(complaint("a.stl", "solid\nendsolid\n"), HasSubstr("no facets"));
 }
 

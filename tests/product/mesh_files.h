@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bespoke/mesh/product_io.h"
+#include "bespoke/product/product_io.h"
 #include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"

@@ -1,0 +1,104 @@
+#include "bespoke/product/detail/gathered_faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+template <class Columns>
+Columns joined(const std::vector<Columns>& parts, Eigen::Index columns) {
+  Columns all(Columns::RowsAtCompileTime, columns);
+  Eigen::Index at = 0;
+  for (const Columns& part : parts) {
+    all.middleCols(at, part.cols()) = part;
+    at += part.cols();
+  }
+  return all;
+}
+
+}  // namespace
+
+bool fits_float(double value) {
+  return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max());
+}
+
+void require_countable(std::uint64_t vertices, const std::filesystem::path& path) {
+  if (vertices > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+    throw FormatError(path.string() + ": " + std::to_string(vertices) +
+                      " vertices are more than a reference model can number");
+}
+
+std::string face_fault(const int* corners, std::size_t count, int first) {
+  if (count < 3) return "a face of " + std::to_string(count) + " corners";
+  std::vector<int> sorted(corners, corners + count);
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+  return twice == sorted.end() ? "" : "a face names vertex " + std::to_string(*twice + first) + " twice";
+}
+
+void GatheredFaces::add_points(const Points& points) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i)
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      if (!fits_float(points(axis, i)))
+        throw FormatError(path_.string() + ": vertex " +
+                          std::to_string(point_count_ + static_cast<std::size_t>(i)) + ": " + "xyz"[axis] +
+                          " is not finite in single precision");
+  point_count_ += static_cast<std::size_t>(points.cols());
+  points_.push_back(points);
+}
+
+void GatheredFaces::add_texture(const Eigen::Matrix2Xd& texture) { texture_.push_back(texture); }
+
+void GatheredFaces::add_faces(const std::vector<std::uint32_t>& faces) {
+  for (std::size_t at = 0; at < faces.size();) {
+    const std::size_t count = faces[at++];
+    const std::size_t begin = corners_.size();
+    for (std::size_t k = 0; k < count; ++k) corners_.push_back(static_cast<int>(faces[at++]));
+    const std::string fault = face_fault(corners_.data() + begin, count, 0);
+    if (!fault.empty())
+      throw FormatError(path_.string() + ": face " + std::to_string(polygon_start_.size() - 1) + ": " +
+                        fault);
+    if (corners_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw FormatError(path_.string() + ": more corners of faces than a reference model can number");
+    polygon_start_.push_back(static_cast<int>(corners_.size()));
+  }
+}
+
+Product GatheredFaces::product(bool has_normals) {
+  Product product;
+  product.has_normals = has_normals;
+  const auto count = static_cast<Eigen::Index>(point_count_);
+  product.vertices = joined(points_, count);
+  product.polygon_start = std::move(polygon_start_);
+  product.corners = std::move(corners_);
+  if (texture_.empty()) return product;
+  const Eigen::Matrix2Xd of_points = joined(texture_, count);
+  product.texture.resize(2, static_cast<Eigen::Index>(product.corners.size()));
+  for (std::size_t corner = 0; corner < product.corners.size(); ++corner)
+    product.texture.col(static_cast<Eigen::Index>(corner)) = of_points.col(product.corners[corner]);
+  return product;
+}
+
+GatheredFaces gather_text(const InputFile& file, const TextFormat& format) {
+  GatheredFaces gathered(file.path());
+  TextCutter cutter = format.cutter();
+  walk_blocks(
+      file, format.begin(), [&](const Window& window) { return cutter(window); },
+      [&](const TextBlock& block) { return format.records(block); },
+      [&](const TextBlock&, TextRecords&& records) {
+        if (!records.points.empty()) gathered.add_points(values(records.points));
+        if (!records.texture.empty())
+          gathered.add_texture(Eigen::Map<const Eigen::Matrix2Xd>(
+              records.texture.front().data(), 2, static_cast<Eigen::Index>(records.texture.size())));
+        gathered.add_faces(records.faces);
+      },
+      {});
+  format.require_complete(cutter.sums());
+  return gathered;
+}
+
+}  // namespace bespoke

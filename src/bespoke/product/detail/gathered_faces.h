@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bespoke/product/detail/text_records.h"
+#include "bespoke/product/product_io.h"
+
+namespace bespoke {
+
+/// Polygons and their vertices while a file is read.
+class GatheredFaces {
+ public:
+  /// The path, for messages, must outlive it.
+  explicit GatheredFaces(const std::filesystem::path& path) : path_(path) {}
+
+  /// Each throws FormatError naming the vertex or the face at fault.
+  void add_points(const Points& points);
+  void add_texture(const Eigen::Matrix2Xd& texture);  ///< of points
+  /// Of each face the number of its corners, and the corners.
+  void add_faces(const std::vector<std::uint32_t>& faces);
+
+  /// A texture coordinate of a point becomes one of its corners.
+  Product product(bool has_normals);
+
+ private:
+  const std::filesystem::path& path_;
+  std::vector<Points> points_;
+  std::vector<Eigen::Matrix2Xd> texture_;
+  std::size_t point_count_ = 0;
+  std::vector<int> polygon_start_{0}, corners_;
+};
+
+/// All of a text format's file.
+GatheredFaces gather_text(const InputFile& file, const TextFormat& format);
+
+/// What is wrong with a face: fewer than three corners, or one that occurs twice, numbered from `first`.
+/// Empty when nothing is.
+std::string face_fault(const int* corners, std::size_t count, int first);
+
+/// Throws FormatError, naming the file, for more than `int` can number.
+void require_countable(std::uint64_t vertices, const std::filesystem::path& path);
+
+/// Whether a value is finite and in a float's range, which is that of what maps store.
+bool fits_float(double value);
+
+}  // namespace bespoke

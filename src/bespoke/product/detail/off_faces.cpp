@@ -1,0 +1,13 @@
+#include "bespoke/product/detail/face_formats.h"
+#include "bespoke/product/detail/gathered_faces.h"
+#include "bespoke/product/detail/off_text.h"
+
+namespace bespoke {
+
+Product read_off_faces(const InputFile& file) {
+  const OffHeader header = read_off_header(file);
+  require_countable(header.vertices, file.path());
+  return gather_text(file, OffText(file.path(), header)).product(header.has_normals);
+}
+
+}  // namespace bespoke

@@ -1,0 +1,87 @@
+#include "bespoke/product/product_io.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "bespoke/atomic_file.h"
+#include "bespoke/error.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/product/detail/face_formats.h"
+#include "bespoke/product/detail/gathered_faces.h"
+
+namespace bespoke {
+namespace {
+
+struct FaceFormat {
+  std::string_view ending;
+  Product (*read)(const InputFile&);
+  void (*write)(std::ostream&, const WrittenFaces&);
+};
+
+constexpr std::array face_formats{
+    FaceFormat{".obj", read_obj_faces, write_obj_faces}, FaceFormat{".ply", read_ply_faces, write_ply_faces},
+    FaceFormat{".stl", read_stl_faces, write_stl_faces}, FaceFormat{".off", read_off_faces, write_off_faces}};
+
+const FaceFormat& face_format(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const FaceFormat& format : face_formats)
+    if (format.ending == ending) return format;
+  throw InvalidInput(path.string() + ": the name must end in .obj, .ply, .stl or .off");
+}
+
+void require_writable(const std::filesystem::path& path, const Product& product) {
+  const double* const values = product.vertices.data();
+  if (!std::all_of(values, values + product.vertices.size(), fits_float))
+    throw InvalidInput("cannot write " + path.string() + ": a coordinate is not finite in single precision");
+  if (face_format(path).ending == ".stl" && product.corners.empty())
+    throw InvalidInput("cannot write " + path.string() + ": STL holds triangles only, and there are none");
+}
+
+/// Whether rounding to floats would move a vertex by more than the resolution that carried products keep.
+bool needs_doubles(const Points& vertices) {
+  constexpr double resolution = 1e-7;  // of the diagonal
+  const Points lost = vertices - vertices.cast<float>().cast<double>();
+  return lost.size() > 0 && lost.cwiseAbs().maxCoeff() > resolution * diagonal(vertices);
+}
+
+}  // namespace
+
+Product read_product(const std::filesystem::path& path) {
+  const FaceFormat& format = face_format(path);
+  return format.read(InputFile(path));
+}
+
+void write_product(const std::filesystem::path& path, const Product& product) {
+  const FaceFormat& format = face_format(path);
+  require_writable(path, product);
+  WrittenFaces faces{product, {}, needs_doubles(product.vertices)};
+  if (product.has_normals) faces.normals = vertex_normals({product.vertices, triangulated(product)});
+  write_atomically(path, [&](const std::filesystem::path& temporary) {
+    errno = 0;
+    std::ofstream stream(temporary, std::ios::binary);
+    format.write(stream, faces);
+    stream.close();
+    if (!stream) throw FileError("cannot write " + path.string() + ": " + std::strerror(errno));
+  });
+}
+
+Faces triangulated(const Product& product) {
+  std::vector<int> triangles;
+  for (std::size_t polygon = 0; polygon + 1 < product.polygon_start.size(); ++polygon) {
+    const int* corner = product.corners.data() + product.polygon_start[polygon];
+    const int corners = product.polygon_start[polygon + 1] - product.polygon_start[polygon];
+    for (int k = 2; k < corners; ++k)
+      triangles.insert(triangles.end(), {corner[0], corner[k - 1], corner[k]});
+  }
+  return Eigen::Map<const Faces>(triangles.data(), 3, static_cast<Eigen::Index>(triangles.size() / 3));
+}
+
+}  // namespace bespoke

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// The faces of a model or a product. Polygons stay polygons; vertex order, face order and the corners'
+/// texture coordinates come back as they were read. Groups, materials, colours and polylines do not.
+struct Product {
+  Points vertices;                 ///< 3×n, mesh units
+  std::vector<int> polygon_start;  ///< p+1; polygon k is corners[start[k]] … corners[start[k+1]-1]
+  std::vector<int> corners;        ///< vertex indices
+  Eigen::Matrix2Xd texture;        ///< 2×(number of corners), (0, 0) where a face has none; or empty
+  bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
+};
+
+/// OBJ, PLY (ascii and binary), STL or OFF, by the ending of the name, every number as the double that it
+/// says. Vertices keep their order and are never merged (STL, which has no shared vertices, is the exception:
+/// corners at exactly the same position become one vertex in order of first use, and a facet whose corners
+/// coincide is left out). A product may have no faces (a point set). Texture coordinates are read from OBJ
+/// and PLY. Throws FileError when the file cannot be opened, InvalidInput for an unknown ending, FormatError
+/// naming the file and the line (binary: the element) of a bad index, number or face, and for coordinates
+/// beyond the range of floats, in which maps are stored.
+Product read_product(const std::filesystem::path& path);
+
+/// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as
+/// the same floats) or, where floats would lose 1e-7 of the bounding box's diagonal, as doubles; STL knows
+/// only floats. Normals, where the product had them, are recomputed; texture coordinates are written to OBJ.
+/// STL holds triangles without texture, so polygons become fans there. Atomic. Throws FileError,
+/// InvalidInput for an unknown ending, for coordinates that a float cannot hold, and for a point set as STL.
+void write_product(const std::filesystem::path& path, const Product& product);
+
+/// Polygons as triangle fans about their first corner, in place.
+Faces triangulated(const Product& product);
+
+}  // namespace bespoke
