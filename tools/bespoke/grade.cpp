@@ -10,7 +10,7 @@
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/error.h"
 #include "bespoke/grading/grade_table.h"
-#include "bespoke/mesh/mesh_io.h"
+#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "grade_sizes.h"
 #include "output_files.h"
