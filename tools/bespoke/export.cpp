@@ -87,7 +87,8 @@ void add_export_command(CLI::App& app) {
       "--pull", arguments->pull,
       "Displacements from the target to the source, as programs that resample images ask for them");
   add_name_option(*exported, "--space", arguments->space, world_spaces,
-                  "Which way the models' axes point, for .nrrd, which is written in LPS (default: lps)");
+                  "Which way the models' axes point, for .nrrd, which is written in LPS, and .nii.gz, in RAS "
+                  "(default: lps)");
   exported->add_flag("--untrusted", arguments->untrusted,
                      "Check the asset in a child process under limits first");
   add_run_options(*exported, arguments->run);
@@ -95,6 +96,7 @@ void add_export_command(CLI::App& app) {
       "The image covers the model and what the elastic part reaches, and says nothing beyond.\n\n"
       "Examples:\n"
       "  bespoke export map.vdb --grid 0.5% -o map.vti\n"
+      "  bespoke export map.vdb --grid 0.5% -o level.vdb\n"
       "  bespoke export map.vdb --grid 2 --pull --space ras -o map.nrrd");
   exported->callback([arguments] {
     run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });

@@ -15,12 +15,14 @@ struct ImageFormat {
   void (*write)(std::ostream& out, const DisplacementImage& image, const ImageNotes& notes);
 };
 
-constexpr std::array image_formats{ImageFormat{".vti", false, &write_vti},
-                                   ImageFormat{".nrrd", true, &write_nrrd}};
+constexpr std::array image_formats{
+    ImageFormat{".vti", false, &write_vti}, ImageFormat{".nrrd", true, &write_nrrd},
+    ImageFormat{".nii.gz", true, &write_nifti_gz}, ImageFormat{".vdb", false, &write_vdb}};
 
 const ImageFormat& format_of(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
   for (const ImageFormat& format : image_formats)
-    if (path.extension() == format.ending) return format;
+    if (name.ends_with(format.ending)) return format;
   throw InvalidInput(path.string() + ": unknown ending '" + path.extension().string() +
                      "'; displacement images are written as " + image_endings());
 }

@@ -24,9 +24,10 @@ struct ImageNotes {
   WorldSpace space = WorldSpace::lps;
 };
 
-/// Writes the image in the format of the name's ending: `.vti` (VTK's image data, vectors `displacement`) or
-/// `.nrrd` (in LPS: models in RAS are turned). The file appears whole or not at all. Throws InvalidInput for
-/// another ending, listing these; FileError.
+/// Writes the image in the format of the name's ending: `.vti` (VTK's image data, vectors `displacement`),
+/// `.nrrd` (in LPS: models in RAS are turned), `.nii.gz` (in RAS: models in LPS are turned) or `.vdb`
+/// (OpenVDB, one Vec3S grid `displacement`). The file appears whole or not at all. Throws InvalidInput for
+/// another ending, listing these, and for what the format cannot hold; FileError.
 void write_displacement_image(const std::filesystem::path& path, const DisplacementImage& image,
                               const ImageNotes& notes);
 
@@ -37,7 +38,7 @@ void require_image_ending(const std::filesystem::path& path);
 /// as write_displacement_image.
 bool says_world_space(const std::filesystem::path& path);
 
-/// ".vti, .nrrd".
+/// ".vti, .nrrd, …".
 std::string image_endings();
 
 }  // namespace bespoke
