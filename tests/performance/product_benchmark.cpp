@@ -8,6 +8,7 @@
 #include <string>
 
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/mesh_io.h"
 #include "support/scratch_directory.h"
 
 namespace bespoke {
@@ -124,9 +125,19 @@ void Copy(benchmark::State& state, const std::string& content) {
   state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * content.size()));
 }
 
+/// As a reference model.
+void Read(benchmark::State& state, const char* name, const std::string& content) {
+  const test::ScratchDirectory directory;
+  std::ofstream(directory / name, std::ios::binary) << content;
+  for (auto _ : state) benchmark::DoNotOptimize(read_triangle_mesh(directory / name));
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations() * content.size()));
+}
+
 void CarryObj(benchmark::State& state) { Carry(state, "a.obj", obj_grid()); }
 void CarryPly(benchmark::State& state) { Carry(state, "a.ply", ply_grid()); }
 void CarryGlb(benchmark::State& state) { Carry(state, "a.glb", glb_grid()); }
+void ReadObj(benchmark::State& state) { Read(state, "a.obj", obj_grid()); }
+void ReadPly(benchmark::State& state) { Read(state, "a.ply", ply_grid()); }
 void CopyObj(benchmark::State& state) { Copy(state, obj_grid()); }
 void CopyPly(benchmark::State& state) { Copy(state, ply_grid()); }
 void CopyGlb(benchmark::State& state) { Copy(state, glb_grid()); }
@@ -135,6 +146,8 @@ void CopyGlb(benchmark::State& state) { Copy(state, glb_grid()); }
 BENCHMARK(CarryObj)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(CarryPly)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(CarryGlb)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(ReadObj)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(ReadPly)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(CopyObj)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(CopyPly)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 BENCHMARK(CopyGlb)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();

@@ -95,22 +95,26 @@ void count_obj(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
 }
 
 std::optional<ObjCorner> read_corner(std::string_view word) {
+  constexpr std::ptrdiff_t most_digits = 18;  // which a long long holds
   ObjCorner corner;
   const char* at = word.data();
   const char* const end = at + word.size();
   for (std::size_t kind = 0; kind < 3; ++kind) {
     const char* const begin = at;
-    while (at != end && *at != '/') ++at;
-    if (at != begin) {
-      if (!read_integer(begin, at, corner.index[kind]) || corner.index[kind] == 0) return std::nullopt;
-      if (kind == 2) corner.normal = {begin, static_cast<std::size_t>(at - begin)};
-    } else if (kind != 1) {
-      return std::nullopt;
+    const bool counts_back = at != end && *at == '-';
+    if (at != end && (*at == '-' || *at == '+')) ++at;
+    const char* const digits = at;
+    long long& index = corner.index[kind];
+    for (; at != end && *at >= '0' && *at <= '9'; ++at) {
+      if (at - digits == most_digits) return std::nullopt;
+      index = 10 * index + (*at - '0');
     }
-    if (at == end) {
-      // "v/" has neither texture coordinate nor normal.
-      return kind == 1 && begin == end ? std::nullopt : std::optional(corner);
-    }
+    if (counts_back) index = -index;
+    const bool is_left_out = kind == 1 && at == begin;
+    if (index == 0 && !is_left_out) return std::nullopt;
+    if (kind == 2) corner.normal = {begin, static_cast<std::size_t>(at - begin)};
+    if (at == end) return is_left_out ? std::nullopt : std::optional(corner);
+    if (*at != '/') return std::nullopt;
     ++at;
   }
   return std::nullopt;

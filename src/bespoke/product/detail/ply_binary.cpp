@@ -1,7 +1,11 @@
 #include "bespoke/product/detail/ply_binary.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstring>
+#include <limits>
+#include <numeric>
 
 #include "bespoke/error.h"
 
@@ -13,12 +17,36 @@ constexpr std::size_t bytes_a_block = std::size_t{1} << 20;
 
 static_assert(std::endian::native == std::endian::little);
 
+/// Calls `use` with a zero of the type, so that loops are compiled for every type.
+template <class Use>
+auto with_type(PlyScalar type, const Use& use) {
+  switch (type) {
+    case PlyScalar::int8:
+      return use(std::int8_t{});
+    case PlyScalar::uint8:
+      return use(std::uint8_t{});
+    case PlyScalar::int16:
+      return use(std::int16_t{});
+    case PlyScalar::uint16:
+      return use(std::uint16_t{});
+    case PlyScalar::int32:
+      return use(std::int32_t{});
+    case PlyScalar::uint32:
+      return use(std::uint32_t{});
+    case PlyScalar::float32:
+      return use(float{});
+    case PlyScalar::float64:
+      break;
+  }
+  return use(double{});
+}
+
 template <class Value>
-double as_double(const char* bytes, bool is_big) {
+Value load(const char* bytes, bool is_big) {
   std::array<char, sizeof(Value)> raw;
   std::memcpy(raw.data(), bytes, sizeof(Value));
   if (is_big) std::reverse(raw.begin(), raw.end());
-  return static_cast<double>(std::bit_cast<Value>(raw));
+  return std::bit_cast<Value>(raw);
 }
 
 template <class Value>
@@ -28,79 +56,99 @@ void store(char* bytes, double value, bool is_big) {
   std::memcpy(bytes, raw.data(), sizeof(Value));
 }
 
-enum class RecordEnd { found, behind_the_bytes, behind_the_file, negative };
+bool is_big(const PlyHeader& header) { return header.encoding == PlyHeader::Encoding::big_endian; }
 
-/// Goes behind the property of a record, and counts a list's values. The file has `more` behind the bytes.
-RecordEnd skip_property(std::string_view bytes, std::uint64_t more, const PlyProperty& property,
-                        PlyHeader::Encoding encoding, std::size_t& at, std::uint64_t& values) {
-  values = 1;
-  if (property.count) {
-    if (bytes.size() - at < size(*property.count)) return RecordEnd::behind_the_bytes;
-    const double length = read_value(bytes.data() + at, *property.count, encoding);
-    if (length < 0) return RecordEnd::negative;
-    values = static_cast<std::uint64_t>(length);
-    at += size(*property.count);
-  }
-  if ((bytes.size() - at + more) / size(property.type) < values) return RecordEnd::behind_the_file;
-  if ((bytes.size() - at) / size(property.type) < values) return RecordEnd::behind_the_bytes;
-  at += static_cast<std::size_t>(values) * size(property.type);
-  return RecordEnd::found;
+/// A list's length, which may be negative.
+long long list_length(const char* bytes, PlyScalar type, bool is_big) {
+  return with_type(type,
+                   [&](auto zero) { return static_cast<long long>(load<decltype(zero)>(bytes, is_big)); });
 }
 
-/// Whether all of a list's values number one of the vertices.
-bool are_vertices(const char* bytes, std::uint64_t values, PlyScalar type, PlyHeader::Encoding encoding,
-                  std::uint64_t vertices) {
-  if ((type == PlyScalar::int32 || type == PlyScalar::uint32) &&
-      encoding == PlyHeader::Encoding::little_endian) {
-    // What most files have. A negative number is a large one here.
-    std::uint32_t largest = 0;
-    for (std::uint64_t i = 0; i < values; ++i, bytes += sizeof largest) {
-      std::uint32_t index;
-      std::memcpy(&index, bytes, sizeof index);
-      largest = std::max(largest, index);
+/// Goes behind a property of a whole record, and returns the number of its values.
+std::uint64_t skip_property(const PlyProperty& property, const char* bytes, bool is_big, std::size_t& at) {
+  std::uint64_t values = 1;
+  if (property.count) {
+    values = static_cast<std::uint64_t>(list_length(bytes + at, *property.count, is_big));
+    at += size(*property.count);
+  }
+  at += static_cast<std::size_t>(values) * size(property.type);
+  return values;
+}
+
+/// Calls visit(record, list, values) with the values of every list of a face's vertices.
+template <class Visit>
+void for_face_lists(const PlyHeader& header, const PlyBlock& block, const Visit& visit) {
+  if (block.element == header.elements.size() || block.count == 0) return;
+  const PlyElement& element = header.elements[block.element];
+  std::vector<bool> is_face;
+  for (const PlyProperty& property : element.properties) is_face.push_back(is_face_list(element, property));
+  if (std::find(is_face.begin(), is_face.end(), true) == is_face.end()) return;
+  std::size_t at = 0;
+  for (std::uint64_t i = 0; i < block.count; ++i)
+    for (std::size_t k = 0; k < is_face.size(); ++k) {
+      const PlyProperty& property = element.properties[k];
+      const std::uint64_t values = skip_property(property, block.bytes.data(), is_big(header), at);
+      if (is_face[k]) visit(i, property, block.bytes.data() + at - values * size(property.type), values);
     }
-    return largest < vertices && (type == PlyScalar::uint32 || largest <= 0x7fffffff);
+}
+
+/// Throws for the first vertex of a face that there is not.
+template <class Value>
+void require_vertices(const char* list, std::uint64_t values, bool is_big, const PlyHeader& header,
+                      const PlyBlock& block, std::uint64_t face, const std::filesystem::path& path) {
+  const auto vertices = static_cast<double>(header.elements[header.vertex].count);
+  for (std::uint64_t k = 0; k < values; ++k) {
+    const auto index = static_cast<double>(load<Value>(list + k * sizeof(Value), is_big));
+    if (index >= 0 && index < vertices) continue;
+    throw FormatError(path.string() + ": face " + std::to_string(block.first + face) + " of " +
+                      std::to_string(header.elements[block.element].count) + ": " +
+                      ply_index_fault(index, header.elements[header.vertex].count));
   }
-  for (std::uint64_t i = 0; i < values; ++i, bytes += size(type)) {
-    const double value = read_value(bytes, type, encoding);
-    if (!(value >= 0 && value < static_cast<double>(vertices))) return false;
-  }
-  return true;
 }
 
 bool is_blank(char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t' || c == '\0'; }
 
-}  // namespace
-
-double read_value(const char* bytes, PlyScalar type, PlyHeader::Encoding encoding) {
-  const bool is_big = encoding == PlyHeader::Encoding::big_endian;
-  switch (type) {
-    case PlyScalar::int8:
-      return as_double<std::int8_t>(bytes, is_big);
-    case PlyScalar::uint8:
-      return as_double<std::uint8_t>(bytes, is_big);
-    case PlyScalar::int16:
-      return as_double<std::int16_t>(bytes, is_big);
-    case PlyScalar::uint16:
-      return as_double<std::uint16_t>(bytes, is_big);
-    case PlyScalar::int32:
-      return as_double<std::int32_t>(bytes, is_big);
-    case PlyScalar::uint32:
-      return as_double<std::uint32_t>(bytes, is_big);
-    case PlyScalar::float32:
-      return as_double<float>(bytes, is_big);
-    case PlyScalar::float64:
-      break;
-  }
-  return as_double<double>(bytes, is_big);
+std::size_t lists_of(const PlyElement& element) {
+  return static_cast<std::size_t>(std::count_if(element.properties.begin(), element.properties.end(),
+                                                [](const PlyProperty& p) { return p.count.has_value(); }));
 }
 
-void write_value(char* bytes, double value, PlyScalar type, PlyHeader::Encoding encoding) {
-  const bool is_big = encoding == PlyHeader::Encoding::big_endian;
-  if (type == PlyScalar::float32)
-    store<float>(bytes, value, is_big);
-  else
-    store<double>(bytes, value, is_big);
+}  // namespace
+
+void PlyCutter::fail(std::uint64_t record, const std::string& what) const {
+  const PlyElement& element = header_.elements[element_];
+  throw FormatError(file_.path().string() + ": " + element.name + " " + std::to_string(record) + " of " +
+                    std::to_string(element.count) + ": " + what);
+}
+
+// The file's records are found one after the other, so every other thread waits for this. Nearly all elements
+// with lists have one; what lies around it has one size.
+std::size_t PlyCutter::cut_lists(std::string_view bytes, std::uint64_t more, const PlyElement& element,
+                                 std::uint64_t most, std::uint64_t& count) const {
+  const auto list = std::find_if(element.properties.begin(), element.properties.end(),
+                                 [](const PlyProperty& p) { return p.count.has_value(); });
+  const auto sum = [](std::size_t total, const PlyProperty& p) { return total + size(p.type); };
+  const std::size_t before = std::accumulate(element.properties.begin(), list, std::size_t{0}, sum);
+  const std::size_t after = std::accumulate(list + 1, element.properties.end(), std::size_t{0}, sum);
+  const std::size_t width = size(list->type);
+  return with_type(*list->count, [&](auto zero) {
+    const std::size_t head = before + sizeof zero;
+    std::size_t end = 0;
+    for (count = 0; count < most && end < bytes_a_block; ++count) {
+      const std::size_t left = bytes.size() - end;
+      if (left < head) break;
+      const auto length =
+          static_cast<long long>(load<decltype(zero)>(bytes.data() + end + before, is_big(header_)));
+      if (length < 0) fail(done_ + count, "a list of negative length");
+      const std::size_t record = head + static_cast<std::size_t>(length) * width + after;
+      if (left < record) {
+        if (left + more < record) fail(done_ + count, "the file ends here");
+        break;
+      }
+      end += record;
+    }
+    return end;
+  });
 }
 
 // Returns the bytes of the whole records at the beginning, at most a block of them.
@@ -111,42 +159,27 @@ std::size_t PlyCutter::cut_records(std::string_view bytes, std::uint64_t more, c
     count = *record == 0 ? element.count - done_ : std::min<std::uint64_t>(most, bytes.size() / *record);
     return static_cast<std::size_t>(count) * *record;
   }
-  const std::uint64_t vertices = header_.elements[header_.vertex].count;
-  std::vector<bool> is_face;
-  for (const PlyProperty& property : element.properties) is_face.push_back(is_face_list(element, property));
+  if (lists_of(element) == 1) return cut_lists(bytes, more, element, most, count);
   std::size_t end = 0;
   for (count = 0; count < most && end < bytes_a_block; ++count) {
     std::size_t at = end;
-    for (std::size_t k = 0; k < element.properties.size(); ++k) {
-      const PlyProperty& property = element.properties[k];
-      std::uint64_t values = 0;
-      const RecordEnd found = skip_property(bytes, more, property, header_.encoding, at, values);
-      if (found == RecordEnd::behind_the_bytes) return end;
-      const auto fail = [&](const std::string& what) {
-        throw FormatError(file_.path().string() + ": " + element.name + " " + std::to_string(done_ + count) +
-                          " of " + std::to_string(element.count) + ": " + what);
-      };
-      if (found == RecordEnd::behind_the_file) fail("the file ends here");
-      if (found == RecordEnd::negative) fail("a list of negative length");
-      if (!is_face[k]) continue;
-      const char* const first = bytes.data() + at - values * size(property.type);
-      if (are_vertices(first, values, property.type, header_.encoding, vertices)) continue;
-      const std::size_t width = size(property.type);
-      for (const char* index = bytes.data() + at - values * width; index != bytes.data() + at;
-           index += width) {
-        const double value = read_value(index, property.type, header_.encoding);
-        if (!(value >= 0 && value < static_cast<double>(vertices))) fail(ply_index_fault(value, vertices));
+    for (const PlyProperty& property : element.properties) {
+      std::uint64_t values = 1;
+      if (property.count) {
+        if (bytes.size() - at < size(*property.count)) return end;
+        const long long length = list_length(bytes.data() + at, *property.count, is_big(header_));
+        if (length < 0) fail(done_ + count, "a list of negative length");
+        values = static_cast<std::uint64_t>(length);
+        at += size(*property.count);
       }
+      if ((bytes.size() - at + more) / size(property.type) < values)
+        fail(done_ + count, "the file ends here");
+      if ((bytes.size() - at) / size(property.type) < values) return end;
+      at += static_cast<std::size_t>(values) * size(property.type);
     }
     end = at;
   }
   return end;
-}
-
-void PlyCutter::fail_short(std::uint64_t record) const {
-  const PlyElement& element = header_.elements[element_];
-  throw FormatError(file_.path().string() + ": " + element.name + " " + std::to_string(record) + " of " +
-                    std::to_string(element.count) + ": the file ends here");
 }
 
 std::vector<PlyBlock> PlyCutter::operator()(const Window& window) {
@@ -163,7 +196,7 @@ std::vector<PlyBlock> PlyCutter::operator()(const Window& window) {
     std::uint64_t count = 0;
     const std::size_t size = cut_records(rest, more, element, count);
     if (count == 0) {
-      if (window.is_last) fail_short(done_);
+      if (window.is_last) fail(done_, "the file ends here");
       return blocks;
     }
     blocks.push_back({rest.substr(0, size), element_, done_, count});
@@ -178,49 +211,69 @@ std::vector<PlyBlock> PlyCutter::operator()(const Window& window) {
   return blocks;
 }
 
-PlyOffsets vertex_offsets(const PlyHeader& header, const PlyBlock& block) {
-  PlyOffsets offsets;
-  offsets.position.reserve(block.count);
-  const std::vector<PlyProperty>& properties = header.elements[block.element].properties;
-  std::vector<std::size_t> starts(properties.size());
-  std::size_t at = 0;
-  const auto triple = [&](const std::array<std::size_t, 3>& of) {
-    return std::array{starts[of[0]], starts[of[1]], starts[of[2]]};
-  };
-  const std::optional<std::size_t> record = header.elements[block.element].record_size();
-  for (std::uint64_t i = 0; i < block.count; ++i) {
-    // Records of one size differ by it alone.
-    if (record && i > 0)
-      for (std::size_t& start : starts) start += *record;
-    for (std::size_t k = 0; k < properties.size() && (!record || i == 0); ++k) {
-      starts[k] = at;
-      std::uint64_t values = 0;
-      skip_property(block.bytes, 0, properties[k], header.encoding, at, values);
-    }
-    offsets.position.push_back(triple(header.position));
-    if (header.normal) offsets.normal.push_back(triple(*header.normal));
-    if (header.texture)
-      offsets.texture.push_back({starts[(*header.texture)[0]], starts[(*header.texture)[1]]});
-  }
-  return offsets;
+std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block,
+                                        const std::filesystem::path& path) {
+  require_vertices(header, block, path);
+  std::vector<std::uint32_t> faces;
+  for_face_lists(
+      header, block, [&](std::uint64_t, const PlyProperty& property, const char* list, std::uint64_t values) {
+        faces.push_back(static_cast<std::uint32_t>(values));
+        with_type(property.type, [&](auto zero) {
+          for (std::uint64_t k = 0; k < values; ++k)
+            faces.push_back(
+                static_cast<std::uint32_t>(load<decltype(zero)>(list + k * sizeof zero, is_big(header))));
+        });
+      });
+  return faces;
 }
 
-std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block) {
-  std::vector<std::uint32_t> faces;
-  const PlyElement& element = header.elements[block.element];
+void require_vertices(const PlyHeader& header, const PlyBlock& block, const std::filesystem::path& path) {
+  for_face_lists(
+      header, block,
+      [&](std::uint64_t face, const PlyProperty& property, const char* list, std::uint64_t values) {
+        with_type(property.type, [&](auto zero) {
+          require_vertices<decltype(zero)>(list, values, is_big(header), header, block, face, path);
+        });
+      });
+}
+
+PlyPlaces::PlyPlaces(const PlyHeader& header, const PlyBlock& block)
+    : element_(header.elements[block.element]), encoding_(header.encoding), block_(block) {
   std::size_t at = 0;
-  for (std::uint64_t i = 0; i < block.count; ++i)
-    for (const PlyProperty& property : element.properties) {
-      std::uint64_t values = 0;
-      skip_property(block.bytes, 0, property, header.encoding, at, values);
-      if (!is_face_list(element, property)) continue;
-      faces.push_back(static_cast<std::uint32_t>(values));
-      const std::size_t width = size(property.type);
-      for (std::uint64_t k = values; k > 0; --k)
-        faces.push_back(static_cast<std::uint32_t>(
-            read_value(block.bytes.data() + at - k * width, property.type, header.encoding)));
+  stride_ = element_.record_size().value_or(0);
+  for (std::uint64_t i = 0; i < (stride_ > 0 ? 1 : block.count); ++i)
+    for (const PlyProperty& property : element_.properties) {
+      starts_.push_back(at);
+      skip_property(property, block.bytes.data(), is_big(header), at);
     }
-  return faces;
+}
+
+void PlyPlaces::read(std::span<const std::size_t> properties, double* values) const {
+  const bool is_big = encoding_ == PlyHeader::Encoding::big_endian;
+  for (std::size_t k = 0; k < properties.size(); ++k)
+    with_type(element_.properties[properties[k]].type, [&](auto zero) {
+      for (std::size_t i = 0; i < block_.count; ++i)
+        values[i * properties.size() + k] =
+            static_cast<double>(load<decltype(zero)>(block_.bytes.data() + place(i, properties[k]), is_big));
+    });
+}
+
+bool PlyPlaces::write(std::span<const std::size_t> properties, const double* values, char* bytes) const {
+  const bool is_big = encoding_ == PlyHeader::Encoding::big_endian;
+  bool fits = true;
+  for (std::size_t k = 0; k < properties.size(); ++k)
+    with_type(element_.properties[properties[k]].type, [&](auto zero) {
+      using Value = decltype(zero);
+      const auto largest = static_cast<double>(std::numeric_limits<Value>::max());
+      for (std::size_t i = 0; i < block_.count; ++i) {
+        const double value = values[i * properties.size() + k];
+        if (std::abs(value) <= largest)
+          store<Value>(bytes + place(i, properties[k]), value, is_big);
+        else
+          fits = false;
+      }
+    });
+  return fits;
 }
 
 }  // namespace bespoke

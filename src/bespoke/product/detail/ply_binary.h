@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +18,7 @@ struct PlyBlock {
   std::uint64_t first = 0, count = 0;
 };
 
-/// Cuts the body of a binary PLY file into blocks, checking the lengths and the faces' indices on the way.
+/// Cuts the body of a binary PLY file into blocks, checking the lengths of lists on the way.
 class PlyCutter {
  public:
   /// Both must outlive it.
@@ -28,7 +30,9 @@ class PlyCutter {
  private:
   std::size_t cut_records(std::string_view bytes, std::uint64_t more, const PlyElement& element,
                           std::uint64_t& count) const;
-  [[noreturn]] void fail_short(std::uint64_t record) const;
+  std::size_t cut_lists(std::string_view bytes, std::uint64_t more, const PlyElement& element,
+                        std::uint64_t most, std::uint64_t& count) const;
+  [[noreturn]] void fail(std::uint64_t record, const std::string& what) const;
 
   const InputFile& file_;
   const PlyHeader& header_;
@@ -36,19 +40,36 @@ class PlyCutter {
   std::uint64_t done_ = 0;  ///< of the element
 };
 
-/// Where a block's vertices have their positions, normals and texture coordinates: offsets into its bytes.
-struct PlyOffsets {
-  std::vector<std::array<std::size_t, 3>> position, normal;
-  std::vector<std::array<std::size_t, 2>> texture;
+/// The faces of a block: of each the number of its corners, and the corners; none of another element. Throws
+/// FormatError naming the face that names no vertex.
+std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block,
+                                        const std::filesystem::path& path);
+
+/// What face_corners throws.
+void require_vertices(const PlyHeader& header, const PlyBlock& block, const std::filesystem::path& path);
+
+/// Where the records of a block begin and their properties lie.
+class PlyPlaces {
+ public:
+  PlyPlaces(const PlyHeader& header, const PlyBlock& block);
+
+  /// The values of some properties of every record, one record's behind the other's.
+  void read(std::span<const std::size_t> properties, double* values) const;
+  /// Puts such values into properties, which are real ones, of `bytes`, a copy of the block's. What a
+  /// property cannot hold is left out, and false returned.
+  bool write(std::span<const std::size_t> properties, const double* values, char* bytes) const;
+
+ private:
+  std::size_t place(std::size_t record, std::size_t property) const {
+    return stride_ > 0 ? starts_[property] + record * stride_
+                       : starts_[record * element_.properties.size() + property];
+  }
+
+  const PlyElement& element_;
+  PlyHeader::Encoding encoding_;
+  const PlyBlock& block_;
+  std::size_t stride_ = 0;           ///< of records of one size
+  std::vector<std::size_t> starts_;  ///< of the properties: of one record, or of all where sizes differ
 };
-PlyOffsets vertex_offsets(const PlyHeader& header, const PlyBlock& block);
-
-/// The faces of a block: of each the number of its corners, and the corners.
-std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock& block);
-
-/// A value as the file stores it.
-double read_value(const char* bytes, PlyScalar type, PlyHeader::Encoding encoding);
-/// `type` is a real one.
-void write_value(char* bytes, double value, PlyScalar type, PlyHeader::Encoding encoding);
 
 }  // namespace bespoke

@@ -11,8 +11,6 @@
 namespace bespoke {
 namespace {
 
-using Offsets = std::vector<std::array<std::size_t, 3>>;
-
 class PlyBinaryCarrier {
  public:
   PlyBinaryCarrier(const InputFile& file, const PlyHeader& header, const PointMotion& motion)
@@ -20,60 +18,31 @@ class PlyBinaryCarrier {
 
   /// Nothing for a block that stays as it is.
   std::vector<std::string> carry(const PlyBlock& block) const {
+    require_vertices(header_, block, file_.path());
     if (block.element != header_.vertex || block.count == 0) return {};
-    const PlyOffsets offsets = vertex_offsets(header_, block);
-    const Points x = read(block, offsets.position, header_.position);
+    const PlyPlaces places(header_, block);
+    Points x(3, static_cast<Eigen::Index>(block.count)), normals(3, x.cols());
+    places.read(header_.position, x.data());
     require_finite_input(block, x);
     const std::vector<Points> images = motion_.images(x);
     std::vector<Points> jacobians;
-    Points normals;
     if (header_.normal) {
       jacobians = motion_.jacobians(x);
-      normals = read(block, offsets.normal, *header_.normal);
+      places.read(*header_.normal, normals.data());
     }
     std::vector<std::string> frames(motion_.frames, std::string(block.bytes));
     for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
-      write(images[frame], offsets.position, header_.position, frames[frame]);
+      if (!places.write(header_.position, images[frame].data(), frames[frame].data()))
+        throw InvalidInput(file_.path().string() +
+                           ": a point goes to a place that the file's numbers cannot hold");
+      // A normal that was none keeps its bytes.
       if (header_.normal)
-        write(moved_normals(normals, jacobians[frame]), offsets.normal, *header_.normal, frames[frame]);
+        places.write(*header_.normal, moved_normals(normals, jacobians[frame]).data(), frames[frame].data());
     }
     return frames;
   }
 
  private:
-  PlyScalar type(std::size_t property) const {
-    return header_.elements[header_.vertex].properties[property].type;
-  }
-
-  Points read(const PlyBlock& block, const Offsets& offsets, const std::array<std::size_t, 3>& of) const {
-    Points result(3, static_cast<Eigen::Index>(block.count));
-    const std::array types{type(of[0]), type(of[1]), type(of[2])};
-    for (std::size_t i = 0; i < block.count; ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        result(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)) =
-            read_value(block.bytes.data() + offsets[i][axis], types[axis], header_.encoding);
-    return result;
-  }
-
-  void write(const Points& moved, const Offsets& offsets, const std::array<std::size_t, 3>& of,
-             std::string& bytes) const {
-    const bool is_normal = &of != &header_.position;
-    const std::array types{type(of[0]), type(of[1]), type(of[2])};
-    for (std::size_t i = 0; i < offsets.size(); ++i)
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double value = moved(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i));
-        const double limit = types[axis] == PlyScalar::float32
-                                 ? static_cast<double>(std::numeric_limits<float>::max())
-                                 : std::numeric_limits<double>::max();
-        if (!(std::abs(value) <= limit)) {
-          if (is_normal) continue;  // a normal that was none keeps its bytes
-          throw InvalidInput(file_.path().string() +
-                             ": a point goes to a place that the file's numbers cannot hold");
-        }
-        write_value(bytes.data() + offsets[i][axis], value, types[axis], header_.encoding);
-      }
-  }
-
   void require_finite_input(const PlyBlock& block, const Points& x) const {
     if (x.allFinite()) return;
     for (Eigen::Index i = 0; i < x.cols(); ++i)

@@ -15,29 +15,16 @@ struct PlyContent {
   std::vector<std::uint32_t> faces;
 };
 
-template <std::size_t n>
-Eigen::Matrix<double, int{n}, Eigen::Dynamic> read_vectors(
-    const PlyHeader& header, const PlyBlock& block, const std::vector<std::array<std::size_t, n>>& offsets,
-    const std::array<std::size_t, n>& properties) {
-  Eigen::Matrix<double, int{n}, Eigen::Dynamic> result(n, static_cast<Eigen::Index>(offsets.size()));
-  const std::vector<PlyProperty>& all = header.elements[block.element].properties;
-  for (std::size_t i = 0; i < offsets.size(); ++i)
-    for (std::size_t k = 0; k < n; ++k)
-      result(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) =
-          read_value(block.bytes.data() + offsets[i][k], all[properties[k]].type, header.encoding);
-  return result;
-}
-
-PlyContent read_block(const PlyHeader& header, const PlyBlock& block) {
+PlyContent read_block(const PlyHeader& header, const PlyBlock& block, const std::filesystem::path& path) {
   PlyContent content;
-  if (block.count == 0) return content;
-  if (block.element == header.vertex) {
-    const PlyOffsets offsets = vertex_offsets(header, block);
-    content.points = read_vectors(header, block, offsets.position, header.position);
-    if (header.texture) content.texture = read_vectors(header, block, offsets.texture, *header.texture);
-  } else if (header.elements[block.element].name == "face") {
-    content.faces = face_corners(header, block);
-  }
+  content.faces = face_corners(header, block, path);
+  if (block.element != header.vertex || block.count == 0) return content;
+  const PlyPlaces places(header, block);
+  content.points.resize(3, static_cast<Eigen::Index>(block.count));
+  places.read(header.position, content.points.data());
+  if (!header.texture) return content;
+  content.texture.resize(2, static_cast<Eigen::Index>(block.count));
+  places.read(*header.texture, content.texture.data());
   return content;
 }
 
@@ -46,7 +33,7 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
   PlyCutter cutter(file, header);
   walk_blocks(
       file, header.size, [&](const Window& window) { return cutter(window); },
-      [&](const PlyBlock& block) { return read_block(header, block); },
+      [&](const PlyBlock& block) { return read_block(header, block, file.path()); },
       [&](const PlyBlock&, PlyContent&& content) {
         if (content.points.cols() > 0) gathered.add_points(content.points);
         if (content.texture.cols() > 0) gathered.add_texture(content.texture);

@@ -86,13 +86,6 @@ void find_vertices(const InputFile& file, PlyHeader& header) {
 
 }  // namespace
 
-std::size_t size(PlyScalar type) {
-  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-bool is_real(PlyScalar type) { return type >= PlyScalar::float32; }
-
 std::optional<std::size_t> PlyElement::record_size() const {
   std::size_t sum = 0;
   for (const PlyProperty& property : properties) {

@@ -14,8 +14,11 @@ namespace bespoke {
 enum class PlyScalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
 /// Bytes in a binary file.
-std::size_t size(PlyScalar type);
-bool is_real(PlyScalar type);
+constexpr std::size_t size(PlyScalar type) {
+  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[static_cast<std::size_t>(type)];
+}
+constexpr bool is_real(PlyScalar type) { return type >= PlyScalar::float32; }
 
 struct PlyProperty {
   std::string name;

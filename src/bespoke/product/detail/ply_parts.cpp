@@ -17,33 +17,12 @@ struct BlockContent {
   std::vector<std::uint32_t> faces;  ///< of each the number of its corners, and the corners
 };
 
-BlockContent read_binary(const PlyBlock& block, const PlyHeader& header) {
+BlockContent read_binary(const PlyBlock& block, const PlyHeader& header, const std::filesystem::path& path) {
   BlockContent content;
-  if (block.element == header.elements.size()) return content;
-  const PlyElement& element = header.elements[block.element];
-  if (block.element == header.vertex) {
-    const PlyOffsets offsets = vertex_offsets(header, block);
-    for (const auto& position : offsets.position)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        content.coordinates.push_back(read_value(block.bytes.data() + position[axis],
-                                                 element.properties[header.position[axis]].type,
-                                                 header.encoding));
-    return content;
-  }
-  const char* at = block.bytes.data();
-  for (std::uint64_t i = 0; i < block.count; ++i)
-    for (const PlyProperty& property : element.properties) {
-      std::size_t values = 1;
-      if (property.count) {
-        values = static_cast<std::size_t>(read_value(at, *property.count, header.encoding));
-        at += size(*property.count);
-      }
-      const bool is_face = is_face_list(element, property);
-      if (is_face) content.faces.push_back(static_cast<std::uint32_t>(values));
-      for (std::size_t k = 0; k < values; ++k, at += size(property.type))
-        if (is_face)
-          content.faces.push_back(static_cast<std::uint32_t>(read_value(at, property.type, header.encoding)));
-    }
+  content.faces = face_corners(header, block, path);
+  if (block.element != header.vertex || block.count == 0) return content;
+  content.coordinates.resize(3 * block.count);
+  PlyPlaces(header, block).read(header.position, content.coordinates.data());
   return content;
 }
 
@@ -121,7 +100,7 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
     PlyCutter cutter(file, header);
     walk_blocks(
         file, header.size, [&](const Window& window) { return cutter(window); },
-        [&](const PlyBlock& block) { return read_binary(block, header); },
+        [&](const PlyBlock& block) { return read_binary(block, header, file.path()); },
         [&](const PlyBlock&, BlockContent&& content) { components.add(std::move(content)); }, progress);
   }
   return parts_of(parts, components.of_parts(parts, file.path()));

@@ -57,7 +57,12 @@ class TextWords {
  public:
   /// The block and the path must outlive the walk.
   TextWords(const TextBlock& block, const std::filesystem::path& path, LineSyntax syntax = {})
-      : block_(block), path_(path), syntax_(syntax), end_(block.bytes.data()), line_end_(end_) {}
+      : block_(block),
+        path_(path),
+        syntax_(syntax),
+        ends_word_(characters_behind_words(syntax)),
+        end_(block.bytes.data()),
+        line_end_(end_) {}
 
   /// Goes to the next line that has a word; false at the end.
   bool next_line();
@@ -74,6 +79,9 @@ class TextWords {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
+  using Characters = std::array<bool, 256>;
+  static const Characters& characters_behind_words(LineSyntax syntax);
+
   bool is_blank(char c) const {
     return static_cast<unsigned char>(c) <= ' ' || (c == '\\' && syntax_.continues);
   }
@@ -81,6 +89,7 @@ class TextWords {
   const TextBlock& block_;
   const std::filesystem::path& path_;
   LineSyntax syntax_;
+  const Characters& ends_word_;
   const char* begin_ = nullptr;
   const char* at_ = nullptr;
   const char* end_;
