@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "command/example_pair.h"
+#include "product/gltf_scene.h"
 
 namespace bespoke {
 namespace {
@@ -141,6 +142,30 @@ TEST_F(ExportCommand, NanovdbConvertsTheOneLevel) {
               ::testing::AllOf(HasSubstr("displacement"), HasSubstr("Vec3f")));
 }
 
+// The product's faces use its vertices in their order, so the file's are in that order too.
+TEST_F(ExportCommand, MorphTargetsLieWhereApplyPutsTheProduct) {
+  const ProgramResult result = bespoke({"export", pair_.file("map.vdb"), "--morph", "2", "--product",
+                                        pair_.file("product.obj"), "-o", pair_.file("product.glb")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("cm, shown in metres"));
+  const test::GlbContent file(test::read_text(pair_.file("product.glb")));
+  const nlohmann::json& primitive = file.root["meshes"][0]["primitives"][0];
+  const auto points = [&](const nlohmann::json& accessor) -> Points {
+    const std::vector<float> values = file.floats(accessor);
+    return Eigen::Map<const Eigen::Matrix3Xf>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3))
+        .cast<double>();
+  };
+  const Points base = points(primitive["attributes"]["POSITION"]);
+  for (const auto& [target, t] : {std::pair(0, "0.5"), std::pair(1, "1")}) {
+    ASSERT_EQ(pair_.apply("map.vdb", {"--t", t, "-o", pair_.file("moved.obj")}).exit_code, 0);
+    const Points moved = test::read_obj_points(pair_.file("moved.obj"));
+    const Points found = base + points(primitive["targets"][static_cast<std::size_t>(target)]["POSITION"]);
+    ASSERT_EQ(found.cols(), moved.cols());
+    // Base, difference and the OBJ are rounded once each.
+    EXPECT_LT((found - moved).colwise().norm().maxCoeff(), 3 * test::float_rounding(moved));
+  }
+}
+
 TEST_F(ExportCommand, RefusesWithoutLeavingAnything) {
   const std::vector<std::string> before = pair_.files();
   const auto refused = [&](const std::vector<std::string>& extra, int code, const std::string& words) {
@@ -155,6 +180,12 @@ TEST_F(ExportCommand, RefusesWithoutLeavingAnything) {
   refused({"--grid", "0.001%", "-o", pair_.file("map.vti")}, 4, "fit");
   refused({"--grid", "-3", "-o", pair_.file("map.vti")}, 1, "--grid");
   refused({"-o", pair_.file("map.vti")}, 1, "--grid");
+  const std::string product = pair_.file("product.obj");
+  refused({"--morph", "2", "-o", pair_.file("map.glb")}, 1, "--product");
+  refused({"--morph", "2", "--product", product, "-o", pair_.file("map.gltf")}, 1, ".glb");
+  refused({"--morph", "0", "--product", product, "-o", pair_.file("map.glb")}, 1, "--morph");
+  refused({"--morph", "2", "--product", product, "--grid", "3%", "-o", pair_.file("map.glb")}, 1, "either");
+  refused({"--morph", "2", "--product", pair_.file("none.obj"), "-o", pair_.file("map.glb")}, 4, "none.obj");
   refused({"--grid", "3%", "--space", "up", "-o", pair_.file("map.nrrd")}, 1, "--space");
   refused({"--grid", "3%", "--space", "ras", "-o", pair_.file("map.vti")}, 1, "own frame");
 }

@@ -104,7 +104,9 @@ struct GlbContent {
   /// Of an accessor of floats without gaps between its vectors.
   std::vector<float> floats(std::size_t accessor) const {
     const nlohmann::json& own = root["accessors"][accessor];
-    std::vector<float> values((own["type"] == "VEC4" ? 4 : 3) * own["count"].get<std::size_t>());
+    const std::string type = own["type"];
+    const auto components = static_cast<std::size_t>(type == "SCALAR" ? 1 : type[3] - '0');
+    std::vector<float> values(components * own["count"].get<std::size_t>());
     std::memcpy(values.data(), data.data() + begin(accessor), 4 * values.size());
     return values;
   }

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "bespoke/apply/apply_mapping.h"
+#include "bespoke/exchange/glb_file.h"
 #include "bespoke/exchange/image_formats.h"
 #include "bespoke/pipeline/open_map.h"
 #include "commands.h"
@@ -18,12 +19,15 @@ struct ExportArguments {
   std::string map;
   std::string output;
   std::optional<Length> grid;
+  std::optional<int> morph;
+  std::string product;
   std::optional<WorldSpace> space;
   bool pull = false;
   bool untrusted = false;
   RunOptions run;
 };
 
+constexpr int most_targets = 1000;
 constexpr std::size_t error_points = 200'000;
 
 // Of the values, bytes.
@@ -42,7 +46,7 @@ std::string content(const ExportArguments& arguments, const AssetRecord& record)
          unit;
 }
 
-void run(const ExportArguments& arguments, const Progress& progress) {
+void export_grid(const ExportArguments& arguments, const Progress& progress) {
   require_image_ending(arguments.output);
   if (arguments.space && !says_world_space(arguments.output))
     throw CLI::ValidationError(
@@ -71,21 +75,69 @@ void run(const ExportArguments& arguments, const Progress& progress) {
   std::printf("%-12s %s\n", "written", arguments.output.c_str());
 }
 
+void require_morph_arguments(const ExportArguments& arguments) {
+  if (std::filesystem::path(arguments.output).extension() != ".glb")
+    throw CLI::ValidationError("--morph", arguments.output + " must end in .glb");
+  if (arguments.product.empty()) throw CLI::ValidationError("--morph", "--product MESH says what morphs");
+  require_mesh_ending("--product", arguments.product);
+}
+
+void export_morph(const ExportArguments& arguments) {
+  require_morph_arguments(arguments);
+  require_safe_outputs({arguments.map, arguments.product}, {arguments.output});
+  const ReadAssetOptions reading{.untrusted = arguments.untrusted};
+  const std::string unit = read_asset(arguments.map, reading).record.unit;
+  const OpenedMap map = open_map(arguments.map, MapForm::grids, reading);
+  const MorphingMesh mesh = morph_along(read_product(arguments.product), *map.elastic, map.target_from_source,
+                                        *arguments.morph, {map.path});
+  const GlbNotes notes{std::filesystem::path(arguments.product).stem().string(), metres_per_unit(unit)};
+  OutputFiles outputs;
+  outputs.write(arguments.output, [&](const auto& path) { write_glb(path, mesh, notes); });
+  outputs.keep();
+  if (arguments.run.quiet) return;
+  std::printf("%-12s %d, with straight motion between them at most %.4g off the map's\n", "targets",
+              *arguments.morph, mesh.off_path);
+  if (notes.metres_per_unit)
+    std::printf("%-12s %s, shown in metres\n", "unit", unit.c_str());
+  else
+    std::printf("%-12s %s, shown as if they were metres\n", "unit", unit.empty() ? "unknown" : unit.c_str());
+  std::printf("%-12s %s, without groups and materials\n", "written", arguments.output.c_str());
+}
+
+void run(const ExportArguments& arguments, const Progress& progress) {
+  if (arguments.grid.has_value() == arguments.morph.has_value())
+    throw CLI::ValidationError("export", "give either --grid LENGTH or --morph N");
+  arguments.grid ? export_grid(arguments, progress) : export_morph(arguments);
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* exported = app.add_subcommand("export", "Write a map as a displacement image for other programs");
+  CLI::App* exported = app.add_subcommand(
+      "export", "Write a map as a displacement image, or as morph targets of a product, for other programs");
   exported->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
-  exported->add_option("-o,--output", arguments->output, "File to write, by its ending: " + image_endings())
+  exported
+      ->add_option("-o,--output", arguments->output,
+                   "File to write, by its ending: " + image_endings() + "; with --morph .glb")
       ->required()
       ->type_name("OUT");
-  add_length_option(*exported, "--grid", arguments->grid,
-                    "Voxel size, mesh units or % of the source's bounding-box diagonal")
-      ->required();
-  exported->add_flag(
-      "--pull", arguments->pull,
-      "Displacements from the target to the source, as programs that resample images ask for them");
+  add_length_option(
+      *exported, "--grid", arguments->grid,
+      "Write an image of this voxel size, mesh units or % of the source's bounding-box diagonal");
+  CLI::Option* morph = exported
+                           ->add_option("--morph", arguments->morph,
+                                        "Write a product with N morph targets, at t = 1/N, 2/N, …, 1, and an "
+                                        "animation through them, as .glb")
+                           ->check(CLI::Range(1, most_targets))
+                           ->type_name("N");
+  exported->add_option("--product", arguments->product, "The mesh that morphs: OBJ, PLY, STL, OFF")
+      ->needs(morph)
+      ->type_name("MESH");
+  exported
+      ->add_flag("--pull", arguments->pull,
+                 "Displacements from the target to the source, as programs that resample images ask for them")
+      ->excludes(morph);
   add_name_option(*exported, "--space", arguments->space, world_spaces,
                   "Which way the models' axes point, for .nrrd, which is written in LPS, and .nii.gz, in RAS "
                   "(default: lps)");
@@ -93,11 +145,14 @@ void add_export_command(CLI::App& app) {
                      "Check the asset in a child process under limits first");
   add_run_options(*exported, arguments->run);
   exported->footer(
-      "The image covers the model and what the elastic part reaches, and says nothing beyond.\n\n"
+      "The image covers the model and what the elastic part reaches, and says nothing beyond. glTF is in "
+      "metres: lengths in\n"
+      "m, dm, cm, mm, in or ft are scaled on the node, others shown as they are.\n\n"
       "Examples:\n"
       "  bespoke export map.vdb --grid 0.5% -o map.vti\n"
       "  bespoke export map.vdb --grid 0.5% -o level.vdb\n"
-      "  bespoke export map.vdb --grid 2 --pull --space ras -o map.nrrd");
+      "  bespoke export map.vdb --grid 2 --pull --space ras -o map.nrrd\n"
+      "  bespoke export map.vdb --morph 8 --product dress.obj -o dress.glb");
   exported->callback([arguments] {
     run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
   });
