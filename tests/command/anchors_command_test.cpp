@@ -48,6 +48,33 @@ TEST(AnchorsCommand, NamesWhatIsSuspicious) {
   EXPECT_THAT(swapped.out, HasSubstr("p9"));
 }
 
+TEST(AnchorsCommand, SuggestsPairsThatFitAccepts) {
+  const ExamplePair pair;
+  const std::vector<std::string> suggest{"anchors",
+                                         "suggest",
+                                         pair.file("source.obj"),
+                                         pair.file("target.obj"),
+                                         "--anchors",
+                                         pair.file("anchors.json"),
+                                         "--count",
+                                         "2",
+                                         "--tolerance",
+                                         "1e-6",
+                                         "-o",
+                                         pair.file("more.csv")};
+  const ProgramResult result = bespoke(suggest);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("suggested_2"));
+  const Anchors before = read_anchors(pair.file("anchors.json")), after = read_anchors(pair.file("more.csv"));
+  ASSERT_EQ(after.pairs.size(), before.pairs.size() + 2);
+  EXPECT_GT(after.pairs.back().sigma.value_or(0), 0);
+  EXPECT_EQ(bespoke({"anchors", "audit", pair.file("more.csv")}).exit_code, 0);
+  EXPECT_EQ(bespoke({"fit", pair.file("source.obj"), pair.file("target.obj"), "--anchors",
+                     pair.file("more.csv"), "--tolerance", "2%", "-o", pair.file("map.vdb"), "-q"})
+                .exit_code,
+            0);
+}
+
 TEST(AnchorsCommand, RefusesWhatItCannotRead) {
   const ExamplePair pair;
   EXPECT_EQ(bespoke({"anchors", "convert", pair.file("source.obj"), "-o", pair.file("x.json")}).exit_code, 2);

@@ -1,7 +1,9 @@
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,9 +13,12 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/error.h"
+#include "bespoke/pipeline/anchor_suggestions.h"
 #include "bespoke/product/mesh_io.h"
 #include "commands.h"
+#include "length_option.h"
 #include "output_files.h"
+#include "run_options.h"
 
 namespace bespoke::command {
 namespace {
@@ -146,13 +151,97 @@ void add_audit(CLI::App& app) {
   command->callback([arguments] { audit(*arguments); });
 }
 
+// ---- suggest
+
+struct SuggestArguments {
+  std::string source;
+  std::string target;
+  std::vector<std::string> anchors;
+  std::vector<std::string> outputs;
+  std::size_t count = SuggestionOptions().count;
+  std::optional<Length> tolerance;
+  RunOptions run;
+};
+
+// Of the target's diagonal: pairs that people pick are no more accurate.
+constexpr double surest = 1e-3;
+
+void print(const SuggestedAnchor& suggestion) {
+  const auto place = [](const Vector3& x) {
+    std::ostringstream text;
+    text << '(' << x[0] << ", " << x[1] << ", " << x[2] << ')';
+    return text.str();
+  };
+  std::printf(
+      "%s: %s on the source, %s on the target, sigma %.4g; the fits are %.4g apart, confidence %.2f\n",
+      suggestion.pair.name.c_str(), place(suggestion.pair.a).c_str(), place(suggestion.pair.b).c_str(),
+      *suggestion.pair.sigma, suggestion.uncertainty, suggestion.confidence);
+}
+
+void suggest(const SuggestArguments& arguments, const Progress& progress) {
+  std::vector<std::filesystem::path> inputs = as_paths(arguments.anchors);
+  inputs.insert(inputs.end(), {arguments.source, arguments.target});
+  require_safe_outputs(inputs, as_paths(arguments.outputs));
+  const Models models = read_models({arguments.source, arguments.target});
+  const AnchorFileOptions options = file_options(models);
+  Anchors anchors;
+  if (!arguments.anchors.empty()) anchors = read_anchor_files(as_paths(arguments.anchors), options);
+  const double size = diagonal(models.target->vertices);
+  const double tolerance = arguments.tolerance ? arguments.tolerance->in_mesh_units(size) : surest * size;
+  const std::vector<SuggestedAnchor> suggestions =
+      suggest_anchors(*models.source, *models.target, anchors, {arguments.count, tolerance}, progress);
+  for (const SuggestedAnchor& suggestion : suggestions) {
+    anchors.pairs.push_back(suggestion.pair);
+    if (!arguments.run.quiet) print(suggestion);
+  }
+  write_anchor_files(as_paths(arguments.outputs), anchors, options);
+  if (arguments.run.quiet) return;
+  if (suggestions.size() < arguments.count)
+    std::printf("everywhere else the fits are at most %.4g apart\n", tolerance);
+  std::printf("written: %zu pairs\n", anchors.pairs.size());
+}
+
+void add_suggest(CLI::App& app) {
+  auto arguments = std::make_shared<SuggestArguments>();
+  CLI::App* command =
+      app.add_subcommand("suggest", "Propose pairs where the fit is worst or least sure, to be checked");
+  command->add_option("SOURCE", arguments->source, "Source model")->required();
+  command->add_option("TARGET", arguments->target, "Target model")->required();
+  command->add_option("--anchors", arguments->anchors, "Pairs so far, in any format of `anchors convert`")
+      ->type_name("FILE")
+      ->expected(1, 2);
+  command->add_option("-o,--output", arguments->outputs, "Pairs so far and those proposed, in any format")
+      ->type_name("FILE")
+      ->required()
+      ->expected(1, 2);
+  command->add_option("--count", arguments->count, "Pairs at most")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  add_length_option(*command, "--tolerance", arguments->tolerance,
+                    "Nothing is proposed where the fits are surer than this, mesh units or % of the target's "
+                    "bounding-box diagonal (default: " +
+                        percentage(surest) + ")");
+  add_run_options(*command, arguments->run);
+  command->footer(
+      "The source is fitted to the target and the target to the source: where they differ, a person's eye "
+      "helps.\nMove the proposed points to where they belong (`bespoke pick SOURCE TARGET --anchors FILE`), "
+      "and "
+      "give them\na smaller sigma.\n\n"
+      "Example:\n"
+      "  bespoke anchors suggest woman.obj man.obj --anchors anchors.json --count 5 -o more.json");
+  command->callback([arguments] {
+    run_with(arguments->run, [&](const Progress& progress) { suggest(*arguments, progress); });
+  });
+}
+
 }  // namespace
 
 void add_anchors_command(CLI::App& app) {
-  CLI::App* anchors = app.add_subcommand("anchors", "Convert and check pairs of points");
+  CLI::App* anchors = app.add_subcommand("anchors", "Convert, check and propose pairs of points");
   anchors->require_subcommand(1);
   add_convert(*anchors);
   add_audit(*anchors);
+  add_suggest(*anchors);
 }
 
 }  // namespace bespoke::command

@@ -260,6 +260,19 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   return result;
 }
 
+FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh& target,
+                                 const Anchors& anchors, const FitOptions& options,
+                                 const Progress& progress) {
+  require_usable(source, anchors, options);
+  require_valid(target, "target");
+  FittedMapping result;
+  if (anchors.pairs.empty())
+    lay_by_surfaces(result, source, target, options, progress);
+  else
+    lay_by_anchors(result, source, target, anchors, options, progress);
+  return result;
+}
+
 FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMesh& fitted,
                                     const Anchors& anchors, const FitOptions& options,
                                     const Progress& progress) {

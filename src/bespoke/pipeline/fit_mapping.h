@@ -52,6 +52,12 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 
+/// The source laid on the target alone, sections IV.A to IV.C: everything but E and what follows from it.
+/// Throws as fit_mapping.
+FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh& target,
+                                 const Anchors& anchors, const FitOptions& options,
+                                 const Progress& progress = {});
+
 /// The same for a source that somebody already fitted: `fitted` has the source's connectivity and lies on the
 /// target, in the target frame (the consistent-connectivity case of the paper's references 4–7). Anchors may
 /// be empty: then all vertices serve as anchors of the rigid part.

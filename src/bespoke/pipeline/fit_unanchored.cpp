@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/closest_point.h"
+#include "bespoke/pipeline/two_way_points.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/statistics.h"
 #include "bespoke/stopwatch.h"
@@ -60,41 +59,14 @@ Candidate fit_from(const Points& start, const Scene& scene, const Leads& leads, 
   return candidate;
 }
 
-/// Vertices in faces, each the farthest from those before it.
-std::vector<int> spread_vertices(const TriangleMesh& mesh, std::size_t count) {
-  const Eigen::VectorXd areas = vertex_areas(mesh);
-  Eigen::VectorXd nearest =
-      (areas.array() > 0)
-          .select(std::numeric_limits<double>::infinity(), Eigen::VectorXd::Zero(areas.size()));
-  std::vector<int> chosen;
-  Eigen::Index next = 0;
-  while (chosen.size() < count && nearest.maxCoeff(&next) > 0) {
-    chosen.push_back(static_cast<int>(next));
-    nearest = nearest.cwiseMin(
-        (mesh.vertices.colwise() - mesh.vertices.col(next)).colwise().squaredNorm().transpose());
-  }
-  return chosen;
-}
-
 /// The middle between where a fit of the source takes some vertices and where a fit of the target comes from;
 /// half of the distance between the two is the accuracy. `back`: the target's vertices on the source.
 Leads leads_of(const Scene& scene, const Points& forward, const Points& back) {
-  const ClosestPointTree laid_back({back, scene.target.faces});
   Leads leads;
   leads.vertices = spread_vertices(scene.source, leading_vertices);
-  leads.targets = forward(Eigen::all, leads.vertices);
-  leads.sigmas.resize(leads.targets.cols());
-  const double least = least_sigma * diagonal(scene.source.vertices);
-  for (Eigen::Index k = 0; k < leads.targets.cols(); ++k) {
-    const int vertex = leads.vertices[static_cast<std::size_t>(k)];
-    const SurfacePoint foot = *laid_back.closest(scene.source.vertices.col(vertex));
-    Vector3 other = Vector3::Zero();
-    for (int corner = 0; corner < 3; ++corner)
-      other += foot.barycentric[corner] * scene.target.vertices.col(scene.target.faces(corner, foot.face));
-    const double apart = (other - leads.targets.col(k)).norm();
-    leads.targets.col(k) = (leads.targets.col(k) + other) / 2;
-    leads.sigmas[k] = std::max(apart / 2, least);
-  }
+  TwoWayPoints points = two_way_points(scene.source, forward, scene.target, back, leads.vertices);
+  leads.targets = std::move(points.middles);
+  leads.sigmas = (points.apart / 2).cwiseMax(least_sigma * diagonal(scene.source.vertices));
   return leads;
 }
 

@@ -1,0 +1,45 @@
+#include "bespoke/pipeline/two_way_points.h"
+
+#include <limits>
+
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+
+std::vector<int> spread_vertices(const TriangleMesh& mesh, std::size_t count) {
+  const Eigen::VectorXd areas = vertex_areas(mesh);
+  Eigen::VectorXd nearest =
+      (areas.array() > 0)
+          .select(std::numeric_limits<double>::infinity(), Eigen::VectorXd::Zero(areas.size()));
+  std::vector<int> chosen;
+  Eigen::Index next = 0;
+  while (chosen.size() < count && nearest.maxCoeff(&next) > 0) {
+    chosen.push_back(static_cast<int>(next));
+    nearest = nearest.cwiseMin(
+        (mesh.vertices.colwise() - mesh.vertices.col(next)).colwise().squaredNorm().transpose());
+  }
+  return chosen;
+}
+
+TwoWayPoints two_way_points(const TriangleMesh& source, const Points& laid, const TriangleMesh& target,
+                            const Points& target_laid, const std::vector<int>& vertices) {
+  const ClosestPointTree tree({target_laid, target.faces});
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  TwoWayPoints points{Points(3, count), Eigen::VectorXd(count)};
+  parallel_for(vertices.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      const SurfacePoint foot = *tree.closest(source.vertices.col(vertices[i]));
+      Vector3 other = Vector3::Zero();
+      for (int corner = 0; corner < 3; ++corner)
+        other += foot.barycentric[corner] * target.vertices.col(target.faces(corner, foot.face));
+      const Vector3 one = laid.col(vertices[i]);
+      points.apart[k] = (other - one).norm();
+      points.middles.col(k) = (one + other) / 2;
+    }
+  });
+  return points;
+}
+
+}  // namespace bespoke
