@@ -3,7 +3,7 @@
 import json
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from . import command
@@ -23,6 +23,7 @@ def is_listed(settings, thing):
 class ObjectSettings(bpy.types.PropertyGroup):
     is_map: BoolProperty(description="This volume is a map that the add-on loaded")
     unit: StringProperty(description="Unit of the models that the map was made of")
+    steps: IntProperty(default=1, description="Steps of the chain that the map is made of")
     verdict: StringProperty(description="What is proved about the map")
     carried_by: PointerProperty(type=bpy.types.Object, description="The map whose t moves this mesh")
 
@@ -63,6 +64,7 @@ def add_asset(context, path, placed_like):
     asset.update_tag()
     asset.bespoke.is_map = True
     asset.bespoke.unit = "" if info["unit"] == UNKNOWN_UNIT else info["unit"]
+    asset.bespoke.steps = max(1, len(info.get("steps", ())))
     proof = info["certificate"]
     asset.bespoke.verdict = (
         f"a bijection, det ≥ {proof['least_determinant']:.3g}"

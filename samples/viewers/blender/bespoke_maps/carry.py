@@ -7,8 +7,8 @@ from bpy.props import BoolProperty, FloatProperty
 from . import assets, command, points
 
 KEY_PREFIX = "bespoke "
-FEWEST_FRAMES = 8  # Between them a path may bend unseen.
-MOST_FRAMES = 64  # Half as many keys follow half a turn to 0.1 % of its radius.
+FRAMES_A_STEP = 8  # Between them a path may bend unseen.
+MOST_KEYS = 32  # They follow half a turn to 0.1 % of its radius.
 
 
 class CarryError(Exception):
@@ -55,18 +55,22 @@ def straight_pieces(frames, pieces):
     return worst
 
 
-def path_of_points(asset_path, x, tolerance):
-    """Ψ(t) of points as (k + 1, n, 3), with the fewest k that follows the path to `tolerance`; and how far it is off."""
-    frames = FEWEST_FRAMES
+def path_of_points(asset, x, tolerance):
+    """Ψ(t) of points as (k + 1, n, 3), with the fewest k that follows the path to `tolerance`; and how far it is off.
+
+    k is a power of two times the map's steps, for at their ends the path has corners.
+    """
+    pieces = asset.bespoke.steps
+    frames = FRAMES_A_STEP * pieces
+    path = command.image_at_frames(assets.path_of(asset), x, frames)
     while True:
-        path = command.image_at_frames(asset_path, x, frames)
-        pieces = 1
-        while pieces < frames:
-            off = straight_pieces(path, pieces)
-            if off <= tolerance or 2 * pieces >= MOST_FRAMES:
-                return path[:: frames // pieces], off
-            pieces *= 2
-        frames *= 2
+        if 2 * pieces > frames:
+            frames *= 2
+            path = command.image_at_frames(assets.path_of(asset), x, frames)
+        off = straight_pieces(path, pieces)
+        if off <= tolerance or 2 * pieces > MOST_KEYS:
+            return path[:: frames // pieces], off
+        pieces *= 2
 
 
 def remove_keys(thing):
@@ -106,14 +110,15 @@ def drive(key, asset, pieces, number):
 
 
 def carry(thing, asset, tolerance):
-    """Gives the mesh object its keys. `tolerance`: fraction of its diagonal. Returns how many, and how far they are off."""
+    """Gives the mesh object its keys. `tolerance`: fraction of its diagonal. Returns how many, how far they are
+    off, and whether that meets the tolerance."""
     try:
         map_from_object = points.map_from_object(asset, thing)
     except ValueError as error:
         raise CarryError(str(error)) from error
     x = points.moved(map_from_object, points.rest_points(thing.data))
     diagonal = np.linalg.norm(np.ptp(x, axis=0))
-    path, off = path_of_points(assets.path_of(asset), x, tolerance * diagonal)
+    path, off = path_of_points(asset, x, tolerance * diagonal)
     object_from_map = np.linalg.inv(map_from_object)
     remove_keys(thing)
     pieces = len(path) - 1
@@ -121,7 +126,7 @@ def carry(thing, asset, tolerance):
         key = add_key(thing, f"{number}/{pieces}", points.moved(object_from_map, path[number]))
         drive(key, asset, pieces, number)
     thing.bespoke.carried_by = asset
-    return pieces, off
+    return pieces, off, off <= tolerance * diagonal
 
 
 class CarryMeshes(bpy.types.Operator):
@@ -187,9 +192,13 @@ class CarryMeshes(bpy.types.Operator):
                 self.report({"INFO"}, f"{thing.name}: {names} act on the carried mesh")
             if own_mesh(thing):
                 self.report({"WARNING"}, f"{thing.name} shared its mesh with other objects; it has its own now")
-            keys, off = carry(thing, asset, self.tolerance / 100)
+            keys, off, is_close = carry(thing, asset, self.tolerance / 100)
         except CarryError as error:
             self.report({"ERROR"}, str(error))
             return False
-        self.report({"INFO"}, f"{thing.name}: shape keys: {keys}, at most {off:.3g} {assets.unit_of(asset)} off the path")
+        message = f"{thing.name}: shape keys: {keys}, at most {off:.3g} {assets.unit_of(asset)} off the path"
+        if is_close:
+            self.report({"INFO"}, message)
+        else:
+            self.report({"WARNING"}, message + "; more of them would not be handy: bake frames, which are exact")
         return True
