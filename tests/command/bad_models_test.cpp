@@ -137,7 +137,8 @@ TEST_F(BadModels, NotFilesAtAll) {
   std::filesystem::create_directory(pair_.file("folder.obj"));
   expect_refusal(fit(pair_.file("folder.obj")), 4, "folder.obj: not a regular file");
   expect_refusal(fit(pair_.file("none.obj")), 4, "none.obj: No such file");
-  expect_refusal(fit(pair_.file("anchors.json")), 2, "the name must end in .obj, .ply, .stl or .off");
+  expect_refusal(fit(pair_.file("anchors.json")), 2,
+                 "the name must end in .obj, .ply, .stl, .off, .gltf or .glb");
 }
 
 }  // namespace

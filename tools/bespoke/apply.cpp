@@ -8,6 +8,7 @@
 #include "bespoke/apply/convert_product.h"
 #include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "length_option.h"
@@ -68,14 +69,15 @@ void require_known_endings(const ApplyArguments& arguments, const fs::path& prod
       throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
     return;
   }
-  if (has_product_ending(output) && !is_mesh_ending(output))
+  if (has_product_ending(output) && !can_write_product(output))
     throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
   if (!arguments.rigid.empty() || !arguments.similar.empty())
     throw CLI::ValidationError("apply",
                                "parts that keep their shape are known only in a file that keeps its kind and "
                                "its edges");
   require_mesh_ending("apply", output);
-  require_mesh_ending("apply", product);
+  if (!can_read_product(product))
+    throw CLI::ValidationError("apply", product.string() + " must end in " + read_product_endings());
 }
 
 std::vector<RigidPart> parts(const ApplyArguments& arguments) {
@@ -144,7 +146,7 @@ ProductSummary apply_one(const ApplyArguments& arguments, const std::string& nam
                          const std::vector<fs::path>& outputs, const OpenedMap& map,
                          const Progress& progress) {
   const MotionOptions motion = motion_options(arguments, map);
-  const bool measure_chords = !arguments.report.empty() && is_mesh_ending(name);
+  const bool measure_chords = !arguments.report.empty() && can_read_product(name);
   if (arguments.refine || !keeps_kind(name, outputs.front())) {
     std::optional<double> refine;
     if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);

@@ -9,8 +9,10 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/map_request.h"
+#include "bespoke/product/format_unit.h"
+#include "bespoke/product/mesh_io.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "length_option.h"
@@ -147,6 +149,10 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  for (const std::string& model : {arguments.source, arguments.target}) {
+    require_unit_of_format(model, anchors.unit);
+    if (anchors.unit.empty()) anchors.unit = unit_of_format(model);
+  }
   if (!arguments.anchors.empty() && anchors.pairs.empty() && arguments.fitted.empty())
     throw InvalidInput(
         arguments.anchors +
@@ -259,7 +265,7 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
 
 void add_file_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_option("SOURCE", arguments.source,
-                 "Reference model that products are designed around: OBJ, PLY, STL, OFF")
+                 "Reference model that products are designed around: " + read_product_endings())
       ->required();
   fit.add_option("TARGET", arguments.target, "Reference model that products shall fit")->required();
   fit.add_option("--anchors", arguments.anchors,

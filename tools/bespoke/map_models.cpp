@@ -14,7 +14,7 @@ void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
       ->type_name("MESH");
   app.add_option("--target", arguments.target, "Model that the map leads to")->required()->type_name("MESH");
   app.add_option("--product", arguments.products,
-                 "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+                 "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
   app.add_option("--confidence", arguments.confidence, "What `fit --confidence-out` wrote")
       ->type_name("FILE");

@@ -6,9 +6,9 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
-#include "bespoke/pipeline/open_map.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
 #include "commands.h"
@@ -97,7 +97,7 @@ void add_measure_command(CLI::App& app, const TakePlan& take) {
       ->type_name("MESH");
   measure
       ->add_option("--product", arguments->products,
-                   "Meshes or point sets around the source: OBJ, PLY, STL, OFF")
+                   "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
   measure->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
   measure->add_flag("--json", arguments->json, "Print one JSON object instead of lines");

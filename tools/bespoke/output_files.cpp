@@ -3,15 +3,13 @@
 #include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <fstream>
 #include <set>
 #include <system_error>
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
+#include "bespoke/product/product_io.h"
 
 namespace bespoke::command {
 namespace {
@@ -42,17 +40,9 @@ void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector
   }
 }
 
-bool is_mesh_ending(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  constexpr std::array known{".obj", ".ply", ".stl", ".off"};
-  return std::find(known.begin(), known.end(), ending) != known.end();
-}
-
 void require_mesh_ending(const std::string& option, const fs::path& path) {
-  if (!is_mesh_ending(path))
-    throw CLI::ValidationError(option, path.string() + " must end in .obj, .ply, .stl or .off");
+  if (!can_write_product(path))
+    throw CLI::ValidationError(option, path.string() + " must end in " + written_product_endings());
 }
 
 OutputFiles::~OutputFiles() {

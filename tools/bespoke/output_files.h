@@ -12,10 +12,7 @@ namespace bespoke::command {
 void require_safe_outputs(const std::vector<std::filesystem::path>& inputs,
                           const std::vector<std::filesystem::path>& outputs);
 
-/// Whether the ending is that of a mesh format.
-bool is_mesh_ending(const std::filesystem::path& path);
-
-/// Refuses an ending that is not that of a mesh format. Throws CLI::ValidationError.
+/// Refuses an ending that is not that of a format which faces are written in. Throws CLI::ValidationError.
 void require_mesh_ending(const std::string& option, const std::filesystem::path& path);
 
 /// The files that one run writes: all of them, or none.

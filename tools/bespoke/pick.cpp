@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/page/pick_scene.h"
+#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "output_files.h"
 #include "page_output.h"

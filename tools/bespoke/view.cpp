@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/page/view_scene.h"
+#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "map_models.h"
 #include "output_files.h"

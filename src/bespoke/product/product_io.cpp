@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
@@ -21,27 +22,40 @@ namespace {
 struct FaceFormat {
   std::string_view ending;
   Product (*read)(const InputFile&);
-  void (*write)(std::ostream&, const WrittenFaces&);
+  void (*write)(std::ostream&, const WrittenFaces&) = nullptr;  ///< where the format is written
 };
 
-constexpr std::array face_formats{
-    FaceFormat{".obj", read_obj_faces, write_obj_faces}, FaceFormat{".ply", read_ply_faces, write_ply_faces},
-    FaceFormat{".stl", read_stl_faces, write_stl_faces}, FaceFormat{".off", read_off_faces, write_off_faces}};
+constexpr std::array face_formats{FaceFormat{".obj", read_obj_faces, write_obj_faces},
+                                  FaceFormat{".ply", read_ply_faces, write_ply_faces},
+                                  FaceFormat{".stl", read_stl_faces, write_stl_faces},
+                                  FaceFormat{".off", read_off_faces, write_off_faces},
+                                  FaceFormat{".gltf", read_gltf_faces},
+                                  FaceFormat{".glb", read_gltf_faces}};
 
-const FaceFormat& face_format(const std::filesystem::path& path) {
+const FaceFormat* find_format(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto at = std::find_if(face_formats.begin(), face_formats.end(),
+                               [&](const FaceFormat& format) { return format.ending == ending; });
+  return at == face_formats.end() ? nullptr : &*at;
+}
+
+std::string endings(bool written) {
+  std::vector<std::string_view> known;
   for (const FaceFormat& format : face_formats)
-    if (format.ending == ending) return format;
-  throw InvalidInput(path.string() + ": the name must end in .obj, .ply, .stl or .off");
+    if (!written || format.write) known.push_back(format.ending);
+  std::string text;
+  for (const std::string_view& ending : known)
+    text.append(text.empty() ? "" : &ending == &known.back() ? " or " : ", ").append(ending);
+  return text;
 }
 
 void require_writable(const std::filesystem::path& path, const Product& product) {
   const double* const values = product.vertices.data();
   if (!std::all_of(values, values + product.vertices.size(), fits_float))
     throw InvalidInput("cannot write " + path.string() + ": a coordinate is not finite in single precision");
-  if (face_format(path).ending == ".stl" && product.corners.empty())
+  if (find_format(path)->ending == ".stl" && product.corners.empty())
     throw InvalidInput("cannot write " + path.string() + ": STL holds triangles only, and there are none");
 }
 
@@ -54,20 +68,32 @@ bool needs_doubles(const Points& vertices) {
 
 }  // namespace
 
+bool can_read_product(const std::filesystem::path& path) { return find_format(path) != nullptr; }
+
+bool can_write_product(const std::filesystem::path& path) {
+  const FaceFormat* const format = find_format(path);
+  return format && format->write;
+}
+
+std::string read_product_endings() { return endings(false); }
+std::string written_product_endings() { return endings(true); }
+
 Product read_product(const std::filesystem::path& path) {
-  const FaceFormat& format = face_format(path);
-  return format.read(InputFile(path));
+  const FaceFormat* const format = find_format(path);
+  if (!format) throw InvalidInput(path.string() + ": the name must end in " + read_product_endings());
+  return format->read(InputFile(path));
 }
 
 void write_product(const std::filesystem::path& path, const Product& product) {
-  const FaceFormat& format = face_format(path);
+  if (!can_write_product(path))
+    throw InvalidInput(path.string() + ": the name must end in " + written_product_endings());
   require_writable(path, product);
   WrittenFaces faces{product, {}, needs_doubles(product.vertices)};
   if (product.has_normals) faces.normals = vertex_normals({product.vertices, triangulated(product)});
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     errno = 0;
     std::ofstream stream(temporary, std::ios::binary);
-    format.write(stream, faces);
+    find_format(path)->write(stream, faces);
     stream.close();
     if (!stream) throw FileError("cannot write " + path.string() + ": " + std::strerror(errno));
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "bespoke/types.h"
@@ -17,13 +18,15 @@ struct Product {
   bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
 };
 
-/// OBJ, PLY (ascii and binary), STL or OFF, by the ending of the name, every number as the double that it
-/// says. Vertices keep their order and are never merged (STL, which has no shared vertices, is the exception:
-/// corners at exactly the same position become one vertex in order of first use, and a facet whose corners
-/// coincide is left out). A product may have no faces (a point set). Texture coordinates are read from OBJ
-/// and PLY. Throws FileError when the file cannot be opened, InvalidInput for an unknown ending, FormatError
-/// naming the file and the line (binary: the element) of a bad index, number or face, and for coordinates
-/// beyond the range of floats, in which maps are stored.
+/// OBJ, PLY (ascii and binary), STL, OFF or glTF (.gltf, .glb), by the ending of the name, every number as
+/// the double that it says. Vertices keep their order and are never merged. STL, which shares no vertices,
+/// and glTF, which divides surfaces along the seams of their texture, are the exceptions: corners at exactly
+/// the same position become one vertex in order of first use, and a triangle whose corners coincide is left
+/// out. Of a glTF file all triangles are read where its nodes show them, without morph targets, in its bind
+/// pose. A product may have no faces (a point set). Texture coordinates are read from OBJ and PLY. Throws
+/// FileError when the file cannot be opened, InvalidInput for an unknown ending, FormatError naming the file
+/// and the line (binary: the element) of a bad index, number or face, and for coordinates beyond the range of
+/// floats, in which maps are stored.
 Product read_product(const std::filesystem::path& path);
 
 /// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as
@@ -32,6 +35,14 @@ Product read_product(const std::filesystem::path& path);
 /// STL holds triangles without texture, so polygons become fans there. Atomic. Throws FileError,
 /// InvalidInput for an unknown ending, for coordinates that a float cannot hold, and for a point set as STL.
 void write_product(const std::filesystem::path& path, const Product& product);
+
+/// By the ending of the name.
+bool can_read_product(const std::filesystem::path& path);
+bool can_write_product(const std::filesystem::path& path);
+
+/// ".obj, .ply, … or .glb"
+std::string read_product_endings();
+std::string written_product_endings();
 
 /// Polygons as triangle fans about their first corner, in place.
 Faces triangulated(const Product& product);

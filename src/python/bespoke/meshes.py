@@ -31,7 +31,7 @@ def _arrays(mesh: Mesh, what: str) -> tuple[npt.NDArray[np.float64], npt.NDArray
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Reads OBJ, PLY, STL or OFF, by the ending of the name; polygons become triangles.
+    """Reads OBJ, PLY, STL, OFF or glTF, by the ending of the name; polygons become triangles.
 
     Raises FileError, FormatError (naming file and line), InvalidInput for an unknown ending.
     """

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/equal_positions.h"
 
 namespace bespoke {
 namespace {
@@ -80,6 +81,33 @@ Product GatheredFaces::product(bool has_normals) {
   product.texture.resize(2, static_cast<Eigen::Index>(product.corners.size()));
   for (std::size_t corner = 0; corner < product.corners.size(); ++corner)
     product.texture.col(static_cast<Eigen::Index>(corner)) = of_points.col(product.corners[corner]);
+  return product;
+}
+
+Product joined_triangles(const Points& corners) {
+  const EqualPositions equal = equal_positions(corners);
+  std::vector<int> first(static_cast<std::size_t>(corners.cols()));
+  for (std::size_t group = 0; group < equal.groups(); ++group)
+    for (const int corner : equal.group(group))
+      first[static_cast<std::size_t>(corner)] = equal.group(group).front();
+  Product product;
+  product.polygon_start.push_back(0);
+  std::vector<int> vertex(first.size(), -1);
+  std::vector<int> used;
+  for (std::size_t facet = 0; facet + 2 < first.size(); facet += 3) {
+    const int a = first[facet], b = first[facet + 1], c = first[facet + 2];
+    if (a == b || b == c || c == a) continue;
+    for (const int corner : {a, b, c}) {
+      int& number = vertex[static_cast<std::size_t>(corner)];
+      if (number < 0) {
+        number = static_cast<int>(used.size());
+        used.push_back(corner);
+      }
+      product.corners.push_back(number);
+    }
+    product.polygon_start.push_back(static_cast<int>(product.corners.size()));
+  }
+  product.vertices = corners(Eigen::all, used);
   return product;
 }
 

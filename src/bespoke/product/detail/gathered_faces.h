@@ -36,6 +36,11 @@ class GatheredFaces {
 /// All of a text format's file.
 GatheredFaces gather_text(const InputFile& file, const TextFormat& format);
 
+/// Triangles of formats without shared vertices, or that share them only where all else is equal too: three
+/// corners each, 3×3m. One vertex for all corners at exactly one place, in the order of their first use;
+/// triangles of which two corners coincide are left out.
+Product joined_triangles(const Points& corners);
+
 /// What is wrong with a face: fewer than three corners, or one that occurs twice, numbered from `first`.
 /// Empty when nothing is.
 std::string face_fault(const int* corners, std::size_t count, int first);

@@ -1,0 +1,35 @@
+#include "bespoke/product/format_unit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "bespoke/error.h"
+#include "support/error_message.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string refusal(const std::string& model, const std::string& unit) {
+  return test::error_message<InvalidInput>([&] { require_unit_of_format(model, unit); });
+}
+
+TEST(FormatUnit, OfGltfIsTheMetre) {
+  EXPECT_EQ(unit_of_format("scan.GLB"), "m");
+  EXPECT_EQ(unit_of_format("scan.gltf"), "m");
+  EXPECT_EQ(unit_of_format("scan.obj"), "");
+}
+
+TEST(FormatUnit, RefusesAnotherOneByItsFactor) {
+  EXPECT_THAT(refusal("scan.glb", "cm"),
+              AllOf(HasSubstr("scan.glb"), HasSubstr("in cm"), HasSubstr("by 0.01 ")));
+  EXPECT_THAT(refusal("scan.glb", "Inch"), HasSubstr("by 0.0254 "));
+  EXPECT_THAT(refusal("scan.glb", "ells"), HasSubstr("the anchors are in ells"));
+  for (const char* unit : {"", "m", "Metres"}) EXPECT_EQ(refusal("scan.glb", unit), "accepted") << unit;
+  EXPECT_EQ(refusal("scan.obj", "cm"), "accepted");
+}
+
+}  // namespace
+}  // namespace bespoke
