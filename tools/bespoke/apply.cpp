@@ -10,6 +10,7 @@
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
+#include "catalog_option.h"
 #include "commands.h"
 #include "length_option.h"
 #include "name_option.h"
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 
 struct ApplyArguments {
   std::string map;
+  CatalogOption catalog;
   std::vector<std::string> products;
   std::string output;
   std::string out_dir;
@@ -105,7 +107,8 @@ std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments)
 }
 
 std::vector<JobFile> inputs(const ApplyArguments& arguments) {
-  std::vector<JobFile> files{{"map", arguments.map}};
+  std::vector<JobFile> files = named_files({{"map", arguments.map}});
+  for (JobFile& file : inputs(arguments.catalog)) files.push_back(std::move(file));
   for (const std::string& product : arguments.products) files.push_back({"product", product});
   return files;
 }
@@ -181,8 +184,12 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   if (!arguments.out_dir.empty()) fs::create_directories(arguments.out_dir);
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
+  const fs::path map_file =
+      arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
   const std::shared_ptr<const OpenedMap> map =
-      context.maps.open(arguments.map, map_form(arguments), {.untrusted = arguments.untrusted});
+      context.maps.open(map_file, map_form(arguments), {.untrusted = arguments.untrusted});
+  // A batch knows which jobs share a map only where they name it.
+  if (arguments.catalog.is_used()) context.maps.close(map_file);
 
   OutputFiles files;
   std::vector<AppliedProduct> applied;
@@ -231,16 +238,31 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
       "is split)");
 }
 
+/// The arguments, with products in their place: where the map is found, the first stands in that of the map.
+ApplyArguments taken(ApplyArguments& arguments) {
+  ApplyArguments given = std::exchange(arguments, {});
+  require_valid(given.catalog);
+  if (given.catalog.is_used())
+    given.products.insert(given.products.begin(), std::exchange(given.map, {}));
+  else if (given.products.empty())
+    throw CLI::RequiredError("PRODUCT");
+  return given;
+}
+
+/// What jobs of a batch hold in memory together.
+std::optional<fs::path> shared_map(const ApplyArguments& arguments) {
+  return arguments.map.empty() ? std::nullopt : std::optional<fs::path>(arguments.map);
+}
+
 }  // namespace
 
 void add_apply_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ApplyArguments>();
   CLI::App* apply = app.add_subcommand("apply", "Carry products across a map");
-  apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
-  apply
-      ->add_option("PRODUCT", arguments->products,
-                   "Meshes or point sets around the source, by their endings: " + product_endings())
-      ->required();
+  apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`; not with --from")->required();
+  apply->add_option("PRODUCT", arguments->products,
+                    "Meshes or point sets around the source, by their endings: " + product_endings());
+  add_catalog_option(*apply, arguments->catalog);
   apply->add_option("-o,--output", arguments->output, "File to write, for one product")->type_name("OUT");
   apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")
       ->type_name("DIR");
@@ -275,10 +297,11 @@ void add_apply_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke apply map.vdb dress.obj -o dress_on_man.obj\n"
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
-      "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24");
+      "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24\n"
+      "  bespoke apply dress.obj --from season --source woman.obj -o dress_on_man.obj");
   apply->callback([arguments, take] {
-    const ApplyArguments given = std::exchange(*arguments, {});
-    take({given.run, inputs(given), outputs(given, plan_outputs(given)), given.map,
+    const ApplyArguments given = taken(*arguments);
+    take({given.run, inputs(given), outputs(given, plan_outputs(given)), shared_map(given),
           [given](const RunContext& context) { run(given, context); }});
   });
 }

@@ -21,7 +21,8 @@ struct JobCommand {
 constexpr std::array commands{
     JobCommand{"fit", add_fit_command},       JobCommand{"apply", add_apply_command},
     JobCommand{"invert", add_invert_command}, JobCommand{"compose", add_compose_command},
-    JobCommand{"check", add_check_command},   JobCommand{"measure", add_measure_command}};
+    JobCommand{"check", add_check_command},   JobCommand{"measure", add_measure_command},
+    JobCommand{"diff", add_diff_command}};
 
 // What the batch decides for all of its jobs.
 constexpr std::array keys_of_the_batch{"threads", "quiet", "help"};
@@ -65,6 +66,12 @@ void add_option_text(const ManifestEntry& entry, const CLI::Option& option,
     arguments.push_back("--" + entry.key + (is_flag ? "" : "=" + value));
 }
 
+/// Whether a job names a catalogue instead of a map.
+bool finds_map(const ManifestJob& line) {
+  return std::any_of(line.entries.begin(), line.entries.end(),
+                     [](const ManifestEntry& entry) { return entry.key == "from"; });
+}
+
 /// As the command line would give them. Positional ones come last, where nothing can be taken for an option.
 std::vector<std::string> arguments_of(const ManifestJob& line, const CLI::App& command) {
   std::vector<std::string> arguments{line.command, "--quiet"};
@@ -83,6 +90,7 @@ std::vector<std::string> arguments_of(const ManifestJob& line, const CLI::App& c
     if (!option->get_positional()) continue;
     const std::string name = option->get_name(true);
     const auto values = positional.find(name);
+    if (values == positional.end() && name == "MAP" && finds_map(line)) continue;
     if (values == positional.end()) throw InvalidInput("\"" + lower_case(name) + "\" is missing");
     if (option->get_items_expected_max() == 1 && values->second.size() > 1)
       throw InvalidInput("\"" + lower_case(name) + "\" takes one value");

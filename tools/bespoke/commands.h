@@ -10,6 +10,7 @@ namespace bespoke::command {
 void add_export_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
 void add_grade_command(CLI::App& app);
+void add_catalog_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
 void add_view_command(CLI::App& app);
@@ -25,6 +26,7 @@ void add_check_command(CLI::App& app, const TakePlan& take);
 void add_invert_command(CLI::App& app, const TakePlan& take);
 void add_compose_command(CLI::App& app, const TakePlan& take);
 void add_measure_command(CLI::App& app, const TakePlan& take);
+void add_diff_command(CLI::App& app, const TakePlan& take);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

@@ -37,8 +37,10 @@ int main(int argc, char** argv) {
   add_invert_command(app, run_at_once);
   add_compose_command(app, run_at_once);
   add_measure_command(app, run_at_once);
+  add_diff_command(app, run_at_once);
   add_batch_command(app);
   add_grade_command(app);
+  add_catalog_command(app);
   add_export_command(app);
   add_samples_command(app);
   add_view_command(app);

@@ -1,0 +1,117 @@
+#include "bespoke/catalog/catalog.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "bespoke/error.h"
+#include "bespoke/page/source_thumbnail.h"
+#include "bespoke/parallel.h"
+#include "bespoke/sha256.h"
+
+namespace bespoke {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int thumbnail_pixels = 96;
+
+// Assets in memory at a time, at most: some tens of megabytes each.
+constexpr std::size_t files_per_round = 8;
+
+bool is_hidden(const fs::path& path) { return path.filename().string().starts_with("."); }
+
+std::vector<fs::path> vdb_files(const fs::path& directory) {
+  if (!fs::is_directory(directory)) throw FileError(directory.string() + ": is no directory");
+  std::vector<fs::path> files;
+  std::error_code error;
+  fs::recursive_directory_iterator entry(directory, fs::directory_options::skip_permission_denied, error),
+      end;
+  for (; !error && entry != end; entry.increment(error)) {
+    if (entry->is_directory() && is_hidden(entry->path())) entry.disable_recursion_pending();
+    if (entry->is_regular_file() && entry->path().extension() == ".vdb" && !is_hidden(entry->path()))
+      files.push_back(entry->path());
+  }
+  if (error) throw FileError(directory.string() + ": cannot be listed: " + error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string file_hash(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> block(std::size_t{1} << 20);
+  Sha256 hash;
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
+    hash.update(block.data(), static_cast<std::size_t>(file.gcount()));
+  if (!file.eof()) throw FileError(path.string() + ": cannot be read");
+  return hash.finish();
+}
+
+CatalogEntry entry_of(const fs::path& path, const ReadAssetOptions& options) {
+  const Asset asset = read_asset(path, options);
+  const Certificate certificate = whole_certificate(asset);
+  CatalogEntry entry;
+  entry.sha256 = file_hash(path);
+  entry.bytes = fs::file_size(path);
+  entry.unit = asset.record.unit;
+  entry.source = asset.record.source;
+  entry.target = asset.record.target;
+  entry.surface_fit = asset.record.surface_fit_method;
+  entry.elastic = asset.record.elastic_method;
+  entry.lambda = asset.record.lambda;
+  entry.tolerance = asset.record.tolerance;
+  entry.error_p99 = asset.record.bake_error.p99;
+  entry.error_max = asset.record.bake_error.max;
+  entry.bijection = certificate.is_bijection();
+  entry.least_determinant = certificate.least_determinant;
+  entry.undecided = certificate.undecided;
+  entry.folded = certificate.folded;
+  entry.steps = asset.steps.size();
+  entry.voxels = voxel_count(asset);
+  entry.anchors = asset.record.anchors.size();
+  entry.thumbnail = source_thumbnail(asset, thumbnail_pixels);
+  return entry;
+}
+
+using Indexed = std::variant<CatalogEntry, RefusedFile>;
+
+Indexed index_file(const fs::path& path, const std::string& name, const ReadAssetOptions& options) {
+  try {
+    CatalogEntry entry = entry_of(path, options);
+    entry.file = name;
+    return entry;
+  } catch (const Error& error) {
+    // The catalogue may be moved with its directory: it does not say where that lay.
+    std::string reason = error.what();
+    if (reason.starts_with(path.string() + ": ")) reason.erase(0, path.string().size() + 2);
+    return RefusedFile{name, reason};
+  }
+}
+
+}  // namespace
+
+Catalog index_assets(const fs::path& directory, const ReadAssetOptions& options, const Progress& progress) {
+  const std::vector<fs::path> files = vdb_files(directory);
+  std::vector<Indexed> indexed(files.size());
+  for (std::size_t first = 0; first < files.size(); first += files_per_round) {
+    progress.step("catalog", first, files.size());
+    const std::size_t count = std::min(files_per_round, files.size() - first);
+    parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = first + begin; i < first + end; ++i)
+        indexed[i] = index_file(files[i], files[i].lexically_relative(directory).generic_string(), options);
+    });
+  }
+  progress.step("catalog", files.size(), files.size());
+  Catalog catalog;
+  for (Indexed& file : indexed) {
+    if (CatalogEntry* entry = std::get_if<CatalogEntry>(&file))
+      catalog.assets.push_back(std::move(*entry));
+    else
+      catalog.refused.push_back(std::get<RefusedFile>(std::move(file)));
+  }
+  return catalog;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,62 @@
+#include "bespoke/catalog/find_map.h"
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+// Of 16 million values: two models of a catalogue of a thousand agree in them with a chance of 3 %, and then
+// both are named.
+constexpr std::size_t least_digits = 6;
+constexpr std::size_t named_maps = 10;
+
+void require_digits(const std::string& hash, const char* role) {
+  const bool are_digits =
+      std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
+  if (!are_digits || hash.size() < least_digits)
+    throw InvalidInput(std::string("the ") + role + "'s hash \"" + hash + "\" is not of " +
+                       std::to_string(least_digits) + " hexadecimal digits or more");
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::string listed(const std::vector<const CatalogEntry*>& entries) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(named_maps, entries.size()); ++i)
+    text += (i == 0 ? "" : ", ") + entries[i]->file + " (target " +
+            entries[i]->target.hash.substr(0, 2 * least_digits) + ")";
+  if (entries.size() > named_maps) text += " and " + std::to_string(entries.size() - named_maps) + " more";
+  return text;
+}
+
+}  // namespace
+
+const CatalogEntry& find_map(const Catalog& catalog, const ModelHashes& models) {
+  require_digits(models.source, "source");
+  if (!models.target.empty()) require_digits(models.target, "target");
+  const std::string source = lower_case(models.source), target = lower_case(models.target);
+  std::vector<const CatalogEntry*> from_source, found;
+  for (const CatalogEntry& entry : catalog.assets) {
+    if (!entry.source.hash.starts_with(source)) continue;
+    from_source.push_back(&entry);
+    if (entry.target.hash.starts_with(target)) found.push_back(&entry);
+  }
+  if (found.size() == 1) return *found.front();
+  if (from_source.empty())
+    throw InvalidInput("no map of the catalogue leads from the source " + source + "; it has " +
+                       std::to_string(catalog.assets.size()) + " maps");
+  if (found.empty())
+    throw InvalidInput("no map leads from the source " + source + " to the target " + target +
+                       "; from this source there are " + listed(from_source));
+  throw InvalidInput("the target must be named, or the map itself: from the source " + source +
+                     " there are " + listed(found));
+}
+
+}  // namespace bespoke
