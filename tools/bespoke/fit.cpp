@@ -153,7 +153,8 @@ void run(const FitArguments& arguments, const RunContext& context) {
     require_unit_of_format(model, anchors.unit);
     if (anchors.unit.empty()) anchors.unit = unit_of_format(model);
   }
-  if (!arguments.anchors.empty() && anchors.pairs.empty() && arguments.fitted.empty())
+  if (!arguments.anchors.empty() && anchors.pairs.empty() && anchors.curves.empty() &&
+      arguments.fitted.empty())
     throw InvalidInput(
         arguments.anchors +
         ": the fit needs 3 anchor pairs that are not collinear; there are 0; without --anchors "

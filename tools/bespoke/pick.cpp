@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/error.h"
 #include "bespoke/page/pick_scene.h"
 #include "bespoke/product/mesh_io.h"
 #include "commands.h"
@@ -29,6 +30,10 @@ void run(const PickArguments& arguments) {
   const PickModel target{arguments.target, read_triangle_mesh(arguments.target)};
   std::optional<Anchors> anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  if (anchors && !anchors->curves.empty())
+    throw InvalidInput(
+        arguments.anchors +
+        ": has curves, which the page does not show and would not save; give it the pairs alone");
   const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
   const std::string title = "Anchors of " + name(arguments.source) + " and " + name(arguments.target);
   OutputFiles outputs;

@@ -126,6 +126,22 @@ std::string indices_text(const Anchors& anchors, const AnchorFileOptions& option
 
 // ---- this project's own
 
+Json polyline_json(const Points& points) {
+  Json json = Json::array();
+  for (const auto& point : points.colwise()) json.push_back({point.x(), point.y(), point.z()});
+  return json;
+}
+
+Json curve_json(const AnchorCurve& curve) {
+  Json json = Json::object();
+  if (!curve.name.empty()) json["name"] = curve.name;
+  json["a"] = polyline_json(curve.a);
+  json["b"] = polyline_json(curve.b);
+  if (curve.closed) json["closed"] = true;
+  if (!curve.fixed.empty()) json["fixed"] = curve.fixed;
+  return json;
+}
+
 std::string json_text(const Anchors& anchors) {
   Json pairs = Json::array();
   for (const AnchorPair& pair : anchors.pairs) {
@@ -140,6 +156,7 @@ std::string json_text(const Anchors& anchors) {
   Json document = Json::object();
   if (!anchors.unit.empty()) document["units"] = anchors.unit;
   document["pairs"] = std::move(pairs);
+  for (const AnchorCurve& curve : anchors.curves) document["curves"].push_back(curve_json(curve));
   return document.dump(1) + "\n";
 }
 

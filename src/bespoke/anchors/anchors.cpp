@@ -78,15 +78,20 @@ Vector3 json_point(const Json& pair, const char* key, const std::string& where) 
   return point;
 }
 
+/// Empty without one.
+std::string json_name(const Json& value, const std::string& position) {
+  const auto name = value.find("name");
+  if (name == value.end()) return "";
+  if (!name->is_string())
+    throw FormatError(position + ": \"name\" is " + name->type_name() + ", not a string");
+  require_printable(name->get<std::string>(), position);
+  return name->get<std::string>();
+}
+
 AnchorPair json_pair(const Json& value, const std::string& position) {
   if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   AnchorPair pair;
-  if (const auto name = value.find("name"); name != value.end()) {
-    if (!name->is_string())
-      throw FormatError(position + ": \"name\" is " + name->type_name() + ", not a string");
-    pair.name = name->get<std::string>();
-    require_printable(pair.name, position);
-  }
+  pair.name = json_name(value, position);
   const std::string where = pair.name.empty() ? position : position + " (\"" + pair.name + "\")";
   pair.a = json_point(value, "a", where);
   pair.b = json_point(value, "b", where);
@@ -104,6 +109,69 @@ AnchorPair json_pair(const Json& value, const std::string& position) {
   return pair;
 }
 
+Points json_polyline(const Json& curve, const char* key, const std::string& where) {
+  const auto found = curve.find(key);
+  if (found == curve.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
+  if (!found->is_array() || found->size() < 2)
+    throw FormatError(where + ": \"" + key + "\" must be an array of two points at least");
+  Points points(3, static_cast<Eigen::Index>(found->size()));
+  for (std::size_t i = 0; i < found->size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) =
+        json_point({{key, (*found)[i]}}, key, where + ": point " + std::to_string(i));
+  for (Eigen::Index i = 1; i < points.cols(); ++i)
+    if (points.col(i) != points.col(0)) return points;
+  throw FormatError(where + ": \"" + key + "\" has all its points at one place");
+}
+
+std::vector<std::pair<int, int>> json_fixed(const Json& list, const AnchorCurve& curve,
+                                            const std::string& where) {
+  const std::string rule = where +
+                           ": \"fixed\" must be an array of [i, j], a point of a and one of b, by their "
+                           "numbers from 0, rising on both sides";
+  if (!list.is_array()) throw FormatError(rule);
+  std::vector<std::pair<int, int>> fixed;
+  for (const Json& entry : list) {
+    const auto is_number = [](const Json& value, Eigen::Index count) {
+      return value.is_number_unsigned() && value.get<std::uint64_t>() < static_cast<std::uint64_t>(count);
+    };
+    if (!entry.is_array() || entry.size() != 2 || !is_number(entry[0], curve.a.cols()) ||
+        !is_number(entry[1], curve.b.cols()))
+      throw FormatError(rule);
+    fixed.emplace_back(entry[0].get<int>(), entry[1].get<int>());
+    const std::size_t last = fixed.size() - 1;
+    if (last > 0 &&
+        !(fixed[last - 1].first < fixed[last].first && fixed[last - 1].second < fixed[last].second))
+      throw FormatError(rule);
+  }
+  return fixed;
+}
+
+AnchorCurve json_curve(const Json& value, const std::string& position) {
+  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
+  AnchorCurve curve;
+  curve.name = json_name(value, position);
+  const std::string where = curve.name.empty() ? position : position + " (\"" + curve.name + "\")";
+  curve.a = json_polyline(value, "a", where);
+  curve.b = json_polyline(value, "b", where);
+  if (const auto closed = value.find("closed"); closed != value.end()) {
+    if (!closed->is_boolean()) throw FormatError(where + ": \"closed\" must be true or false");
+    curve.closed = closed->get<bool>();
+  }
+  if (const auto fixed = value.find("fixed"); fixed != value.end())
+    curve.fixed = json_fixed(*fixed, curve, where);
+  return curve;
+}
+
+/// The array under a key; empty without it.
+const Json& json_list(const Json& document, const char* key, const std::string& file) {
+  static const Json none = Json::array();
+  const auto list = document.find(key);
+  if (list == document.end()) return none;
+  if (!list->is_array())
+    throw FormatError(file + ": \"" + key + "\" is " + list->type_name() + ", not an array");
+  return *list;
+}
+
 Anchors parse_json(const std::string& text, const std::string& file) {
   Json document;
   try {
@@ -119,11 +187,14 @@ Anchors parse_json(const std::string& text, const std::string& file) {
     anchors.unit = units->get<std::string>();
     require_printable(anchors.unit, file + ": \"units\"");
   }
-  const auto pairs = document.find("pairs");
-  if (pairs == document.end()) throw FormatError(file + ": key \"pairs\" is missing");
-  if (!pairs->is_array()) throw FormatError(file + ": \"pairs\" is " + pairs->type_name() + ", not an array");
-  for (std::size_t index = 0; index < pairs->size(); ++index)
-    anchors.pairs.push_back(json_pair((*pairs)[index], file + ": pair " + std::to_string(index)));
+  if (!document.contains("pairs") && !document.contains("curves"))
+    throw FormatError(file + ": key \"pairs\" is missing");
+  const Json& pairs = json_list(document, "pairs", file);
+  for (std::size_t index = 0; index < pairs.size(); ++index)
+    anchors.pairs.push_back(json_pair(pairs[index], file + ": pair " + std::to_string(index)));
+  const Json& curves = json_list(document, "curves", file);
+  for (std::size_t index = 0; index < curves.size(); ++index)
+    anchors.curves.push_back(json_curve(curves[index], file + ": curve " + std::to_string(index)));
   return anchors;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bespoke/types.h"
@@ -22,16 +23,29 @@ struct AnchorPair {
   std::optional<double> sigma = std::nullopt;
 };
 
+/// A line on the source and its counterpart on the target, for instance a waist line. What lies on one goes
+/// onto the other; where along it is found by the fit, but for fixed points.
+struct AnchorCurve {
+  std::string name;  ///< may be empty
+  Points a;          ///< 3×n, a polyline, source frame, mesh units
+  Points b;          ///< 3×m, target frame, mesh units
+  bool closed = false;
+  /// Points of a and of b, by number from 0, that belong together; rising on both sides.
+  std::vector<std::pair<int, int>> fixed = {};
+};
+
 struct Anchors {
   std::string unit;  ///< as the file says it, for instance "cm"; empty when it does not
   std::vector<AnchorPair> pairs;
+  std::vector<AnchorCurve> curves = {};
 };
 
 /// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"? or
-/// "sigma"?}]} or, by the ending .csv, rows name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header
-/// row, which may also name sigma alone or first. Throws FileError, or FormatError naming the file and the
-/// line or the pair and what is wrong (not finite, weight ≤ 0, sigma < 0, both of them, missing key, two
-/// pairs of one name).
+/// "sigma"?}], "curves": [{"name", "a": [[x,y,z], …], "b": [[x,y,z], …], "closed"?, "fixed"?: [[i,j], …]}]}
+/// (either list may be missing) or, by the ending .csv, rows name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an
+/// optional header row, which may also name sigma alone or first. Throws FileError, or FormatError naming the
+/// file and the line or the pair and what is wrong (not finite, weight ≤ 0, sigma < 0, both of them, missing
+/// key, two pairs of one name).
 Anchors read_anchors(const std::filesystem::path& path);
 
 /// Appends the eight corners of the bounding boxes as exact pairs (σ = 0) named "corner_000" … "corner_111"

@@ -6,7 +6,9 @@
 #include <string>
 #include <utility>
 
+#include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/error.h"
+#include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/rbf/global_rbf.h"
 #include "bespoke/rigid/rigid_alignment.h"
@@ -165,13 +167,16 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.seconds = watch.seconds();
 }
 
-/// Γ and H'_a by anchors. Returns these as the fit took them.
+/// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
+/// anchors as the fit took them.
 Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                       const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+                       const Anchors& anchors, const Anchors& given, const FitOptions& options,
+                       const Progress& progress) {
   FitSummary& summary = result.summary;
   RatedAnchors rated = rate_anchors(anchors, source, target);
   summary.accuracy = std::move(rated.accuracy);
   result.anchor_sigma = std::move(rated.sigmas);
+  result.anchor_sigma.resize(given.pairs.size());
   Pairs pairs = pairs_of(rated.anchors);
 
   // IV.A: Γ. From here on everything is in the source frame.
@@ -186,7 +191,7 @@ Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const 
 
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
-  const Points warped = warp_coarsely(source, pairs, anchors, summary.coarse.emplace());
+  const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
 
   // IV.C: H'_a.
   SurfaceFit fit = fit_surface(
@@ -197,6 +202,32 @@ Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const 
   summary.surface = std::move(fit.summary);
   summary.surface_method = options.surface_fit.method;
   return rated.anchors;
+}
+
+/// Where points on or near the source are once it is laid on the target, target frame.
+Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, const Points& x) {
+  const ClosestPointTree tree(source);
+  const Points vertices = laid.target_from_source * laid.fitted_vertices;
+  Points places = Points::Zero(3, x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const SurfacePoint foot = *tree.closest(x.col(i));
+    for (int corner = 0; corner < 3; ++corner)
+      places.col(i) += foot.barycentric[corner] * vertices.col(source.faces(corner, foot.face));
+  }
+  return places;
+}
+
+/// The same with curves, in two fits: the first may move along them, and across within what matching by
+/// length leaves open; the second meets them where the first came to lie.
+Anchors lay_by_curves(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                      const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  constexpr double spacing = 0.01, sliding = 0.02;  // of the source's diagonal
+  const double size = diagonal(source.vertices);
+  CurvePairs curves(anchors, spacing * size);
+  FittedMapping first;
+  lay_by_anchors(first, source, target, curves.pairs(sliding * size), anchors, options, progress);
+  curves.slide(laid_with_source(first, source, curves.sources()));
+  return lay_by_anchors(result, source, target, curves.pairs(0), anchors, options, progress);
 }
 
 /// Γ and H'_a by the two surfaces alone.
@@ -212,6 +243,25 @@ void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const Tr
   summary.surface = std::move(fit.surface.summary);
   summary.surface_method = options.surface_fit.method;
   summary.unanchored = std::move(fit.summary);
+}
+
+Anchors lay(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+            const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  if (!anchors.curves.empty()) return lay_by_curves(result, source, target, anchors, options, progress);
+  if (!anchors.pairs.empty())
+    return lay_by_anchors(result, source, target, anchors, anchors, options, progress);
+  lay_by_surfaces(result, source, target, options, progress);
+  return {};
+}
+
+void judge_curves(FittedMapping& result, const std::vector<AnchorCurve>& curves) {
+  constexpr int places = 1000;
+  for (const AnchorCurve& curve : curves) {
+    Points along(3, places);
+    for (int i = 0; i < places; ++i) along.col(i) = point_along(curve.a, curve.closed, i / (places - 1.0));
+    const Points mapped = result.target_from_source * (*result.elastic)(along);
+    result.summary.curves.push_back({curve.name, distance_from_polyline(curve.b, curve.closed, mapped)});
+  }
 }
 
 }  // namespace
@@ -247,16 +297,13 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   require_usable(source, anchors, options);
   require_valid(target, "target");
   FittedMapping result;
-  Anchors rated;
-  if (anchors.pairs.empty())
-    lay_by_surfaces(result, source, target, options, progress);
-  else
-    rated = lay_by_anchors(result, source, target, anchors, options, progress);
+  const Anchors rated = lay(result, source, target, anchors, options, progress);
   hold_parts_apart(result, source, options, progress);
 
   // IV.D, IV.E: E.
   fit_elastic_map(result, source, rated, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
+  judge_curves(result, anchors.curves);
   return result;
 }
 
@@ -266,10 +313,7 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
   require_usable(source, anchors, options);
   require_valid(target, "target");
   FittedMapping result;
-  if (anchors.pairs.empty())
-    lay_by_surfaces(result, source, target, options, progress);
-  else
-    lay_by_anchors(result, source, target, anchors, options, progress);
+  lay(result, source, target, anchors, options, progress);
   return result;
 }
 
@@ -279,6 +323,8 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   require_usable(source, anchors, options);
   require_valid(fitted, "fitted source");
   require_same_connectivity(source, fitted);
+  if (!anchors.curves.empty())
+    throw InvalidInput("curves lead the surface fitting, but the fitted source is given; leave them out");
   FittedMapping result;
 
   const Stopwatch rigid_watch;

@@ -60,6 +60,18 @@ std::string to_string(const ElasticSummary& summary) {
   return line;
 }
 
+std::string to_string(const std::vector<CurveSummary>& curves) {
+  std::string line;
+  for (const CurveSummary& curve : curves) {
+    char distance[32];
+    std::snprintf(distance, sizeof distance, "%.4g", curve.largest_distance);
+    line += (line.empty() ? "" : ", ") +
+            (curve.name.empty() ? std::string("a curve") : '"' + curve.name + '"') + " at most " + distance +
+            " off";
+  }
+  return line;
+}
+
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageLine> lines;
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
@@ -72,6 +84,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
                                                   : "given: the fitted mesh as it is"});
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
+  if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});
   if (summary.bake) lines.push_back({"bake", to_string(*summary.bake)});
   return lines;
 }

@@ -48,6 +48,12 @@ struct ElasticSummary {
   double seconds = 0;
 };
 
+/// How well the map takes a curve of the source onto its counterpart.
+struct CurveSummary {
+  std::string name;
+  double largest_distance = 0;  ///< of places along the mapped curve from the target's, mesh units
+};
+
 /// What every stage of a fit found.
 struct FitSummary {
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
@@ -58,6 +64,7 @@ struct FitSummary {
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
   ElasticSummary elastic;
+  std::vector<CurveSummary> curves;
   std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map
   std::vector<BakeSummary> bake_steps;  ///< of a chain, one per step
 };
@@ -66,11 +73,12 @@ struct FitSummary {
 std::string to_string(const RigidSummary& summary);
 std::string to_string(const CoarseSummary& summary, const Anchors& anchors);
 std::string to_string(const ElasticSummary& summary);
+std::string to_string(const std::vector<CurveSummary>& curves);
 
 /// A stage that ran.
 struct StageLine {
-  std::string
-      name;  ///< "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic", "bake"
+  std::string name;  ///< "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic",
+                     ///< "curves", "bake"
   std::string line;
 };
 

@@ -195,6 +195,13 @@ Json to_json(const ElasticSummary& summary) {
   return json;
 }
 
+Json to_json(const std::vector<CurveSummary>& curves) {
+  Json list = Json::array();
+  for (const CurveSummary& curve : curves)
+    list.push_back({{"name", curve.name}, {"largest_distance", curve.largest_distance}});
+  return {{"curves", std::move(list)}};
+}
+
 std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageJson> stages;
   const auto add = [&](const char* name, const Json& found, double seconds) {
@@ -213,6 +220,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     add("surface-fit", {{"method", "given"}}, 0);
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
+  if (!summary.curves.empty()) add("curves", to_json(summary.curves), 0);
   if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);
   return stages;
 }

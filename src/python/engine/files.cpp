@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/error.h"
 #include "bespoke/product/mesh_io.h"
 #include "numpy_points.h"
 #include "parts.h"
@@ -31,6 +32,8 @@ void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArra
 /// (unit, [(name, a, b, weight or None, sigma or None), …])
 py::tuple anchors_of_file(const fs::path& path) {
   const Anchors anchors = read_anchors(path);
+  if (!anchors.curves.empty())
+    throw InvalidInput(path.string() + ": has curves, which only the command's fit takes so far");
   py::list pairs;
   for (const AnchorPair& pair : anchors.pairs) {
     const py::object weight = std::isinf(pair.weight) ? py::object(py::none()) : py::float_(pair.weight);

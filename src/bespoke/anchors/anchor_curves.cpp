@@ -1,0 +1,177 @@
+#include "bespoke/anchors/anchor_curves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/rigid/rigid_alignment.h"
+
+namespace bespoke {
+namespace {
+
+/// Places at which a closed curve without fixed points may begin.
+constexpr int starts = 180;
+constexpr std::size_t pairs_that_fix_a_turn = 3;
+
+Eigen::Index segments(const Points& polyline, bool closed) { return polyline.cols() - (closed ? 0 : 1); }
+
+Vector3 end_of(const Points& polyline, Eigen::Index segment) {
+  return polyline.col((segment + 1) % polyline.cols());
+}
+
+/// Length from the first point to every point, and, behind them, of the whole.
+std::vector<double> lengths_up_to(const Points& polyline, bool closed) {
+  std::vector<double> lengths{0};
+  for (Eigen::Index i = 0; i < segments(polyline, closed); ++i)
+    lengths.push_back(lengths.back() + (end_of(polyline, i) - polyline.col(i)).norm());
+  return lengths;
+}
+
+double share_of_point(const Points& polyline, bool closed, int point) {
+  const std::vector<double> lengths = lengths_up_to(polyline, closed);
+  return lengths[static_cast<std::size_t>(point)] / lengths.back();
+}
+
+/// Shares of the length of a and of b that belong together, rising; linear between them.
+struct Knot {
+  double a = 0, b = 0;
+};
+
+double wrapped(double share) { return share - std::floor(share); }
+
+/// The share of b for one of a. Of a closed curve the knots repeat after 1.
+double matched(const std::vector<Knot>& knots, bool closed, double a) {
+  if (closed && a < knots.front().a) a += 1;
+  std::size_t next = 1;
+  while (next + 1 < knots.size() && knots[next].a < a) ++next;
+  const Knot &from = knots[next - 1], &to = knots[next];
+  const double b = from.b + (a - from.a) / (to.a - from.a) * (to.b - from.b);
+  return closed ? wrapped(b) : std::clamp(b, 0.0, 1.0);
+}
+
+/// Where b begins, and which way it runs, if it is to lie as a does under a motion.
+std::vector<Knot> best_start(const AnchorCurve& curve, const RigidTransform& target_from_source) {
+  Points moved(3, starts);
+  for (int i = 0; i < starts; ++i)
+    moved.col(i) = target_from_source * point_along(curve.a, true, double(i) / starts);
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<Knot> best;
+  for (const double direction : {1.0, -1.0})
+    for (int start = 0; start < starts; ++start) {
+      double sum = 0;
+      for (int i = 0; i < starts; ++i) {
+        const double share = wrapped((start + direction * i) / starts);
+        sum += (point_along(curve.b, true, share) - moved.col(i)).squaredNorm();
+      }
+      if (sum >= least) continue;
+      least = sum;
+      const double begin = double(start) / starts;
+      best = {{0, begin}, {1, begin + direction}};
+    }
+  return best;
+}
+
+std::vector<Knot> knots_of(const AnchorCurve& curve, const Anchors& given) {
+  std::vector<Knot> knots;
+  for (const auto& [a, b] : curve.fixed)
+    knots.push_back({share_of_point(curve.a, curve.closed, a), share_of_point(curve.b, curve.closed, b)});
+  if (curve.closed && !knots.empty()) {
+    knots.push_back({knots.front().a + 1, knots.front().b + 1});
+    return knots;
+  }
+  if (curve.closed) {
+    if (given.pairs.size() < pairs_that_fix_a_turn) return {{0, 0}, {1, 1}};
+    return best_start(curve,
+                      align_rigidly(source_points(given), target_points(given), spline_weights(given)));
+  }
+  if (knots.empty() || knots.front().a > 0) knots.insert(knots.begin(), {0, 0});
+  if (knots.back().a < 1) knots.push_back({1, 1});
+  return knots;
+}
+
+}  // namespace
+
+Vector3 point_along(const Points& polyline, bool closed, double share) {
+  const std::vector<double> lengths = lengths_up_to(polyline, closed);
+  const double length = share * lengths.back();
+  const auto next = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, length);
+  const auto segment = static_cast<Eigen::Index>(next - lengths.begin()) - 1;
+  const double own = *next - *(next - 1);
+  const double along = own > 0 ? std::clamp((length - *(next - 1)) / own, 0.0, 1.0) : 0;
+  return (1 - along) * polyline.col(segment) + along * end_of(polyline, segment);
+}
+
+Vector3 nearest_along(const Points& polyline, bool closed, const Vector3& x) {
+  Vector3 nearest = polyline.col(0);
+  for (Eigen::Index i = 0; i < segments(polyline, closed); ++i) {
+    const Vector3 begin = polyline.col(i), way = end_of(polyline, i) - begin;
+    const double squared = way.squaredNorm();
+    const double along = squared > 0 ? std::clamp((x - begin).dot(way) / squared, 0.0, 1.0) : 0;
+    const Vector3 foot = begin + along * way;
+    if ((foot - x).squaredNorm() < (nearest - x).squaredNorm()) nearest = foot;
+  }
+  return nearest;
+}
+
+double distance_from_polyline(const Points& polyline, bool closed, const Points& points) {
+  double largest = 0;
+  for (const auto& point : points.colwise())
+    largest = std::max(largest, (nearest_along(polyline, closed, point) - point).norm());
+  return largest;
+}
+
+CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
+  if (!(spacing > 0)) throw InvalidInput("points along a curve need a spacing above 0");
+  curves_ = std::exchange(given_.curves, {});
+  for (std::size_t k = 0; k < given.curves.size(); ++k) {
+    const AnchorCurve& curve = given.curves[k];
+    const std::vector<Knot> knots = knots_of(curve, given);
+    const double length = lengths_up_to(curve.a, curve.closed).back();
+    const auto add = [&](double a, double b, bool is_fixed) {
+      AnchorPair pair{curve.name + '[' + std::to_string(samples_.size()) + ']',
+                      point_along(curve.a, curve.closed, a), point_along(curve.b, curve.closed, b)};
+      samples_.push_back({k, std::move(pair), is_fixed});
+    };
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      const bool begins_fixed =
+          !curve.fixed.empty() && (curve.closed || knots[i].a > 0 || curve.fixed[0].first == 0);
+      const auto pieces = std::max(1.0, std::ceil((knots[i + 1].a - knots[i].a) * length / spacing));
+      for (double piece = 0; piece < pieces; ++piece) {
+        const double a = knots[i].a + piece / pieces * (knots[i + 1].a - knots[i].a);
+        const double share = curve.closed ? wrapped(a) : a;
+        add(share, matched(knots, curve.closed, share), piece == 0 && begins_fixed);
+      }
+    }
+    if (!curve.closed) add(1, 1, !curve.fixed.empty() && curve.fixed.back().first == curve.a.cols() - 1);
+  }
+}
+
+Anchors CurvePairs::pairs(double sigma) const {
+  Anchors all = given_;
+  for (const Sample& sample : samples_) {
+    all.pairs.push_back(sample.pair);
+    all.pairs.back().sigma = sample.is_fixed ? 0 : sigma;
+  }
+  return all;
+}
+
+void CurvePairs::slide(const Points& places) {
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    Sample& sample = samples_[i];
+    const AnchorCurve& curve = curves_[sample.curve];
+    if (!sample.is_fixed)
+      sample.pair.b = nearest_along(curve.b, curve.closed, places.col(static_cast<Eigen::Index>(i)));
+  }
+}
+
+Points CurvePairs::sources() const {
+  Points points(3, static_cast<Eigen::Index>(samples_.size()));
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    points.col(static_cast<Eigen::Index>(i)) = samples_[i].pair.a;
+  return points;
+}
+
+}  // namespace bespoke

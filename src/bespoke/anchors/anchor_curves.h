@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "bespoke/anchors/anchors.h"
+
+namespace bespoke {
+
+/// The place of a polyline, 3×n, at a share of its length, in [0, 1]; a closed one goes on from its last
+/// point to its first.
+Vector3 point_along(const Points& polyline, bool closed, double share);
+
+/// The place of a polyline that is nearest to x.
+Vector3 nearest_along(const Points& polyline, bool closed, const Vector3& x);
+
+/// Largest distance of points, 3×k, from a polyline, mesh units.
+double distance_from_polyline(const Points& polyline, bool closed, const Points& points);
+
+/// Curves as pairs of points along them, behind the pairs that there are already.
+class CurvePairs {
+ public:
+  /// Pairs lie at most `spacing` (> 0, mesh units) apart on the source, at equal shares of length between
+  /// fixed points. A closed curve without fixed points begins, and runs, where and as the pairs, moved
+  /// rigidly, put it (with fewer than three pairs, as it is given). Throws InvalidInput for a spacing that is
+  /// not positive and where the pairs are collinear.
+  CurvePairs(const Anchors& given, double spacing);
+
+  /// All pairs; those of curves, but for fixed points, with this accuracy (≥ 0, mesh units).
+  Anchors pairs(double sigma) const;
+
+  /// Moves the counterparts along their curves to where they are nearest to these places (3×k, target frame)
+  /// of the curves' points; fixed points stay.
+  void slide(const Points& places);
+
+  Points sources() const;  ///< 3×k: the curves' points on the source
+
+ private:
+  struct Sample {
+    std::size_t curve = 0;
+    AnchorPair pair;
+    bool is_fixed = false;
+  };
+
+  Anchors given_;  // without its curves
+  std::vector<AnchorCurve> curves_;
+  std::vector<Sample> samples_;
+};
+
+}  // namespace bespoke

@@ -1,0 +1,130 @@
+#include "bespoke/anchors/anchor_curves.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "bespoke/anchors/anchor_files.h"
+#include "bespoke/error.h"
+#include "support/error_message.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::HasSubstr;
+
+const Points corner{{0, 3, 3}, {0, 0, 1}, {0, 0, 0}};  // lengths 3 and 1
+
+Points circle(int points, double begin, double direction) {
+  Points result(3, points);
+  for (int i = 0; i < points; ++i) {
+    const double angle = begin + direction * 2 * std::numbers::pi * i / points;
+    result.col(i) = Vector3(std::cos(angle), std::sin(angle), 0);
+  }
+  return result;
+}
+
+TEST(AnchorCurves, ArePlacedByTheirLength) {
+  EXPECT_EQ(point_along(corner, false, 0), Vector3(0, 0, 0));
+  EXPECT_EQ(point_along(corner, false, 0.5), Vector3(2, 0, 0));
+  EXPECT_EQ(point_along(corner, false, 0.875), Vector3(3, 0.5, 0));
+  EXPECT_EQ(point_along(corner, false, 1), Vector3(3, 1, 0));
+  EXPECT_EQ(point_along(corner, true, 1), Vector3(0, 0, 0));
+}
+
+TEST(AnchorCurves, KnowTheirNearestPlace) {
+  EXPECT_EQ(nearest_along(corner, false, {1, -2, 0}), Vector3(1, 0, 0));
+  EXPECT_EQ(nearest_along(corner, false, {9, 9, 0}), Vector3(3, 1, 0));
+  EXPECT_DOUBLE_EQ(distance_from_polyline(corner, false, Points(Vector3(1, -2, 0))), 2);
+  EXPECT_NEAR(distance_from_polyline(corner, true, Points(Vector3(1.5, 0.5, 0))), 0, 1e-15);
+}
+
+TEST(CurvePairs, LieAtEqualSharesOfLength) {
+  Anchors anchors;
+  anchors.curves = {{"seam", corner, 2 * corner, false, {}}};
+  const Anchors pairs = CurvePairs(anchors, 0.5).pairs(0.1);
+  ASSERT_EQ(pairs.pairs.size(), 9u);
+  for (const AnchorPair& pair : pairs.pairs) {
+    EXPECT_LT((pair.b - 2 * pair.a).norm(), 1e-12);
+    EXPECT_EQ(pair.sigma, 0.1);
+  }
+  EXPECT_TRUE(pairs.curves.empty());
+}
+
+// The second point of a, at three quarters of its length, belongs to the middle of b.
+TEST(CurvePairs, KeepFixedPoints) {
+  Anchors anchors;
+  anchors.curves = {{"seam", corner, Points{{0, 1, 2}, {0, 0, 0}, {0, 0, 0}}, false, {{1, 1}}}};
+  CurvePairs curves(anchors, 0.5);
+  Points nowhere = curves.sources();
+  nowhere.setConstant(9);
+  curves.slide(nowhere);  // all but the fixed point go to the end of b
+  int fixed = 0;
+  for (const AnchorPair& pair : curves.pairs(0.1).pairs) {
+    if (*pair.sigma > 0) {
+      EXPECT_EQ(pair.b, Vector3(2, 0, 0));
+      continue;
+    }
+    ++fixed;
+    EXPECT_EQ(pair.a, Vector3(3, 0, 0));
+    EXPECT_EQ(pair.b, Vector3(1, 0, 0));
+  }
+  EXPECT_EQ(fixed, 1);
+}
+
+// A circle that begins elsewhere and runs the other way is the same curve.
+TEST(CurvePairs, FindWhereAClosedCurveBegins) {
+  const Vector3 shift(5, 0, 0);
+  Anchors anchors;
+  for (const Vector3& x : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)})
+    anchors.pairs.push_back({"", x, x + shift});
+  anchors.curves = {{"waist", circle(90, 0, 1), circle(120, 2, -1).colwise() + shift, true, {}}};
+  const Anchors pairs = CurvePairs(anchors, 0.1).pairs(0);
+  EXPECT_GE(pairs.pairs.size(), 63u);
+  for (const AnchorPair& pair : pairs.pairs) EXPECT_LT((pair.b - shift - pair.a).norm(), 0.03);
+}
+
+class CurveFiles : public ::testing::Test {
+ protected:
+  std::string complaint(const std::string& curve) const {
+    test::write_text(directory_ / "a.json", R"({"curves": [)" + curve + "]}");
+    return test::error_message<FormatError>([&] { read_anchors(directory_ / "a.json"); });
+  }
+  test::ScratchDirectory directory_;
+};
+
+TEST_F(CurveFiles, AreReadAsTheyWereWritten) {
+  Anchors anchors;
+  anchors.curves = {{"waist", corner, circle(7, 1, 1), true, {{0, 2}, {1, 6}}},
+                    {"", corner, corner, false, {}}};
+  write_anchor_files({directory_ / "a.json"}, anchors);
+  const Anchors back = read_anchors(directory_ / "a.json");
+  ASSERT_EQ(back.curves.size(), 2u);
+  EXPECT_EQ(back.curves[0].name, "waist");
+  EXPECT_EQ(back.curves[0].a, corner);
+  EXPECT_EQ(back.curves[0].b, anchors.curves[0].b);
+  EXPECT_TRUE(back.curves[0].closed);
+  EXPECT_EQ(back.curves[0].fixed, anchors.curves[0].fixed);
+  EXPECT_FALSE(back.curves[1].closed);
+}
+
+TEST_F(CurveFiles, NameWhatIsWrong) {
+  const std::string line = R"([[0,0,0],[1,0,0]])";
+  EXPECT_EQ(complaint(R"({"a": )" + line + R"(, "b": )" + line + "}"), "accepted");
+  EXPECT_THAT(complaint(R"({"name": "waist", "a": )" + line + "}"),
+              HasSubstr(R"(curve 0 ("waist"): key "b" is missing)"));
+  EXPECT_THAT(complaint(R"({"a": [[0,0,0]], "b": )" + line + "}"), HasSubstr("two points at least"));
+  EXPECT_THAT(complaint(R"({"a": [[0,0,0],[0,0,0]], "b": )" + line + "}"), HasSubstr("at one place"));
+  EXPECT_THAT(complaint(R"({"a": [[0,0,0],[1,"x",0]], "b": )" + line + "}"), HasSubstr("point 1"));
+  EXPECT_THAT(complaint(R"({"a": )" + line + R"(, "b": )" + line + R"(, "fixed": [[0, 2]]})"),
+              HasSubstr("by their numbers from 0"));
+  EXPECT_THAT(complaint(R"({"a": )" + line + R"(, "b": )" + line + R"(, "fixed": [[1, 1], [0, 0]]})"),
+              HasSubstr("rising"));
+}
+
+}  // namespace
+}  // namespace bespoke
