@@ -1,8 +1,8 @@
 // Maps the space around one model onto the space around another and carries a product across.
 #include <bespoke/apply/apply_to_product.h>
 #include <bespoke/asset/asset_io.h>
-#include <bespoke/product/mesh_io.h>
 #include <bespoke/pipeline/make_map.h>
+#include <bespoke/product/mesh_io.h>
 
 #include <cstdio>
 

@@ -15,8 +15,8 @@
 #include <string>
 
 #include "bespoke/elastic/csrbf.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/parallel.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/rbf/front_cholesky.h"
 #include "bespoke/rbf/kernels.h"
 #include "samples.h"

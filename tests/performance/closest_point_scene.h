@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <random>
 
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/product/mesh_io.h"
 #include "support/shapes.h"
 
 namespace bespoke::closest_points {

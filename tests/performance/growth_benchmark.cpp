@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string>
 
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/report/report.h"
 #include "samples.h"
 #include "support/shapes.h"

@@ -15,8 +15,8 @@
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/mapping/composed_map.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/product/mesh_io.h"
 
 namespace bespoke {
 namespace {

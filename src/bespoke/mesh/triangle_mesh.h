@@ -52,8 +52,9 @@ Points vertex_normals(const TriangleMesh& mesh);
 /// n: a third of the area of the faces around each vertex, mesh units squared.
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
 
-/// SHA-256 of the vertices, rounded to floats but hashed as doubles, and of the faces' indices, lower-case hex:
-/// names a model in an asset, whatever its file was called, in whichever format, with however many digits.
+/// SHA-256 of the vertices, rounded to floats but hashed as doubles, and of the faces' indices, lower-case
+/// hex: names a model in an asset, whatever its file was called, in whichever format, with however many
+/// digits.
 std::string content_hash(const TriangleMesh& mesh);
 
 }  // namespace bespoke

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/product/product_io.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/derive_map.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/inspection.h"
 #include "bespoke/report/quality_report.h"
