@@ -5,6 +5,7 @@
 
 #include "asset/small_asset.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/asset/vector_grid.h"
 #include "bespoke/catalog/catalog_file.h"
 #include "bespoke/error.h"
 #include "bespoke/sha256.h"
@@ -16,6 +17,7 @@ namespace bespoke {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -74,6 +76,18 @@ TEST_F(CatalogTest, RefusesWhatIsNoSoundAsset) {
   EXPECT_THAT(catalog.refused[0].reason,
               AllOf(Not(HasSubstr(directory_.path().string())), HasSubstr("SHA-256")));
   EXPECT_EQ(catalog.refused[1].file, "women/empty.vdb");
+}
+
+TEST_F(CatalogTest, PassesOverOtherVolumesButNotAssetsCutShort) {
+  const std::vector<float> values(24, 0.5F);
+  const VectorGrid image{"displacement", "an image", Vector3::Zero(), 1, {2, 2, 2}, values};
+  test::write_text(directory_ / "image.vdb", vdb_of_one_grid(image));
+  const std::string whole = test::read_text(directory_ / "c.vdb");
+  test::write_text(directory_ / "cut.vdb", whole.substr(0, whole.size() / 2));
+  const Catalog catalog = index();
+  EXPECT_THAT(catalog.others, ElementsAre("image.vdb"));
+  ASSERT_EQ(catalog.refused.size(), 1u);
+  EXPECT_EQ(catalog.refused[0].file, "cut.vdb");
 }
 
 TEST_F(CatalogTest, ComesBackFromItsFile) {

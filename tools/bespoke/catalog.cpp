@@ -29,8 +29,11 @@ void run(const CatalogArguments& arguments, const Progress& progress) {
   files.keep();
   for (const RefusedFile& refused : catalog.refused)
     std::fprintf(stderr, "bespoke: %s: %s\n", (directory / refused.file).c_str(), refused.reason.c_str());
-  if (!arguments.run.quiet)
+  if (!arguments.run.quiet) {
     std::printf("%zu maps in %s and %s\n", catalog.assets.size(), json.c_str(), page.c_str());
+    if (!catalog.others.empty())
+      std::printf("%zu other volumes, which are no maps, were passed over\n", catalog.others.size());
+  }
   if (!catalog.refused.empty())
     throw FormatError(std::to_string(catalog.refused.size()) + " of " +
                       std::to_string(catalog.refused.size() + catalog.assets.size()) +

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -75,9 +75,21 @@ CatalogEntry entry_of(const fs::path& path, const ReadAssetOptions& options) {
   return entry;
 }
 
-using Indexed = std::variant<CatalogEntry, RefusedFile>;
+/// Whether a file is OpenVDB's and says nothing in its head of being an asset: somebody else's volume, or an
+/// exported image. An asset that was cut short does say so.
+bool is_other_volume(const fs::path& path) {
+  constexpr std::string_view magic(" BDV\0\0\0\0", 8);
+  constexpr std::string_view entry = "bespoke:format_version";
+  std::string head(std::size_t{1} << 16, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.starts_with(magic) && head.find(entry) == std::string::npos;
+}
+
+using Indexed = std::variant<CatalogEntry, RefusedFile, std::string>;
 
 Indexed index_file(const fs::path& path, const std::string& name, const ReadAssetOptions& options) {
+  if (is_other_volume(path)) return name;
   try {
     CatalogEntry entry = entry_of(path, options);
     entry.file = name;
@@ -108,8 +120,10 @@ Catalog index_assets(const fs::path& directory, const ReadAssetOptions& options,
   for (Indexed& file : indexed) {
     if (CatalogEntry* entry = std::get_if<CatalogEntry>(&file))
       catalog.assets.push_back(std::move(*entry));
+    else if (RefusedFile* refused = std::get_if<RefusedFile>(&file))
+      catalog.refused.push_back(std::move(*refused));
     else
-      catalog.refused.push_back(std::get<RefusedFile>(std::move(file)));
+      catalog.others.push_back(std::get<std::string>(std::move(file)));
   }
   return catalog;
 }

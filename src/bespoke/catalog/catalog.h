@@ -44,6 +44,7 @@ struct RefusedFile {
 struct Catalog {
   std::vector<CatalogEntry> assets;  ///< by file
   std::vector<RefusedFile> refused;  ///< by file
+  std::vector<std::string> others;   ///< OpenVDB files that were never assets, for instance images
 };
 
 /// Reads and verifies every .vdb file in a directory and below, several at a time; hidden ones are left out.

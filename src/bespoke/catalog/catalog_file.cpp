@@ -90,7 +90,8 @@ std::string catalog_json(const Catalog& catalog) {
   const Json json = {{"format", format_name},
                      {"version", format_version},
                      {"assets", std::move(assets)},
-                     {"refused", std::move(refused)}};
+                     {"refused", std::move(refused)},
+                     {"others", catalog.others}};
   // File names need not be UTF-8.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -107,6 +108,7 @@ Catalog read_catalog(const std::filesystem::path& path) {
     for (const Json& entry : json.at("assets")) catalog.assets.push_back(entry_of(entry));
     for (const Json& refused : json.at("refused"))
       catalog.refused.push_back({refused.at("file"), refused.at("reason")});
+    for (const Json& other : json.at("others")) catalog.others.push_back(other);
     return catalog;
   } catch (const Json::exception&) {
     throw FormatError(path.string() + ": is no catalogue of assets" + how_to_make(path));

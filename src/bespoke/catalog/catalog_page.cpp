@@ -95,6 +95,8 @@ std::string catalog_page(const Catalog& catalog) {
   for (const RefusedFile& file : catalog.refused)
     page += "<li>" + escaped(file.file) + ": " + escaped(file.reason) + "</li>\n";
   if (!catalog.refused.empty()) page += "</ul>\n";
+  if (!catalog.others.empty())
+    page += "<p>" + std::to_string(catalog.others.size()) + " other volumes are no maps.</p>\n";
   return page + "</body></html>\n";
 }
 
