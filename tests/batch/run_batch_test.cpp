@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <future>
 #include <thread>
 
 #include "batch/batch_scene.h"
@@ -158,7 +159,18 @@ TEST_F(RunBatch, CountsASharedMapOnceAndClosesItAfterItsLastUser) {
 }
 
 TEST_F(RunBatch, GivesTheThreadsThatAreLeftToALargeJob) {
-  const JobGraph graph = make_job_graph({scene_.job(1, {"a"}, {"large"}), scene_.job(2, {"a"}, {"small"})});
+  std::vector<BatchJob> jobs{scene_.job(1, {"a"}, {"large"}), scene_.job(2, {"a"}, {"small"})};
+  // The large one is there until the small one runs, which alone would get all threads.
+  std::promise<void> small_runs;
+  jobs[0].run = [run = jobs[0].run, ran = small_runs.get_future().share()](const Progress& progress) {
+    ran.wait_for(std::chrono::seconds(60));
+    return run(progress);
+  };
+  jobs[1].run = [run = jobs[1].run, &small_runs](const Progress& progress) {
+    small_runs.set_value();
+    return run(progress);
+  };
+  const JobGraph graph = make_job_graph(std::move(jobs));
   const std::vector<JobResult> results =
       run_batch(graph, {JobForecast{100, 1, 0}, JobForecast{1, 1, 0}}, limits(4, 4));
   EXPECT_GE(results[0].threads, 3);  // the other may have started first
