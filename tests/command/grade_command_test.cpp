@@ -121,6 +121,10 @@ TEST_F(GradeCommand, WantsOneKindOfSizes) {
   EXPECT_EQ(bespoke({"grade", file("source.obj"), "--target", file("target.obj"), "--out-dir", file("sizes")})
                 .exit_code,
             1);
+  EXPECT_EQ(bespoke({"grade", file("source.obj"), file("product.obj"), "--target", file("target.obj"),
+                     "--out-dir", file("anchors.json")})
+                .exit_code,
+            4);
 }
 
 TEST_F(GradeCommand, NamesTheLineOfATableBeforeAnythingRuns) {

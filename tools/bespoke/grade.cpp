@@ -152,6 +152,8 @@ void require_one_kind_of_sizes(const GradeArguments& arguments) {
 void run(const GradeArguments& arguments) {
   require_one_kind_of_sizes(arguments);
   const fs::path& out_dir = arguments.request.out_dir;
+  if (fs::exists(out_dir) && !fs::is_directory(out_dir))
+    throw FileError(out_dir.string() + ": is no directory");
   OpenedMaps maps;
   const JobGraph graph = graph_of(
       arguments,
