@@ -78,6 +78,8 @@ TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
         {"bc", file("inverse.vdb")},
         {"output", file("there.vdb")}},
        {{"command", "check"}, {"map", file("there.vdb")}, {"json", true}, {"output", file("check.json")}},
+       {{"command", "diff"}, {"a", file("map.vdb")}, {"b", file("map.vdb")}, {"output", file("diff.txt")}},
+       {{"command", "export"}, {"map", file("map.vdb")}, {"grid", "5%"}, {"output", file("map.vti")}},
        {{"command", "measure"},
         {"map", file("map.vdb")},
         {"source", file("source.obj")},
@@ -106,18 +108,20 @@ TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
   expect_same({"invert", file("map.vdb"), "-o", file("i.vdb")}, "i.vdb", "inverse.vdb");
   expect_same({"compose", file("map.vdb"), file("i.vdb"), "-o", file("c.vdb")}, "c.vdb", "there.vdb");
   expect_same({"check", file("c.vdb"), "--json", "-q"}, "", "check.json");
+  expect_same({"diff", file("map.vdb"), file("map.vdb"), "-q"}, "", "diff.txt");
+  expect_same({"export", file("map.vdb"), "--grid", "5%", "-o", file("e.vti"), "-q"}, "e.vti", "map.vti");
   expect_same({"measure", file("map.vdb"), "--source", file("source.obj"), "--target", file("target.obj"),
                "--product", file("product.obj"), "--product", file("source.obj"), "-q"},
               "", "measure.txt");
 
   const std::vector<json> records = log("log.jsonl");
-  ASSERT_EQ(records.size(), 8u);
+  ASSERT_EQ(records.size(), 10u);
   for (const json& record : records) {
     EXPECT_EQ(record["state"], "done");
     EXPECT_GT(record["seconds"], 0);
     EXPECT_GT(record["memory"], 1000000);
   }
-  EXPECT_EQ(records[0]["line"], 8);  // all others need it
+  EXPECT_EQ(records[0]["line"], 10);  // all others need it
   EXPECT_EQ(records[0]["figures"]["bijection"], true);
 }
 

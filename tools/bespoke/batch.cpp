@@ -177,7 +177,7 @@ void add_batch_command(CLI::App& app) {
       ->add_option(
           "MANIFEST", arguments->manifest,
           "One JSON object a line, or .csv with a header: command (fit, apply, invert, compose, check, "
-          "measure or diff), and its options by their names, positional ones in lower case")
+          "measure, diff or export), and its options by their names, positional ones in lower case")
       ->required();
   add_limits(*batch, *arguments);
   add_outputs(*batch, *arguments);

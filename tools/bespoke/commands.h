@@ -7,7 +7,6 @@
 namespace bespoke::command {
 
 /// Each adds one subcommand, which runs while the arguments are parsed.
-void add_export_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
 void add_grade_command(CLI::App& app);
 void add_catalog_command(CLI::App& app);
@@ -27,6 +26,7 @@ void add_invert_command(CLI::App& app, const TakePlan& take);
 void add_compose_command(CLI::App& app, const TakePlan& take);
 void add_measure_command(CLI::App& app, const TakePlan& take);
 void add_diff_command(CLI::App& app, const TakePlan& take);
+void add_export_command(CLI::App& app, const TakePlan& take);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

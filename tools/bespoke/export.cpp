@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "bespoke/apply/apply_mapping.h"
 #include "bespoke/exchange/glb_file.h"
@@ -46,13 +47,22 @@ std::string content(const ExportArguments& arguments, const AssetRecord& record)
          unit;
 }
 
-void export_grid(const ExportArguments& arguments, const Progress& progress) {
+std::vector<JobFile> inputs(const ExportArguments& arguments) {
+  return named_files({{"map", arguments.map}, {"product", arguments.product}});
+}
+
+std::vector<JobFile> outputs(const ExportArguments& arguments) { return {{"output", arguments.output}}; }
+
+void require_image_arguments(const ExportArguments& arguments) {
   require_image_ending(arguments.output);
   if (arguments.space && !says_world_space(arguments.output))
     throw CLI::ValidationError(
         "--space",
         arguments.output + " does not say which way its axes point: it is in the models' own frame");
-  require_safe_outputs({arguments.map}, {arguments.output});
+}
+
+void export_grid(const ExportArguments& arguments, const RunContext& context) {
+  const Progress& progress = context.progress;
   const ReadAssetOptions reading{.untrusted = arguments.untrusted};
   const AssetRecord record = read_asset(arguments.map, reading).record;
   const OpenedMap map = open_map(arguments.map, arguments.pull ? MapForm::inverse : MapForm::grids, reading);
@@ -64,10 +74,13 @@ void export_grid(const ExportArguments& arguments, const Progress& progress) {
   const DisplacementImage sampled = sample_displacements(image, box, spacing, most_memory, progress);
   const Statistics error = sampling_error(sampled, image, box, error_points, progress);
 
-  OutputFiles outputs;
+  OutputFiles files;
   const ImageNotes notes{content(arguments, record), arguments.space.value_or(WorldSpace::lps)};
-  outputs.write(arguments.output, [&](const auto& path) { write_displacement_image(path, sampled, notes); });
-  outputs.keep();
+  files.write(arguments.output, [&](const auto& path) { write_displacement_image(path, sampled, notes); });
+  files.keep();
+  context.findings.figures = {{"nodes", sampled.size[0] * sampled.size[1] * sampled.size[2]},
+                              {"error_p99", error.p99},
+                              {"error_max", error.max}};
   if (arguments.run.quiet) return;
   std::printf("%-12s %zu x %zu x %zu nodes, voxel %.4g\n", "grid", sampled.size[0], sampled.size[1],
               sampled.size[2], sampled.spacing);
@@ -82,18 +95,17 @@ void require_morph_arguments(const ExportArguments& arguments) {
   require_mesh_ending("--product", arguments.product);
 }
 
-void export_morph(const ExportArguments& arguments) {
-  require_morph_arguments(arguments);
-  require_safe_outputs({arguments.map, arguments.product}, {arguments.output});
+void export_morph(const ExportArguments& arguments, const RunContext& context) {
   const ReadAssetOptions reading{.untrusted = arguments.untrusted};
   const std::string unit = read_asset(arguments.map, reading).record.unit;
   const OpenedMap map = open_map(arguments.map, MapForm::grids, reading);
   const MorphingMesh mesh = morph_along(read_product(arguments.product), *map.elastic, map.target_from_source,
                                         *arguments.morph, {map.path});
   const GlbNotes notes{std::filesystem::path(arguments.product).stem().string(), metres_per_unit(unit)};
-  OutputFiles outputs;
-  outputs.write(arguments.output, [&](const auto& path) { write_glb(path, mesh, notes); });
-  outputs.keep();
+  OutputFiles files;
+  files.write(arguments.output, [&](const auto& path) { write_glb(path, mesh, notes); });
+  files.keep();
+  context.findings.figures = {{"off_path", mesh.off_path}};
   if (arguments.run.quiet) return;
   std::printf("%-12s %d, with straight motion between them at most %.4g off the map's\n", "targets",
               *arguments.morph, mesh.off_path);
@@ -104,15 +116,20 @@ void export_morph(const ExportArguments& arguments) {
   std::printf("%-12s %s, without groups and materials\n", "written", arguments.output.c_str());
 }
 
-void run(const ExportArguments& arguments, const Progress& progress) {
+void require_valid(const ExportArguments& arguments) {
   if (arguments.grid.has_value() == arguments.morph.has_value())
     throw CLI::ValidationError("export", "give either --grid LENGTH or --morph N");
-  arguments.grid ? export_grid(arguments, progress) : export_morph(arguments);
+  arguments.grid ? require_image_arguments(arguments) : require_morph_arguments(arguments);
+}
+
+void run(const ExportArguments& arguments, const RunContext& context) {
+  require_safe_outputs(inputs(arguments), outputs(arguments));
+  arguments.grid ? export_grid(arguments, context) : export_morph(arguments, context);
 }
 
 }  // namespace
 
-void add_export_command(CLI::App& app) {
+void add_export_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* exported = app.add_subcommand(
       "export", "Write a map as a displacement image, or as morph targets of a product, for other programs");
@@ -153,8 +170,10 @@ void add_export_command(CLI::App& app) {
       "  bespoke export map.vdb --grid 0.5% -o level.vdb\n"
       "  bespoke export map.vdb --grid 2 --pull --space ras -o map.nrrd\n"
       "  bespoke export map.vdb --morph 8 --product dress.obj -o dress.glb");
-  exported->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  exported->callback([arguments, take] {
+    const ExportArguments given = std::exchange(*arguments, {});
+    require_valid(given);
+    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

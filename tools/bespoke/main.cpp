@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
   add_batch_command(app);
   add_grade_command(app);
   add_catalog_command(app);
-  add_export_command(app);
+  add_export_command(app, run_at_once);
   add_samples_command(app);
   add_view_command(app);
   add_pick_command(app);
