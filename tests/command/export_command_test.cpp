@@ -164,6 +164,11 @@ TEST_F(ExportCommand, MorphTargetsLieWhereApplyPutsTheProduct) {
     // Base, difference and the OBJ are rounded once each.
     EXPECT_LT((found - moved).colwise().norm().maxCoeff(), 3 * test::float_rounding(moved));
   }
+  const ProgramResult again = bespoke({"export", pair_.file("map.vdb"), "--morph", "2", "--product",
+                                       pair_.file("product.glb"), "-o", pair_.file("again.glb")});
+  EXPECT_EQ(again.exit_code, 2);
+  EXPECT_THAT(again.err, HasSubstr("morph targets of its own"));
+  EXPECT_FALSE(pair_.has("again.glb"));
 }
 
 TEST_F(ExportCommand, RefusesWithoutLeavingAnything) {

@@ -88,32 +88,58 @@ void export_grid(const ExportArguments& arguments, const RunContext& context) {
   std::printf("%-12s %s\n", "written", arguments.output.c_str());
 }
 
+bool is_glb(const std::filesystem::path& path) { return path.extension() == ".glb"; }
+
 void require_morph_arguments(const ExportArguments& arguments) {
-  if (std::filesystem::path(arguments.output).extension() != ".glb")
+  if (!is_glb(arguments.output))
     throw CLI::ValidationError("--morph", arguments.output + " must end in .glb");
   if (arguments.product.empty()) throw CLI::ValidationError("--morph", "--product MESH says what morphs");
-  require_mesh_ending("--product", arguments.product);
+  if (!is_glb(arguments.product)) require_mesh_ending("--product", arguments.product);
+}
+
+/// Of faces, in metres where their unit is known. Returns how far straight pieces are off.
+double export_faces(const ExportArguments& arguments, const OpenedMap& map, const std::string& unit,
+                    const std::filesystem::path& output) {
+  const MorphingMesh mesh = morph_along(read_product(arguments.product), *map.elastic, map.target_from_source,
+                                        *arguments.morph, {map.path});
+  write_glb(output, mesh, {std::filesystem::path(arguments.product).stem().string(), metres_per_unit(unit)});
+  return mesh.off_path;
+}
+
+/// Of a .glb, as it is. Returns the same.
+double export_file(const ExportArguments& arguments, const OpenedMap& map,
+                   const std::filesystem::path& output, const RunContext& context) {
+  const MorphSummary summary =
+      morph_file_along(arguments.product, output, *map.elastic, map.target_from_source, *arguments.morph,
+                       {map.path}, context.progress);
+  for (const std::string& warning : summary.warnings) context.warn(arguments.product + ": " + warning);
+  return summary.off_path;
 }
 
 void export_morph(const ExportArguments& arguments, const RunContext& context) {
   const ReadAssetOptions reading{.untrusted = arguments.untrusted};
   const std::string unit = read_asset(arguments.map, reading).record.unit;
   const OpenedMap map = open_map(arguments.map, MapForm::grids, reading);
-  const MorphingMesh mesh = morph_along(read_product(arguments.product), *map.elastic, map.target_from_source,
-                                        *arguments.morph, {map.path});
-  const GlbNotes notes{std::filesystem::path(arguments.product).stem().string(), metres_per_unit(unit)};
+  const bool keeps_file = is_glb(arguments.product);
   OutputFiles files;
-  files.write(arguments.output, [&](const auto& path) { write_glb(path, mesh, notes); });
+  double off_path = 0;
+  files.write(arguments.output, [&](const std::filesystem::path& path) {
+    off_path =
+        keeps_file ? export_file(arguments, map, path, context) : export_faces(arguments, map, unit, path);
+  });
   files.keep();
-  context.findings.figures = {{"off_path", mesh.off_path}};
+  context.findings.figures = {{"off_path", off_path}};
   if (arguments.run.quiet) return;
   std::printf("%-12s %d, with straight motion between them at most %.4g off the map's\n", "targets",
-              *arguments.morph, mesh.off_path);
-  if (notes.metres_per_unit)
+              *arguments.morph, off_path);
+  if (keeps_file)
+    std::printf("%-12s %s, taken as that of the scene\n", "unit", unit.empty() ? "unknown" : unit.c_str());
+  else if (metres_per_unit(unit))
     std::printf("%-12s %s, shown in metres\n", "unit", unit.c_str());
   else
     std::printf("%-12s %s, shown as if they were metres\n", "unit", unit.empty() ? "unknown" : unit.c_str());
-  std::printf("%-12s %s, without groups and materials\n", "written", arguments.output.c_str());
+  std::printf("%-12s %s%s\n", "written", arguments.output.c_str(),
+              keeps_file ? "" : ", without groups and materials");
 }
 
 void require_valid(const ExportArguments& arguments) {
@@ -148,7 +174,10 @@ void add_export_command(CLI::App& app, const TakePlan& take) {
                                         "animation through them, as .glb")
                            ->check(CLI::Range(1, most_targets))
                            ->type_name("N");
-  exported->add_option("--product", arguments->product, "The mesh that morphs: OBJ, PLY, STL, OFF")
+  exported
+      ->add_option(
+          "--product", arguments->product,
+          "The mesh that morphs: OBJ, PLY, STL, OFF, of which the faces are kept, or .glb, of which all is")
       ->needs(morph)
       ->type_name("MESH");
   exported

@@ -1,7 +1,6 @@
 #include "bespoke/exchange/glb_file.h"
 
 #include <array>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/named.h"
+#include "bespoke/product/morph_track.h"
 
 namespace bespoke {
 namespace {
@@ -155,30 +155,14 @@ Json primitive_of(GlbBuilder& builder, const MorphingMesh& mesh, const Corners& 
   return primitive;
 }
 
-/// At key k, k = 0 … n, target k has the weight 1 and the others 0.
-Json animation_of(GlbBuilder& builder, std::size_t targets, double seconds) {
-  std::vector<float> times, weights((targets + 1) * targets);
-  for (std::size_t k = 0; k <= targets; ++k) {
-    times.push_back(static_cast<float>(seconds * static_cast<double>(k) / static_cast<double>(targets)));
-    if (k > 0) weights[k * targets + k - 1] = 1;
-  }
-  const int input = builder.floats(times.data(), times.size(), 1, false);
-  builder.root["accessors"].back()["min"] = {times.front()};
-  builder.root["accessors"].back()["max"] = {times.back()};
-  const int output = builder.floats(weights.data(), weights.size(), 1, false);
+Json animation_of(GlbBuilder& builder, const MorphTrack& track) {
+  const int input = builder.floats(track.times.data(), track.times.size(), 1, false);
+  builder.root["accessors"].back()["min"] = {track.times.front()};
+  builder.root["accessors"].back()["max"] = {track.times.back()};
+  const int output = builder.floats(track.weights.data(), track.weights.size(), 1, false);
   return {{"name", "t from 0 to 1"},
           {"samplers", {{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}}},
           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}};
-}
-
-std::vector<std::string> target_names(std::size_t targets) {
-  std::vector<std::string> names;
-  for (std::size_t k = 1; k <= targets; ++k) {
-    char text[32];
-    std::snprintf(text, sizeof text, "t = %.4g", static_cast<double>(k) / static_cast<double>(targets));
-    names.push_back(text);
-  }
-  return names;
 }
 
 constexpr std::array units{Named<double>{"m", 1.0},     Named<double>{"dm", 0.1},
@@ -190,14 +174,14 @@ constexpr std::array units{Named<double>{"m", 1.0},     Named<double>{"dm", 0.1}
 std::optional<double> metres_per_unit(const std::string& unit) { return value_of(units, unit); }
 
 void write_glb(const std::filesystem::path& path, const MorphingMesh& mesh, const GlbNotes& notes) {
-  const std::size_t targets = mesh.targets.size();
+  const MorphTrack track = morph_track(mesh.targets.size(), notes.seconds);
   GlbBuilder builder;
   Json primitive = primitive_of(builder, mesh, corners_of(mesh.product));
-  Json animation = animation_of(builder, targets, notes.seconds);
+  Json animation = animation_of(builder, track);
   builder.root["meshes"] = {{{"name", notes.name},
                              {"primitives", {std::move(primitive)}},
-                             {"weights", std::vector<int>(targets)},
-                             {"extras", {{"targetNames", target_names(targets)}}}}};
+                             {"weights", std::vector<int>(track.names.size())},
+                             {"extras", {{"targetNames", track.names}}}}};
   Json node = {{"name", notes.name}, {"mesh", 0}};
   if (const double scale = notes.metres_per_unit.value_or(1); scale != 1)
     node["scale"] = {scale, scale, scale};

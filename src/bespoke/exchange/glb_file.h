@@ -11,7 +11,7 @@ namespace bespoke {
 struct GlbNotes {
   std::string name;                       ///< of the mesh
   std::optional<double> metres_per_unit;  ///< glTF is in metres: the node is scaled; 1 if unknown
-  double seconds = 2;                     ///< that the animation takes from t = 0 to 1
+  double seconds = seconds_of_morphing;
 };
 
 /// Metres of "m", "dm", "cm", "mm", "in" or "ft"; none for other names.

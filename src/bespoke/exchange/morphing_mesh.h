@@ -1,8 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <vector>
 
 #include "bespoke/mapping/mapping.h"
+#include "bespoke/product/morph_product.h"
 #include "bespoke/product/product_io.h"
 
 namespace bespoke {
@@ -18,5 +20,14 @@ struct MorphingMesh {
 /// faces, for no targets, and as apply_mapping.
 MorphingMesh morph_along(Product product, const ElasticMap& elastic, const RigidTransform& target_from_source,
                          int targets, const MotionOptions& motion = {});
+
+/// The same of a .glb, which keeps all that it has (morph_product): writes `output`. Its scene's lengths are
+/// taken as mesh units. Throws as morph_product and apply_mapping.
+MorphSummary morph_file_along(const std::filesystem::path& input, const std::filesystem::path& output,
+                              const ElasticMap& elastic, const RigidTransform& target_from_source,
+                              int targets, const MotionOptions& motion = {}, const Progress& progress = {});
+
+/// Seconds that an animation takes from t = 0 to 1.
+inline constexpr double seconds_of_morphing = 2;
 
 }  // namespace bespoke
