@@ -16,4 +16,19 @@ install(FILES ${PROJECT_SOURCE_DIR}/cmake/bespokeConfig.cmake
         DESTINATION ${BESPOKE_PACKAGE_DIR})
 if(TARGET bespoke_command)
   install(TARGETS bespoke_command)
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/bespoke.bash RENAME bespoke
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/bespoke.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/_bespoke
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
+  find_program(HELP2MAN help2man)  # the manual's page is the command's help
+  if(HELP2MAN)
+    set(page ${PROJECT_BINARY_DIR}/bespoke.1.gz)
+    add_custom_command(OUTPUT ${page} DEPENDS bespoke_command ${PROJECT_SOURCE_DIR}/tools/manual VERBATIM
+                       COMMAND ${PROJECT_SOURCE_DIR}/tools/manual $<TARGET_FILE:bespoke_command> ${page})
+    add_custom_target(manual ALL DEPENDS ${page})
+    install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  endif()
 endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
