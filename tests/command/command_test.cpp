@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "command/example_pair.h"
 
 namespace bespoke::test {
@@ -22,6 +24,10 @@ TEST(Command, SaysItsVersion) {
   const ProgramResult version = bespoke({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out, BESPOKE_VERSION "\n");
+  const auto versions = nlohmann::json::parse(bespoke({"--version", "--json"}).out);
+  EXPECT_EQ(versions["bespoke"], BESPOKE_VERSION);
+  for (const char* library : {"openvdb", "tbb", "eigen", "openssl", "zlib", "nlohmann_json", "cli11"})
+    EXPECT_THAT(versions[library].get<std::string>(), testing::ContainsRegex("[0-9]+\\.[0-9]+")) << library;
 }
 
 TEST(Command, ExplainsItselfWithExamples) {

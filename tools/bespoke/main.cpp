@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <set>
 #include <string>
 
 #include "commands.h"
 #include "exit_code.h"
 #include "interruption.h"
 #include "page_output.h"
+#include "versions.h"
 
 namespace {
 
@@ -18,13 +20,23 @@ void require_known_subcommand(const CLI::App& app, int argc, char** argv) {
                         CLI::ExitCodes::ExtrasError);
 }
 
+bool asks_for_versions(int argc, char** argv) {
+  const std::set<std::string> given(argv + 1, argv + argc);
+  return given == std::set<std::string>{"--json", "--version"};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace bespoke::command;
+  if (asks_for_versions(argc, argv)) {
+    std::cout << versions_json() << '\n';
+    return 0;
+  }
   CLI::App app{"Maps the space around one model onto the space around another, and carries products across."};
   app.name("bespoke");
-  app.set_version_flag("--version", BESPOKE_VERSION);
+  app.set_version_flag("--version", BESPOKE_VERSION,
+                       "Print the version; with --json those of the libraries inside as well");
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 done, 1 wrong arguments, 2 bad input, 3 the fit did not succeed,\n"
