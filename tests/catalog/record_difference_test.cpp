@@ -25,8 +25,8 @@ TEST(RecordDifference, NamesFieldsAndOptionsThatDiffer) {
   Asset a = test::small_asset(), b = a;
   a.record.tolerance = 0.5;
   b.record.tolerance = 0.25;
-  a.record.options_json = R"({"fit": {"steps": 3, "only": true}, "list": [1, 2]})";
-  b.record.options_json = R"({"fit": {"steps": 4}, "list": [1, 2], "more": "x"})";
+  a.record.options_json = R"({"tolerance": 0.5, "fit": {"steps": 3, "only": true}, "list": [1, 2]})";
+  b.record.options_json = R"({"tolerance": 0.25, "fit": {"steps": 4}, "list": [1, 2], "more": "x"})";
   b.record.bake_error.max *= 2;  // was found, not asked for
   EXPECT_THAT(record_difference(a, b).fields,
               ElementsAre(field("tolerance", "0.5", "0.25"), field("options.fit.steps", "3", "4"),

@@ -127,6 +127,14 @@ TEST_F(GradeCommand, WantsOneKindOfSizes) {
             4);
 }
 
+TEST_F(GradeCommand, NamesWhatIsMissingWithoutATable) {
+  const ProgramResult result = grade({"--target", file("absent.obj")});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("bespoke: grade: measure \"side\": there is no anchor"));
+  EXPECT_THAT(grade({"--target", file("absent.obj"), "--anchors", file("anchors.json")}).err,
+              HasSubstr("bespoke: grade: target " + file("absent.obj") + " does not exist"));
+}
+
 TEST_F(GradeCommand, NamesTheLineOfATableBeforeAnythingRuns) {
   const auto table = [&](const std::string& text) {
     write_text(file("sizes.csv"), text);

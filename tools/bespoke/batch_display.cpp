@@ -22,6 +22,10 @@ void print_line(const std::string& line) {
 
 }  // namespace
 
+std::string place_in(const std::string& manifest, std::size_t line) {
+  return line > 0 ? manifest + ":" + std::to_string(line) : manifest;
+}
+
 BatchDisplay::BatchDisplay(std::string manifest, const JobGraph& graph,
                            const std::vector<JobForecast>& forecasts, BatchStyle style,
                            const std::string& log)
@@ -39,7 +43,7 @@ BatchDisplay::~BatchDisplay() {
 }
 
 std::string BatchDisplay::place(std::size_t job) const {
-  return manifest_ + ":" + std::to_string(graph_.jobs[job].line) + ": " + graph_.jobs[job].command;
+  return place_in(manifest_, graph_.jobs[job].line) + ": " + graph_.jobs[job].command;
 }
 
 void BatchDisplay::say(const std::string& line) {

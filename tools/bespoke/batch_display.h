@@ -17,6 +17,9 @@ enum class BatchStyle {
   openjd,  ///< what Open Job Description's sessions read on standard output
 };
 
+/// What messages call a line of a manifest; 0: there is none, as of a run that the command line describes.
+std::string place_in(const std::string& manifest, std::size_t line);
+
 /// Shows on the terminal, or to a program, where a batch is, and writes its log. One thread at a time.
 class BatchDisplay {
  public:

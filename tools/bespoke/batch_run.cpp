@@ -33,9 +33,9 @@ void require_no_faults(const std::string& name, std::vector<ManifestFault> fault
   std::stable_sort(faults.begin(), faults.end(),
                    [](const ManifestFault& a, const ManifestFault& b) { return a.line < b.line; });
   for (const ManifestFault& fault : faults)
-    std::fprintf(stderr, "bespoke: %s:%zu: %s\n", name.c_str(), fault.line, fault.what.c_str());
+    std::fprintf(stderr, "bespoke: %s: %s\n", place_in(name, fault.line).c_str(), fault.what.c_str());
   throw InvalidInput(name + ": " + std::to_string(faults.size()) +
-                     (faults.size() == 1 ? " line is wrong" : " faults") + "; nothing was run");
+                     (faults.size() == 1 ? " fault" : " faults") + "; nothing was run");
 }
 
 void run_jobs(const BatchShow& show, const JobGraph& graph, const std::vector<JobForecast>& forecasts,

@@ -108,7 +108,6 @@ BatchJob tables_job(const GradeArguments& arguments, const std::vector<GradeSize
                     const MeasuringSheet& sheet, OpenedMaps& maps) {
   const GradeRequest& request = arguments.request;
   BatchJob job;
-  job.line = 1;
   job.command = "measures";
   job.inputs = {{"source", request.source}, {"measures", arguments.measures}};
   job.outputs = {{"output", request.out_dir / "measures.csv"}, {"output", request.out_dir / "measures.md"}};

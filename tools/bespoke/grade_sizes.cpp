@@ -111,7 +111,7 @@ GradeSizes sizes_between(const std::string& target, const std::string& anchors, 
   GradeSizes found;
   const int last = count + 1;
   for (int k = 1; k <= last; ++k)
-    found.sizes.push_back({1,
+    found.sizes.push_back({0,
                            std::to_string(k) + "_of_" + std::to_string(last),
                            target,
                            anchors,

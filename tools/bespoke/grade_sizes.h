@@ -18,7 +18,7 @@ struct GradeRequest {
 
 /// One size: what it is called, and how the source gets there.
 struct GradeSize {
-  std::size_t line = 1;  ///< of the table
+  std::size_t line = 0;  ///< of the table; 0: there is none
   std::string name;
   std::string target;              ///< the model that the map leads to
   std::string anchors;             ///< empty: none

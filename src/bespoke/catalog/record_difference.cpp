@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "bespoke/pipeline/summary_json.h"
@@ -36,6 +37,12 @@ Fields fields_of(const Asset& asset) {
   Fields fields;
   flatten(json, "", fields);
   if (!record.options_json.empty()) flatten(Json::parse(record.options_json), "options", fields);
+  // Options that say again what stands above would be told twice.
+  std::erase_if(fields, [&](const Fields::value_type& field) {
+    constexpr std::string_view prefix = "options.";
+    const std::string name = field.first.starts_with(prefix) ? field.first.substr(prefix.size()) : "";
+    return json.contains(name) && json[name].dump() == field.second;
+  });
   return fields;
 }
 
