@@ -12,8 +12,8 @@
 namespace bespoke {
 namespace {
 
-// A primitive's `mode`; points and lines have no faces.
-constexpr std::uint64_t triangles_mode = 4, strip_mode = 5, fan_mode = 6;
+// A primitive's `mode`; 5 is a strip, and points and lines below have no faces.
+constexpr std::uint64_t triangles_mode = 4, fan_mode = 6;
 
 std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor, const GltfFile& file) {
   std::vector<std::uint32_t> indices(accessor.count, 0);
