@@ -16,8 +16,17 @@ void require_known_subcommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   for (const CLI::App* subcommand : app.get_subcommands({}))
     if (subcommand->check_name(argv[1])) return;
-  throw CLI::ParseError("there is no subcommand '" + std::string(argv[1]) + "'; bespoke --help lists them",
-                        CLI::ExitCodes::ExtrasError);
+  throw CLI::ParseError("there is no subcommand '" + std::string(argv[1]) + "'", CLI::ExitCodes::ExtrasError);
+}
+
+/// The command that explains the subcommand, as far as it was recognised.
+std::string help_command(const CLI::App& app) {
+  std::string command = app.get_name();
+  for (const CLI::App* chosen = &app; !chosen->get_subcommands().empty();) {
+    chosen = chosen->get_subcommands().front();
+    command += ' ' + chosen->get_name();
+  }
+  return command + " --help";
 }
 
 bool asks_for_versions(int argc, char** argv) {
@@ -68,6 +77,9 @@ int main(int argc, char** argv) {
       app.parse(argc, argv);
     } catch (const CLI::Success& request) {
       app.exit(request);  // --help and --version print and are done
+    } catch (const CLI::ParseError& error) {
+      throw CLI::ParseError(error.what() + ("; see " + help_command(app)),
+                            CLI::ExitCodes(error.get_exit_code()));
     }
   });
 }
