@@ -22,7 +22,7 @@ Anchors bent(int count) {
 TEST(AuditAnchors, FindsNothingInASmoothSet) {
   const AnchorAudit audit = audit_anchors(bent(30));
   EXPECT_TRUE(audit.suspicious.empty());
-  EXPECT_GT(audit.typical_distance, 0);
+  EXPECT_GT(audit.typical_distance.value(), 0);
 }
 
 TEST(AuditAnchors, NamesASwappedPair) {
@@ -52,6 +52,7 @@ TEST(AuditAnchors, NamesAMisplacedPairAndHowFarOffItIs) {
 TEST(AuditAnchors, BearsFewCoplanarAndDuplicatePairs) {
   EXPECT_TRUE(audit_anchors({}).suspicious.empty());
   EXPECT_TRUE(audit_anchors(bent(7)).suspicious.empty());
+  EXPECT_FALSE(audit_anchors(bent(7)).typical_distance);
   Anchors flat = bent(20);
   for (AnchorPair& pair : flat.pairs) pair.a[2] = pair.b[2] = 0;
   flat.pairs.push_back(flat.pairs.front());

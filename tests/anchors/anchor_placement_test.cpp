@@ -34,6 +34,12 @@ TEST(AnchorPlacement, TellsOtherUnitsFromAnchorsOffTheSurface) {
   EXPECT_FALSE(anchor_placement(sphere, anchors.leftCols(4)).is_far());
 }
 
+TEST(AnchorPlacement, OfASingleAnchorIsMeasuredByTheModel) {
+  const Points anchor = sphere.vertices.leftCols(1);
+  EXPECT_FALSE(anchor_placement(sphere, (1 + 1e-6) * anchor).is_far());
+  EXPECT_TRUE(anchor_placement(sphere, 2.54 * anchor).is_far());
+}
+
 TEST(AnchorPlacement, OfNothingIsNothing) {
   EXPECT_FALSE(anchor_placement(sphere, Points(3, 0)).is_far());
   EXPECT_THROW(anchor_placement({}, Points::Zero(3, 1)), InvalidInput);

@@ -124,8 +124,12 @@ void audit(const AuditArguments& arguments) {
   const Models models = read_models(arguments.models);
   const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), file_options(models));
   const AnchorAudit found = audit_anchors(anchors);
-  std::cout << anchors.pairs.size() << " pairs, each within " << found.typical_distance
-            << " (median) of where the others put it\n";
+  std::cout << anchors.pairs.size() << " pairs";
+  if (!anchors.curves.empty()) std::cout << " and " << anchors.curves.size() << " curves";
+  if (found.typical_distance)
+    std::cout << ", each pair within " << *found.typical_distance << " (median) of where the others put it\n";
+  else
+    std::cout << ", too few pairs to be judged by each other\n";
   bool is_doubted = print(to_string(found, anchors));
   is_doubted |= print(to_string(swapped_anchors(anchors), anchors));
   is_doubted |= print(to_string(contradicting_anchors(anchors), anchors));

@@ -42,7 +42,7 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
       distances.push_back(warp.left_out(static_cast<Eigen::Index>(k)));
     audit.typical_distance = median(distances);
     const auto worst = std::max_element(distances.begin(), distances.end());
-    const double limit = std::max(least, typical_factor * audit.typical_distance);
+    const double limit = std::max(least, typical_factor * *audit.typical_distance);
     if (!(*worst > limit) || trusted.size() <= must_stay) {
       for (const Eigen::Index i : doubted) {
         const double distance = (warp(sources.col(i)) - targets.col(i)).norm();
@@ -78,7 +78,7 @@ std::string to_string(const AnchorAudit& audit, const Anchors& anchors) {
   for (const SuspiciousAnchor& anchor : audit.suspicious) {
     char distance[120];
     std::snprintf(distance, sizeof distance, " lies %.4g from where the others put it (typical: %.4g)",
-                  anchor.distance, audit.typical_distance);
+                  anchor.distance, audit.typical_distance.value_or(0));
     text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + distance;
     if (anchor.swapped_with) text += ", looks swapped with " + label(anchors, *anchor.swapped_with);
   }

@@ -20,7 +20,8 @@ struct SuspiciousAnchor {
 
 struct AnchorAudit {
   std::vector<SuspiciousAnchor> suspicious;  ///< by decreasing distance
-  double typical_distance = 0;  ///< median over the trusted pairs, each predicted by the others, mesh units
+  /// Median over the trusted pairs, each predicted by the others, mesh units; none where they are too few.
+  std::optional<double> typical_distance;
 };
 
 /// Leave-one-out audit: each pair is predicted by a smooth warp (biharmonic spline with an affine tail) of

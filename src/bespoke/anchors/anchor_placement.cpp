@@ -12,7 +12,8 @@ namespace bespoke {
 
 bool AnchorPlacement::is_far() const {
   constexpr double farthest_plausible = 0.25;
-  return median_distance > farthest_plausible * std::min(anchor_diagonal, model_diagonal);
+  const double spread = anchor_diagonal > 0 ? std::min(anchor_diagonal, model_diagonal) : model_diagonal;
+  return median_distance > farthest_plausible * spread;
 }
 
 AnchorPlacement anchor_placement(const TriangleMesh& model, const Points& anchors) {

@@ -14,7 +14,8 @@ struct AnchorPlacement {
   double model_diagonal = 0;
 
   /// Anchors may lie off the surface, but hardly half of them by more than a quarter of their own spread or
-  /// of the model: scaling either by an inch (2.54) about a common centre takes them that far.
+  /// of the model: scaling either by an inch (2.54) about a common centre takes them that far. Anchors all
+  /// at one place, or a single one, have no spread.
   bool is_far() const;
 };
 
