@@ -15,6 +15,7 @@
 namespace bespoke {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const Points corner{{0, 3, 3}, {0, 0, 1}, {0, 0, 0}};  // lengths 3 and 1
@@ -86,6 +87,16 @@ TEST(CurvePairs, FindWhereAClosedCurveBegins) {
   const Anchors pairs = CurvePairs(anchors, 0.1).pairs(0);
   EXPECT_GE(pairs.pairs.size(), 63u);
   for (const AnchorPair& pair : pairs.pairs) EXPECT_LT((pair.b - shift - pair.a).norm(), 0.03);
+}
+
+TEST(CurvePairs, DoNotGuessWhereAClosedCurveBegins) {
+  Anchors anchors;
+  for (const Vector3& x : {Vector3(1, 0, 0), Vector3(0, 1, 0)}) anchors.pairs.push_back({"", x, x});
+  anchors.curves = {{"waist", circle(90, 0, 1), circle(90, 0, 1), true, {}}};
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { CurvePairs(anchors, 0.1); }),
+              AllOf(HasSubstr("\"waist\""), HasSubstr("there are 2"), HasSubstr("\"fixed\"")));
+  anchors.curves[0].fixed = {{0, 0}};
+  EXPECT_GE(CurvePairs(anchors, 0.1).pairs(0).pairs.size(), 65u);
 }
 
 class CurveFiles : public ::testing::Test {

@@ -54,18 +54,19 @@ double matched(const std::vector<Knot>& knots, bool closed, double a) {
 
 /// Where b begins, and which way it runs, if it is to lie as a does under a motion.
 std::vector<Knot> best_start(const AnchorCurve& curve, const RigidTransform& target_from_source) {
-  Points moved(3, starts);
-  for (int i = 0; i < starts; ++i)
-    moved.col(i) = target_from_source * point_along(curve.a, true, double(i) / starts);
+  const auto places = [](const Points& polyline) {
+    Points result(3, starts);
+    for (int i = 0; i < starts; ++i) result.col(i) = point_along(polyline, true, double(i) / starts);
+    return result;
+  };
+  const Points moved = target_from_source * places(curve.a), found = places(curve.b);
   double least = std::numeric_limits<double>::infinity();
   std::vector<Knot> best;
-  for (const double direction : {1.0, -1.0})
+  for (const int direction : {1, -1})
     for (int start = 0; start < starts; ++start) {
       double sum = 0;
-      for (int i = 0; i < starts; ++i) {
-        const double share = wrapped((start + direction * i) / starts);
-        sum += (point_along(curve.b, true, share) - moved.col(i)).squaredNorm();
-      }
+      for (int i = 0; i < starts; ++i)
+        sum += (found.col((start + direction * i + starts) % starts) - moved.col(i)).squaredNorm();
       if (sum >= least) continue;
       least = sum;
       const double begin = double(start) / starts;
@@ -83,7 +84,11 @@ std::vector<Knot> knots_of(const AnchorCurve& curve, const Anchors& given) {
     return knots;
   }
   if (curve.closed) {
-    if (given.pairs.size() < pairs_that_fix_a_turn) return {{0, 0}, {1, 1}};
+    if (given.pairs.size() < pairs_that_fix_a_turn)
+      throw InvalidInput("where the closed curve \"" + curve.name + "\" begins on the target follows from " +
+                         std::to_string(pairs_that_fix_a_turn) + " pairs that are not collinear, there are " +
+                         std::to_string(given.pairs.size()) +
+                         "; add pairs, or a \"fixed\" point to the curve");
     return best_start(curve,
                       align_rigidly(source_points(given), target_points(given), spline_weights(given)));
   }

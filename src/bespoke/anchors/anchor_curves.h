@@ -21,8 +21,8 @@ class CurvePairs {
  public:
   /// Pairs lie at most `spacing` (> 0, mesh units) apart on the source, at equal shares of length between
   /// fixed points. A closed curve without fixed points begins, and runs, where and as the pairs, moved
-  /// rigidly, put it (with fewer than three pairs, as it is given). Throws InvalidInput for a spacing that is
-  /// not positive and where the pairs are collinear.
+  /// rigidly, put it. Throws InvalidInput for a spacing that is not positive, and for such a curve with fewer
+  /// than three pairs or collinear ones.
   CurvePairs(const Anchors& given, double spacing);
 
   /// All pairs; those of curves, but for fixed points, with this accuracy (≥ 0, mesh units).

@@ -245,8 +245,11 @@ void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const Tr
   summary.unanchored = std::move(fit.summary);
 }
 
+/// Γ and H'_a. Returns the anchors as the fit took them.
 Anchors lay(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
             const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  require_usable(source, anchors, options);
+  require_valid(target, "target");
   if (!anchors.curves.empty()) return lay_by_curves(result, source, target, anchors, options, progress);
   if (!anchors.pairs.empty())
     return lay_by_anchors(result, source, target, anchors, anchors, options, progress);
@@ -294,8 +297,6 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
 
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress) {
-  require_usable(source, anchors, options);
-  require_valid(target, "target");
   FittedMapping result;
   const Anchors rated = lay(result, source, target, anchors, options, progress);
   hold_parts_apart(result, source, options, progress);
@@ -310,8 +311,6 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
 FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh& target,
                                  const Anchors& anchors, const FitOptions& options,
                                  const Progress& progress) {
-  require_usable(source, anchors, options);
-  require_valid(target, "target");
   FittedMapping result;
   lay(result, source, target, anchors, options, progress);
   return result;
