@@ -44,6 +44,14 @@ TEST(EqualPositions, PutEveryColumnIntoOneGroup) {
   EXPECT_THAT(counted, ElementsAreArray(std::vector<int>(1000, 1)));
 }
 
+TEST(EqualPositions, HaveAFirstColumnEach) {
+  const std::vector<int> first = first_at_equal_position(some);
+  const EqualPositions equal = equal_positions(some);
+  for (std::size_t index = 0; index < equal.groups(); ++index)
+    for (const int column : equal.group(index))
+      EXPECT_EQ(first[static_cast<std::size_t>(column)], equal.group(index).front());
+}
+
 TEST(EqualPositions, OfNothingAreNone) { EXPECT_EQ(equal_positions(Points(3, 0)).groups(), 0u); }
 
 TEST(EqualPositions, CannotSortWhatIsNoNumber) {

@@ -32,4 +32,13 @@ EqualPositions equal_positions(const Points& points, std::vector<int> columns) {
   return equal;
 }
 
+std::vector<int> first_at_equal_position(const Points& points) {
+  const EqualPositions equal = equal_positions(points);
+  std::vector<int> first(static_cast<std::size_t>(points.cols()));
+  for (std::size_t group = 0; group < equal.groups(); ++group)
+    for (const int column : equal.group(group))
+      first[static_cast<std::size_t>(column)] = equal.group(group).front();
+  return first;
+}
+
 }  // namespace bespoke

@@ -27,4 +27,7 @@ EqualPositions equal_positions(const Points& points);
 /// Of the given columns alone, each at most once.
 EqualPositions equal_positions(const Points& points, std::vector<int> columns);
 
+/// For every column of points, 3×n, the first one at its position. Throws as equal_positions.
+std::vector<int> first_at_equal_position(const Points& points);
+
 }  // namespace bespoke

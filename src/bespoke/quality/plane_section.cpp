@@ -23,11 +23,7 @@ struct Crossings {
 /// The faces by the first vertex at each position: files split vertices along seams of texture and normals,
 /// which must not open a section.
 Faces joined_faces(const TriangleMesh& mesh) {
-  const EqualPositions equal = equal_positions(mesh.vertices);
-  std::vector<int> first(static_cast<std::size_t>(mesh.vertices.cols()));
-  for (std::size_t group = 0; group < equal.groups(); ++group)
-    for (const int column : equal.group(group))
-      first[static_cast<std::size_t>(column)] = equal.group(group).front();
+  const std::vector<int> first = first_at_equal_position(mesh.vertices);
   return mesh.faces.unaryExpr([&](int vertex) { return first[static_cast<std::size_t>(vertex)]; });
 }
 

@@ -15,11 +15,7 @@ namespace {
 
 // Vertices at exactly one position get the index of the first of them.
 TriangleMesh joined_at_equal_positions(const TriangleMesh& mesh) {
-  const EqualPositions equal = equal_positions(mesh.vertices);
-  std::vector<int> first(static_cast<std::size_t>(mesh.vertices.cols()));
-  for (std::size_t index = 0; index < equal.groups(); ++index)
-    for (const int vertex : equal.group(index))
-      first[static_cast<std::size_t>(vertex)] = equal.group(index).front();
+  const std::vector<int> first = first_at_equal_position(mesh.vertices);
   TriangleMesh joined = mesh;
   for (int& vertex : joined.faces.reshaped()) vertex = first[static_cast<std::size_t>(vertex)];
   return joined;

@@ -85,11 +85,7 @@ Product GatheredFaces::product(bool has_normals) {
 }
 
 Product joined_triangles(const Points& corners) {
-  const EqualPositions equal = equal_positions(corners);
-  std::vector<int> first(static_cast<std::size_t>(corners.cols()));
-  for (std::size_t group = 0; group < equal.groups(); ++group)
-    for (const int corner : equal.group(group))
-      first[static_cast<std::size_t>(corner)] = equal.group(group).front();
+  const std::vector<int> first = first_at_equal_position(corners);
   Product product;
   product.polygon_start.push_back(0);
   std::vector<int> vertex(first.size(), -1);
