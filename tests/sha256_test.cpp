@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "bespoke/error.h"
+#include "support/file_text.h"
+#include "support/scratch_directory.h"
+
 namespace bespoke {
 namespace {
 
@@ -17,6 +21,17 @@ TEST(Sha256, OfPiecesIsThatOfTheWhole) {
   hash.update("", 0);
   hash.update("bc", 2);
   EXPECT_EQ(hash.finish(), sha256("abc", 3));
+}
+
+TEST(Sha256, OfAFileIsThatOfItsBytes) {
+  const test::ScratchDirectory directory;
+  const std::string bytes(1'000'000, 'x');
+  test::write_text(directory / "large", bytes);
+  test::write_text(directory / "empty", "");
+  EXPECT_EQ(sha256_of_file(directory / "large"), sha256(bytes.data(), bytes.size()));
+  EXPECT_EQ(sha256_of_file(directory / "empty"), sha256("", 0));
+  EXPECT_THROW(sha256_of_file(directory / "absent"), FileError);
+  EXPECT_THROW(sha256_of_file(directory.path()), FileError);
 }
 
 TEST(Sha256, StartsAnewAfterFinish) {

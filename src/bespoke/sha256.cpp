@@ -3,6 +3,7 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <fstream>
 
 #include "bespoke/error.h"
 
@@ -54,6 +55,19 @@ std::string Sha256::finish() {
 std::string sha256(const void* data, std::size_t bytes) {
   Sha256 hash;
   hash.update(data, bytes);
+  return hash.finish();
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  constexpr std::streamsize block_bytes = 1 << 18;
+  std::ifstream file(path, std::ios::binary);
+  const auto block = std::make_unique_for_overwrite<char[]>(block_bytes);
+  Sha256 hash;
+  while (file) {
+    file.read(block.get(), block_bytes);
+    hash.update(block.get(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (!file.eof()) throw FileError(path.string() + ": cannot be read");
   return hash.finish();
 }
 

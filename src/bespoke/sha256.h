@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -26,5 +27,8 @@ class Sha256 {
 
 /// The digest of one block of memory, 64 lower-case hexadecimal digits.
 std::string sha256(const void* data, std::size_t bytes);
+
+/// The digest of a file's bytes. Throws FileError when it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace bespoke

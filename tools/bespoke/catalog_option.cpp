@@ -1,10 +1,10 @@
 #include "catalog_option.h"
 
-#include "bespoke/batch/file_hashes.h"
 #include "bespoke/catalog/catalog_file.h"
 #include "bespoke/catalog/find_map.h"
 #include "bespoke/error.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/sha256.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
@@ -57,7 +57,7 @@ std::filesystem::path find_map(const CatalogOption& option) {
   const CatalogEntry& entry = bespoke::find_map(catalog, {model_hash(option.source, option.source_hash),
                                                           model_hash(option.target, option.target_hash)});
   const std::filesystem::path map = std::filesystem::path(option.directory) / entry.file;
-  if (FileHashes().of(map) != entry.sha256)
+  if (sha256_of_file(map) != entry.sha256)
     throw FormatError(map.string() + ": is not the file that " + index.string() +
                       " lists; `bespoke catalog " + option.directory + "` lists it anew");
   return map;

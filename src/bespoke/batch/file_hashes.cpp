@@ -3,8 +3,6 @@
 #include <sys/stat.h>
 
 #include <chrono>
-#include <fstream>
-#include <memory>
 
 #include "bespoke/error.h"
 #include "bespoke/sha256.h"
@@ -16,20 +14,6 @@ constexpr std::int64_t nanoseconds = 1'000'000'000;
 
 // Linux stamps files with the time of its last tick, 1 to 10 ms ago.
 constexpr std::int64_t tick = nanoseconds / 50;
-
-constexpr std::streamsize block_bytes = 1 << 18;
-
-std::string hash_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const auto block = std::make_unique_for_overwrite<char[]>(block_bytes);
-  Sha256 hash;
-  while (file) {
-    file.read(block.get(), block_bytes);
-    hash.update(block.get(), static_cast<std::size_t>(file.gcount()));
-  }
-  if (!file.eof()) throw FileError(path.string() + ": cannot be read");
-  return hash.finish();
-}
 
 }  // namespace
 
@@ -53,7 +37,7 @@ std::string FileHashes::of(const std::filesystem::path& path) {
     const auto known = known_.find(path);
     if (known != known_.end() && known->second.stamp == *stamp) return known->second.hash;
   }
-  std::string hash = hash_of(path);
+  std::string hash = sha256_of_file(path);
   if (is_too_fresh(*stamp)) return hash;
   const std::lock_guard lock(mutex_);
   known_[path] = {*stamp, hash};

@@ -39,21 +39,11 @@ std::vector<fs::path> vdb_files(const fs::path& directory) {
   return files;
 }
 
-std::string file_hash(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> block(std::size_t{1} << 20);
-  Sha256 hash;
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0)
-    hash.update(block.data(), static_cast<std::size_t>(file.gcount()));
-  if (!file.eof()) throw FileError(path.string() + ": cannot be read");
-  return hash.finish();
-}
-
 CatalogEntry entry_of(const fs::path& path, const ReadAssetOptions& options) {
   const Asset asset = read_asset(path, options);
   const Certificate certificate = whole_certificate(asset);
   CatalogEntry entry;
-  entry.sha256 = file_hash(path);
+  entry.sha256 = sha256_of_file(path);
   entry.bytes = fs::file_size(path);
   entry.unit = asset.record.unit;
   entry.source = asset.record.source;
