@@ -22,6 +22,14 @@ TEST(FormatUnit, OfGltfIsTheMetre) {
   EXPECT_EQ(unit_of_format("scan.obj"), "");
 }
 
+TEST(FormatUnit, KnowsUnitsByTheirNames) {
+  EXPECT_EQ(metres_per_unit("mm"), 0.001);
+  EXPECT_EQ(metres_per_unit("CM"), 0.01);
+  EXPECT_EQ(metres_per_unit("metres"), 1);
+  EXPECT_EQ(metres_per_unit("cubit"), std::nullopt);
+  EXPECT_EQ(metres_per_unit(""), std::nullopt);
+}
+
 TEST(FormatUnit, RefusesAnotherOneByItsFactor) {
   EXPECT_THAT(refusal("scan.glb", "cm"),
               AllOf(HasSubstr("scan.glb"), HasSubstr("in cm"), HasSubstr("by 0.01 ")));

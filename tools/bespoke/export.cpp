@@ -7,6 +7,7 @@
 #include "bespoke/exchange/glb_file.h"
 #include "bespoke/exchange/image_formats.h"
 #include "bespoke/pipeline/open_map.h"
+#include "bespoke/product/format_unit.h"
 #include "commands.h"
 #include "length_option.h"
 #include "name_option.h"

@@ -10,7 +10,6 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/named.h"
 #include "bespoke/product/morph_track.h"
 
 namespace bespoke {
@@ -165,13 +164,7 @@ Json animation_of(GlbBuilder& builder, const MorphTrack& track) {
           {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}};
 }
 
-constexpr std::array units{Named<double>{"m", 1.0},     Named<double>{"dm", 0.1},
-                           Named<double>{"cm", 0.01},   Named<double>{"mm", 0.001},
-                           Named<double>{"in", 0.0254}, Named<double>{"ft", 0.3048}};
-
 }  // namespace
-
-std::optional<double> metres_per_unit(const std::string& unit) { return value_of(units, unit); }
 
 void write_glb(const std::filesystem::path& path, const MorphingMesh& mesh, const GlbNotes& notes) {
   const MorphTrack track = morph_track(mesh.targets.size(), notes.seconds);

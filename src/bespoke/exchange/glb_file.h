@@ -14,9 +14,6 @@ struct GlbNotes {
   double seconds = seconds_of_morphing;
 };
 
-/// Metres of "m", "dm", "cm", "mm", "in" or "ft"; none for other names.
-std::optional<double> metres_per_unit(const std::string& unit);
-
 /// Writes a binary glTF file: triangles, morph targets named by their t, and an animation of their weights
 /// that follows the pieces. Texture coordinates are kept; normals are recomputed for every target where the
 /// product had some. The file appears whole or not at all, with the same bytes for the same mesh. Throws

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace bespoke {
+
+/// Metres of a unit by one of its names ("mm", "cm", "m", "metres", "in" …), whatever their case; none for
+/// other names.
+std::optional<double> metres_per_unit(const std::string& unit);
 
 /// The unit that a file's format fixes: "m" for glTF, by the ending of the name; empty for the others, which
 /// leave it open.
