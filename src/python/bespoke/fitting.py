@@ -58,7 +58,8 @@ def fit(
     "10%" of the source's diagonal, `max_memory` is in bytes. Without anchors models in similar pose are aligned by their
     surfaces, or refused. Given the same input, the map is the command's, bit for bit.
 
-    Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be aligned with certainty), MemoryLimitError.
+    Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be
+    aligned with certainty), MemoryLimitError.
     """
     options = {
         "surface_fit": surface_fit,

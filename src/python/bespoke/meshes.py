@@ -26,7 +26,9 @@ class Mesh:
 
 def _arrays(mesh: Mesh, what: str) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
     if not isinstance(mesh, Mesh):
-        raise TypeError(f"{what} must be a bespoke.Mesh, not {type(mesh).__name__}; bespoke.read_mesh reads one from a file")
+        raise TypeError(
+            f"{what} must be a bespoke.Mesh, not {type(mesh).__name__}; bespoke.read_mesh reads one from a file"
+        )
     return mesh.vertices, mesh.faces
 
 
