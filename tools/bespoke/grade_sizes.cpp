@@ -4,11 +4,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 
 namespace bespoke::command {
@@ -58,11 +58,7 @@ std::vector<std::string> map_key(const GradeSize& size) {
   return key;
 }
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string digits(double value) { return in_digits(value, 17); }
 
 ManifestJob fit_job(const GradeRequest& request, const GradeSize& size) {
   ManifestJob job{size.line,

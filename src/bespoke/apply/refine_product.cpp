@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/equal_positions.h"
 
@@ -136,16 +136,6 @@ void split(Product& product, const Middles& middles) {
                                                          static_cast<Eigen::Index>(texture.size()));
 }
 
-/// For every column the first one at the same place.
-std::vector<int> first_at_equal_position(const Points& points) {
-  std::vector<int> first(static_cast<std::size_t>(points.cols()));
-  const EqualPositions equal = equal_positions(points);
-  for (std::size_t group = 0; group < equal.groups(); ++group)
-    for (const int column : equal.group(group))
-      first[static_cast<std::size_t>(column)] = equal.group(group).front();
-  return first;
-}
-
 /// The edges that miss the length, and of every triangle that has one its longest edge. What edges at the
 /// same places ask for holds for all of them.
 Middles chosen_edges(const Product& product, const Eigen::Matrix2Xi& edges, const Eigen::VectorXd& errors,
@@ -190,11 +180,7 @@ double expected_vertices(Eigen::Index vertices, const Eigen::VectorXd& errors, d
          (errors.array() > length).select((errors / length).cwiseSqrt().array() - 1, 0).sum();
 }
 
-std::string in_short(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string in_short(double value) { return in_digits(value, 4); }
 
 }  // namespace
 

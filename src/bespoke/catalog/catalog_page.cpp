@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "bespoke/catalog/catalog_file.h"
+#include "bespoke/digits.h"
 
 namespace bespoke {
 namespace {
@@ -45,11 +46,7 @@ std::string address(const std::string& file) {
   return result;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 3); }
 
 std::string hash_cell(const std::string& hash) {
   return "<td><code title=\"" + escaped(hash) + "\">" + escaped(hash.substr(0, shown_digits)) +

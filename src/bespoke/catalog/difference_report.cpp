@@ -1,11 +1,11 @@
 #include "bespoke/catalog/difference_report.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <optional>
 #include <sstream>
 
+#include "bespoke/digits.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -13,17 +13,9 @@ namespace {
 
 constexpr std::size_t printed_anchors = 10;  // JSON has all
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 4); }
 
-std::string tuple(const Vector3& v) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", v.x(), v.y(), v.z());
-  return text;
-}
+std::string tuple(const Vector3& v) { return in_digits(v, 6); }
 
 struct NearAnchor {
   std::string name;

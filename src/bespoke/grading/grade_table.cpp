@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bespoke/apply/apply_mapping.h"
+#include "bespoke/digits.h"
 
 namespace bespoke {
 namespace {
@@ -16,11 +17,7 @@ std::string fixed(double value, int decimals, const char* format = "%.*f") {
 }
 
 /// Digits that programs read: more than a float of a model's file has.
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 9); }
 
 /// A name as a cell of a table whose cells end at commas.
 std::string csv_cell(const std::string& text) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "bespoke/digits.h"
 #include "bespoke/page/detail/base64.h"
 #include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/picture.h"
@@ -21,11 +21,7 @@ constexpr int picture_size = 560;       // pixels: two beside each other fit a m
 constexpr double largest_shown = 0.99;  // quantile where the colours end
 const Vector3 source_colour(0.73, 0.64, 0.55), target_colour(0.62, 0.70, 0.78);  // as the page's
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 3); }
 
 /// Where the colours of a field end, on both sides of 0 for changes.
 double reach_of(const VertexField& field) {

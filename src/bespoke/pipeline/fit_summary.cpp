@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "bespoke/digits.h"
+
 namespace bespoke {
 
 std::string to_string(const RigidSummary& summary) {
@@ -63,11 +65,9 @@ std::string to_string(const ElasticSummary& summary) {
 std::string to_string(const std::vector<CurveSummary>& curves) {
   std::string line;
   for (const CurveSummary& curve : curves) {
-    char distance[32];
-    std::snprintf(distance, sizeof distance, "%.4g", curve.largest_distance);
     line += (line.empty() ? "" : ", ") +
-            (curve.name.empty() ? std::string("a curve") : '"' + curve.name + '"') + " at most " + distance +
-            " off";
+            (curve.name.empty() ? std::string("a curve") : '"' + curve.name + '"') + " at most " +
+            in_digits(curve.largest_distance, 4) + " off";
   }
   return line;
 }

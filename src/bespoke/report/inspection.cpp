@@ -2,27 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iomanip>
 #include <sstream>
 #include <vector>
 
+#include "bespoke/digits.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 6); }
 
-std::string tuple(const Vector3& v) {
-  char text[96];
-  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g)", v.x(), v.y(), v.z());
-  return text;
-}
+std::string tuple(const Vector3& v) { return in_digits(v, 6); }
 
 std::string rows(const Matrix3& matrix) {
   std::string text;

@@ -1,8 +1,8 @@
 #include "bespoke/report/quality_report.h"
 
 #include <cassert>
-#include <cstdio>
 
+#include "bespoke/digits.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -36,11 +36,7 @@ Json to_json(const ProductQuality& product) {
           {"self_intersections_after", product.self_intersections_after}};
 }
 
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 4); }
 
 std::string penetration_text(const Penetration& penetration) {
   return std::to_string(penetration.vertices) + " vertices, " + number(100 * penetration.area_share) +

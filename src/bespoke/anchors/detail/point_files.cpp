@@ -2,12 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <string_view>
 
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 
@@ -16,11 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string digits(double value) { return in_digits(value, 17); }
 
 std::string triple(const Vector3& x, const char* separator) {
   return digits(x.x()) + separator + digits(x.y()) + separator + digits(x.z());

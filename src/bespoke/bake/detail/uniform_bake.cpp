@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include "bespoke/bake/band.h"
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/bake/leaf_samples.h"
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/stopwatch.h"
 
@@ -72,11 +72,7 @@ double probe_error(const ElasticMap& map, const Points& x, double voxel_size) {
   return error;
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string short_number(double value) { return in_digits(value, 4); }
 
 UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) {
   const Support support = map.support();

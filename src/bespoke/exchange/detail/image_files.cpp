@@ -2,19 +2,16 @@
 
 #include <bit>
 #include <cstdint>
-#include <cstdio>
 #include <ostream>
+
+#include "bespoke/digits.h"
 
 namespace bespoke {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the headers below say so");
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 17); }
 
 std::string numbers(const Vector3& v) { return number(v.x()) + " " + number(v.y()) + " " + number(v.z()); }
 

@@ -1,10 +1,10 @@
 #include "bespoke/page/detail/places.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <utility>
 
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/summary_json.h"
 
@@ -14,11 +14,7 @@ namespace {
 constexpr std::size_t most_places = 100;  // of a kind: nobody visits more
 constexpr double group_radius = 0.03;     // of the diagonal: about what a flight to a place shows
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return in_digits(value, 4); }
 
 std::string tuple(const Vector3& x) {
   return "(" + number(x.x()) + ", " + number(x.y()) + ", " + number(x.z()) + ")";
