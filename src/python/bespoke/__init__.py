@@ -1,4 +1,4 @@
-"""Maps of the space around one model onto the space around another.
+"""Maps of the space around one model onto the space around another::
 
     import bespoke
 
