@@ -125,6 +125,28 @@ TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
   EXPECT_EQ(records[0]["figures"]["bijection"], true);
 }
 
+TEST_F(BatchCommand, ShowsWhatItFitsOnPages) {
+  const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "out.obj")};
+  const ProgramResult first = batch(jobs, {"--html", file("pages")});
+  if (first.exit_code == 4) GTEST_SKIP() << first.err;  // built without pages
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const std::string index = read("pages/index.html");
+  EXPECT_THAT(index,
+              AllOf(HasSubstr("<h1>1 result</h1>"), HasSubstr("product.obj"), HasSubstr("../map.vdb")));
+  EXPECT_THAT(batch(jobs, {"--html", file("pages")}).err, HasSubstr("4 up to date"));
+
+  // One that fails is named; the others are shown.
+  json other = fit("other.vdb");
+  other["anchors"] = file("three.json");
+  write_text(file("three.json"), R"({"pairs": []})");
+  EXPECT_EQ(batch({fit("map.vdb"), other}, {"--html", file("pages"), "--keep-going"}).exit_code, 3);
+  EXPECT_THAT(read("pages/index.html"), AllOf(HasSubstr("<h1>1 result</h1>"), HasSubstr("Not made")));
+  write_text(file("taken"), "");
+  const ProgramResult taken = batch(jobs, {"--html", file("taken")});
+  EXPECT_EQ(taken.exit_code, 4);
+  EXPECT_THAT(taken.err, HasSubstr("taken: is no directory"));
+}
+
 TEST_F(BatchCommand, RepeatsNothingThatIsUpToDate) {
   const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "moved/out.obj")};
   ASSERT_EQ(batch(jobs).exit_code, 0);

@@ -20,6 +20,13 @@ TEST(Command, NeedsASubcommand) {
   EXPECT_THAT(option.err, HasSubstr("--colour"));
 }
 
+TEST(Command, PointsToTheHelpOfWhatWasMeant) {
+  EXPECT_THAT(bespoke({"knit"}).err, HasSubstr("'knit'; see bespoke --help"));
+  EXPECT_THAT(bespoke({"info", "map.vdb", "--colour"}).err, HasSubstr("see bespoke info --help"));
+  EXPECT_THAT(bespoke({"anchors", "audit", "a", "b", "c"}).err,
+              HasSubstr("see bespoke anchors audit --help"));
+}
+
 TEST(Command, SaysItsVersion) {
   const ProgramResult version = bespoke({"--version"});
   EXPECT_EQ(version.exit_code, 0);

@@ -92,6 +92,21 @@ TEST_F(GradeCommand, FillsTheSizesBetweenFromOneMap) {
   EXPECT_FALSE(pair_.has("sizes/whole/map.vdb"));
 }
 
+TEST_F(GradeCommand, ShowsTheSizesOnPages) {
+  const ProgramResult result = grade({"--target", file("target.obj"), "--anchors", file("anchors.json"),
+                                      "--between", "1", "--html", file("pages")});
+  if (result.exit_code == 4) GTEST_SKIP() << result.err;  // built without pages
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string index = read_text(file("pages/index.html"));
+  for (const std::string size : {"1_of_2", "2_of_2"}) {
+    EXPECT_THAT(index, HasSubstr("src=\"" + size + ".png\""));
+    EXPECT_TRUE(pair_.has("pages/" + size + ".png"));
+  }
+  EXPECT_NE(read_text(file("pages/1_of_2.png")), read_text(file("pages/2_of_2.png")));
+  EXPECT_TRUE(pair_.has("pages/1_of_2.html"));
+  EXPECT_FALSE(pair_.has("pages/2_of_2.html"));  // both sizes are of one map
+}
+
 // The purpose of grading: the paper's Fig. 7.
 TEST_F(GradeCommand, ReproducesTheHipGirthsOfTheSamples) {
   ASSERT_EQ(bespoke({"samples", file("models"), "girths", "-q"}).exit_code, 0);

@@ -37,6 +37,16 @@ TEST(ViewCommand, WritesOneFileThatNamesNoOther) {
   EXPECT_THAT(page, Not(HasSubstr("{{")));
 }
 
+TEST(ViewCommand, IsWhatFitWritesWithItsFindings) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  const ProgramResult result = pair.fit("map.vdb", {"--html", pair.file("pages")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read_text(pair.file("pages/map.html")), HasSubstr("<!doctype html>"));
+  EXPECT_THAT(read_text(pair.file("pages/map.png")), testing::StartsWith("\x89PNG"));
+  EXPECT_THAT(read_text(pair.file("pages/index.html")), HasSubstr("href=\"map.html\""));
+}
+
 TEST(ViewCommand, RefusesOtherModelsAndFindings) {
   const ExamplePair pair;
   if (!has_pages(pair)) GTEST_SKIP() << "built without pages";

@@ -25,6 +25,7 @@ struct Shard {
 struct BatchArguments {
   std::string manifest;
   std::string log;
+  std::string html;
   Shard shard;
   std::optional<int> jobs;
   std::optional<int> threads;
@@ -114,7 +115,9 @@ void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts
 void run(const BatchArguments& arguments) {
   OpenedMaps maps;
   Manifest manifest = read_manifest(arguments.manifest);
-  JobGraph graph = make_job_graph(plan_jobs(manifest, maps));
+  std::optional<HtmlPages> pages;
+  if (!arguments.html.empty()) pages.emplace(arguments.html, fitted_maps(manifest));
+  JobGraph graph = make_job_graph(plan_jobs(manifest, maps, pages ? &*pages : nullptr));
   manifest.faults.insert(manifest.faults.end(), graph.faults.begin(), graph.faults.end());
   require_no_faults(arguments.manifest, std::move(manifest.faults));
   if (graph.jobs.empty()) throw InvalidInput(arguments.manifest + ": holds no job");
@@ -129,7 +132,8 @@ void run(const BatchArguments& arguments) {
   if (arguments.dry_run)
     print_plan(graph, forecasts);
   else
-    run_jobs({arguments.manifest, style_of(arguments), arguments.log}, graph, forecasts, options, maps);
+    run_jobs({arguments.manifest, style_of(arguments), arguments.log}, graph, forecasts, options, maps,
+             pages ? &*pages : nullptr);
 }
 
 void add_limits(CLI::App& batch, BatchArguments& arguments) {
@@ -157,6 +161,10 @@ void add_outputs(CLI::App& batch, BatchArguments& arguments) {
       .add_option("--log", arguments.log,
                   "Append one JSON line a job: state, seconds, memory, error, figures")
       ->type_name("FILE.jsonl");
+  batch
+      .add_option("--html", arguments.html,
+                  "Write a page for every map that the batch fits, and an index of them with pictures")
+      ->type_name("DIR");
   CLI::Option* json = batch.add_flag("--json", arguments.json, "Print events as JSON lines");
   batch
       .add_option_function<std::string>(
@@ -177,7 +185,8 @@ void add_batch_command(CLI::App& app) {
       ->add_option(
           "MANIFEST", arguments->manifest,
           "One JSON object a line, or .csv with a header: command (fit, apply, invert, compose, check, "
-          "measure, diff or export), and its options by their names, positional ones in lower case")
+          "measure, diff, export, view or report), and its options by their names, positional ones in lower "
+          "case")
       ->required();
   add_limits(*batch, *arguments);
   add_outputs(*batch, *arguments);

@@ -22,10 +22,11 @@ constexpr std::array commands{
     JobCommand{"fit", add_fit_command},       JobCommand{"apply", add_apply_command},
     JobCommand{"invert", add_invert_command}, JobCommand{"compose", add_compose_command},
     JobCommand{"check", add_check_command},   JobCommand{"measure", add_measure_command},
-    JobCommand{"diff", add_diff_command},     JobCommand{"export", add_export_command}};
+    JobCommand{"diff", add_diff_command},     JobCommand{"export", add_export_command},
+    JobCommand{"view", add_view_command},     JobCommand{"report", add_report_command}};
 
 // What the batch decides for all of its jobs.
-constexpr std::array keys_of_the_batch{"threads", "quiet", "help"};
+constexpr std::array keys_of_the_batch{"threads", "quiet", "help", "html"};
 
 std::string command_names() {
   std::string names;
@@ -161,16 +162,21 @@ BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned) const {
   return job;
 }
 
-std::vector<BatchJob> plan_jobs(Manifest& manifest, OpenedMaps& maps) {
+std::vector<BatchJob> plan_jobs(Manifest& manifest, OpenedMaps& maps, const HtmlPages* pages) {
   JobPlanner planner(maps);
   std::vector<BatchJob> jobs;
-  for (const ManifestJob& line : manifest.jobs) {
+  std::vector<ManifestJob> lines = manifest.jobs;
+  if (pages)
+    for (ManifestJob& line : pages->page_lines()) lines.push_back(std::move(line));
+  for (const ManifestJob& line : lines) {
     try {
       jobs.push_back(planner.plan(line));
     } catch (const std::exception& error) {
       manifest.faults.push_back({line.line, error.what()});
     }
   }
+  if (pages)
+    for (BatchJob& job : pages->picture_jobs(maps)) jobs.push_back(std::move(job));
   return jobs;
 }
 

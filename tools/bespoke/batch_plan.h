@@ -8,6 +8,7 @@
 #include "bespoke/batch/batch_job.h"
 #include "bespoke/batch/manifest.h"
 #include "bespoke/batch/opened_maps.h"
+#include "html_pages.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
@@ -33,7 +34,7 @@ class JobPlanner {
   std::map<std::string, std::shared_ptr<Parser>> parsers_;
 };
 
-/// The jobs of a manifest that can be planned; the others become faults.
-std::vector<BatchJob> plan_jobs(Manifest& manifest, OpenedMaps& maps);
+/// The jobs of a manifest that can be planned, and of `pages`, if any; the others become faults.
+std::vector<BatchJob> plan_jobs(Manifest& manifest, OpenedMaps& maps, const HtmlPages* pages = nullptr);
 
 }  // namespace bespoke::command

@@ -6,6 +6,7 @@
 #include "batch_display.h"
 #include "bespoke/batch/opened_maps.h"
 #include "bespoke/batch/run_batch.h"
+#include "html_pages.h"
 
 namespace bespoke::command {
 
@@ -23,9 +24,9 @@ BatchOptions batch_options(int threads);
 /// Prints every fault and throws InvalidInput when there are any: nothing has run.
 void require_no_faults(const std::string& name, std::vector<ManifestFault> faults);
 
-/// Runs the jobs and shows how far they are. Throws SolverError when some failed, Interrupted when some did
-/// not start.
+/// Runs the jobs and shows how far they are; then `pages`, if any, get their index, unless nothing has
+/// changed. Throws SolverError when some failed, Interrupted when some did not start.
 void run_jobs(const BatchShow& show, const JobGraph& graph, const std::vector<JobForecast>& forecasts,
-              const BatchOptions& options, OpenedMaps& maps);
+              const BatchOptions& options, OpenedMaps& maps, const HtmlPages* pages = nullptr);
 
 }  // namespace bespoke::command

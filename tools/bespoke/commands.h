@@ -12,10 +12,8 @@ void add_grade_command(CLI::App& app);
 void add_catalog_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_samples_command(CLI::App& app);
-void add_view_command(CLI::App& app);
 void add_pick_command(CLI::App& app);
 void add_anchors_command(CLI::App& app);
-void add_report_command(CLI::App& app);
 
 /// Each adds one subcommand that can be a job of a batch: while the arguments are parsed, its run is planned
 /// and taken. May parse again after that, but not after an error.
@@ -27,6 +25,8 @@ void add_compose_command(CLI::App& app, const TakePlan& take);
 void add_measure_command(CLI::App& app, const TakePlan& take);
 void add_diff_command(CLI::App& app, const TakePlan& take);
 void add_export_command(CLI::App& app, const TakePlan& take);
+void add_view_command(CLI::App& app, const TakePlan& take);
+void add_report_command(CLI::App& app, const TakePlan& take);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

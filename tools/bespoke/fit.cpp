@@ -9,16 +9,19 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
+#include "bespoke/page/view_scene.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
+#include "html_pages.h"
 #include "length_option.h"
 #include "memory_option.h"
 #include "name_option.h"
 #include "output_files.h"
+#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -32,6 +35,7 @@ struct FitArguments : MapRequest {
   std::string fitted_out;
   std::string confidence_out;
   std::string report;
+  std::string html;
   bool require_certified = false;
   bool add_corners = false;
   RunOptions run;
@@ -139,8 +143,42 @@ std::vector<JobFigure> figures(const MadeMap& made) {
           {"voxels", voxel_count(made.asset)}};
 }
 
+ShownMap shown_map(const FitArguments& arguments) {
+  return {0,
+          std::filesystem::path(arguments.output).stem().string(),
+          arguments.output,
+          arguments.source,
+          arguments.target,
+          {},
+          {},
+          {},
+          1};
+}
+
+/// The map's page, which shows what the fit found as well, its picture, and the index.
+void write_pages(const HtmlPages& pages, const FitArguments& arguments, const MakeMapInput& input,
+                 const MadeMap& made, const RunContext& context) {
+  const ShownMap shown = shown_map(arguments);
+  const std::string scene = view_scene({made.asset,
+                                        input.source,
+                                        input.target,
+                                        {},
+                                        findings_of(made.fit),
+                                        std::filesystem::path(shown.map).filename().string(),
+                                        typed_command()},
+                                       {}, context.progress);
+  pages.make_directory();
+  OutputFiles files;
+  files.write_text(pages.page(shown), whole_page(scene));
+  files.keep();
+  pages.write_picture(shown, *context.maps.open(shown.map, MapForm::grids, {}));
+  pages.write_index();
+}
+
 void run(const FitArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
+  std::optional<HtmlPages> pages;
+  if (!arguments.html.empty()) pages.emplace(arguments.html, std::vector{shown_map(arguments)});
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;
   const TriangleMesh source = read_model("source", arguments.source, quiet);
@@ -183,6 +221,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty()) files.write_text(arguments.report, fit_report(input, made, seconds));
   files.keep();
+  if (pages) write_pages(*pages, arguments, input, made, context);
 
   context.findings.figures = figures(made);
   warn_of_missed_tolerance(context, arguments, options, made);
@@ -295,6 +334,8 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_option("--report", arguments.report,
                  "Write residuals, iterations, seconds, counts and memory as JSON")
       ->type_name("FILE");
+  fit.add_option("--html", arguments.html, "Write a page that shows the map, as `view`, and an index of it")
+      ->type_name("DIR");
 }
 
 }  // namespace

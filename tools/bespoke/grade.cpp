@@ -13,6 +13,7 @@
 #include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "grade_sizes.h"
+#include "html_pages.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -27,6 +28,7 @@ struct GradeArguments {
   std::string anchors;
   std::string measures;
   std::string log;
+  std::string html;
   std::optional<int> between;
   RunOptions run;
 
@@ -127,11 +129,20 @@ BatchJob tables_job(const GradeArguments& arguments, const std::vector<GradeSize
   return job;
 }
 
-JobGraph graph_of(const GradeArguments& arguments, GradeSizes sizes, OpenedMaps& maps) {
+std::vector<ShownMap> shown_sizes(const GradeRequest& request, const std::vector<GradeSize>& sizes) {
+  std::vector<ShownMap> shown;
+  for (const GradeSize& size : sizes)
+    shown.push_back(
+        {size.line, size.name, size.map, request.source, size.target, request.products, {}, {}, size.t});
+  return shown;
+}
+
+JobGraph graph_of(const GradeArguments& arguments, GradeSizes sizes, OpenedMaps& maps,
+                  const HtmlPages* pages) {
   std::optional<MeasuringSheet> sheet;
   if (!arguments.measures.empty()) sheet = plan_measures(arguments, sizes);
   Manifest manifest = grade_manifest(arguments.request, sizes);
-  std::vector<BatchJob> jobs = plan_jobs(manifest, maps);
+  std::vector<BatchJob> jobs = plan_jobs(manifest, maps, pages);
   if (sheet && manifest.faults.empty()) jobs.push_back(tables_job(arguments, sizes.sizes, *sheet, maps));
   JobGraph graph = make_job_graph(std::move(jobs));
   graph.faults.insert(graph.faults.end(), manifest.faults.begin(), manifest.faults.end());
@@ -154,15 +165,16 @@ void run(const GradeArguments& arguments) {
   if (fs::exists(out_dir) && !fs::is_directory(out_dir))
     throw FileError(out_dir.string() + ": is no directory");
   OpenedMaps maps;
-  const JobGraph graph = graph_of(
-      arguments,
-      arguments.sizes.empty()
-          ? sizes_between(arguments.target, arguments.anchors, arguments.between.value_or(0), out_dir)
-          : sizes_of_table(arguments.sizes, out_dir),
-      maps);
+  const GradeSizes sizes = arguments.sizes.empty() ? sizes_between(arguments.target, arguments.anchors,
+                                                                   arguments.between.value_or(0), out_dir)
+                                                   : sizes_of_table(arguments.sizes, out_dir);
+  std::optional<HtmlPages> pages;
+  if (!arguments.html.empty()) pages.emplace(arguments.html, shown_sizes(arguments.request, sizes.sizes));
+  const JobGraph graph = graph_of(arguments, sizes, maps, pages ? &*pages : nullptr);
   require_no_faults(arguments.name(), graph.faults);
   run_jobs({arguments.name(), arguments.run.quiet ? BatchStyle::quiet : BatchStyle::line, arguments.log},
-           graph, forecast_jobs(graph), batch_options(arguments.run.threads), maps);
+           graph, forecast_jobs(graph), batch_options(arguments.run.threads), maps,
+           pages ? &*pages : nullptr);
   if (arguments.run.quiet || arguments.measures.empty()) return;
   std::ifstream table(out_dir / "measures.md");
   std::cout << table.rdbuf();
@@ -209,6 +221,10 @@ void add_grade_command(CLI::App& app) {
         ->type_name("NAME")
         ->allow_extra_args(false);
   grade->add_option("--log", arguments->log, "Append one JSON line a job")->type_name("FILE.jsonl");
+  grade
+      ->add_option("--html", arguments->html,
+                   "Write a page for every map, and an index of the sizes with pictures")
+      ->type_name("DIR");
   add_run_options(*grade, arguments->run);
   grade->footer(
       "What is up to date is not repeated (see `bespoke batch --help`). A girth is the section of the "

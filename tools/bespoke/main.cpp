@@ -64,10 +64,10 @@ int main(int argc, char** argv) {
   add_catalog_command(app);
   add_export_command(app, run_at_once);
   add_samples_command(app);
-  add_view_command(app);
+  add_view_command(app, run_at_once);
   add_pick_command(app);
   add_anchors_command(app);
-  add_report_command(app);
+  add_report_command(app, run_at_once);
 
   remember_arguments(argc, argv);
   remember_interruptions();

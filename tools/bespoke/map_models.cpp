@@ -1,9 +1,12 @@
 #include "map_models.h"
 
+#include <utility>
+
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
+#include "planned_run.h"
 
 namespace bespoke::command {
 
@@ -23,11 +26,13 @@ void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
   app.add_flag("--untrusted", arguments.untrusted, "Check the asset in a child process under limits first");
 }
 
-std::vector<std::filesystem::path> inputs_of(const MapModelArguments& arguments) {
-  std::vector<std::filesystem::path> inputs{arguments.map, arguments.source, arguments.target};
-  inputs.insert(inputs.end(), arguments.products.begin(), arguments.products.end());
-  for (const std::string& file : {arguments.confidence, arguments.fit_report})
-    if (!file.empty()) inputs.push_back(file);
+std::vector<JobFile> inputs_of(const MapModelArguments& arguments) {
+  std::vector<JobFile> inputs{
+      {"map", arguments.map}, {"source", arguments.source}, {"target", arguments.target}};
+  for (const std::string& product : arguments.products) inputs.push_back({"product", product});
+  for (JobFile& file :
+       named_files({{"confidence", arguments.confidence}, {"fit-report", arguments.fit_report}}))
+    inputs.push_back(std::move(file));
   return inputs;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/asset/asset.h"
+#include "bespoke/batch/batch_job.h"
 #include "bespoke/page/fit_findings.h"
 #include "bespoke/quality/mapping_quality.h"
 
@@ -24,7 +25,7 @@ struct MapModelArguments {
 
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments);
 
-std::vector<std::filesystem::path> inputs_of(const MapModelArguments& arguments);
+std::vector<JobFile> inputs_of(const MapModelArguments& arguments);
 
 struct MapModels {
   Asset asset;

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "bespoke/page/map_report.h"
 #include "commands.h"
@@ -20,32 +21,41 @@ struct ReportArguments {
   RunOptions run;
 };
 
-void run(const ReportArguments& arguments, const Progress& progress) {
+std::vector<JobFile> outputs(const ReportArguments& arguments) { return {{"output", arguments.output}}; }
+
+bool is_html(const ReportArguments& arguments) { return fs::path(arguments.output).extension() == ".html"; }
+
+void require_ending(const ReportArguments& arguments) {
+  if (!is_html(arguments) && fs::path(arguments.output).extension() != ".md")
+    throw CLI::ValidationError("--output", arguments.output + " must end in .md or .html");
+}
+
+void run(const ReportArguments& arguments, const RunContext& context) {
+  require_safe_outputs(inputs_of(arguments.models), outputs(arguments));
   const fs::path output = arguments.output;
-  const bool is_html = output.extension() == ".html";
-  if (!is_html && output.extension() != ".md")
-    throw CLI::ValidationError("--output", output.string() + " must end in .md or .html");
-  require_safe_outputs(inputs_of(arguments.models), {output});
   const MapModels models = read_map_models(arguments.models);
   const MapReport report =
       map_report({models.asset, models.source, models.target, models.products, models.findings,
                   fs::path(arguments.models.map).filename().string(), typed_command()},
-                 progress);
-  OutputFiles outputs;
-  if (is_html) {
-    outputs.write_text(output, report_html(report));
+                 context.progress);
+  OutputFiles files;
+  if (is_html(arguments)) {
+    files.write_text(output, report_html(report));
   } else {
     const std::string prefix = output.stem().string() + "_";
-    for (const ReportPicture& picture : report.pictures)
-      outputs.write_text(output.parent_path() / (prefix + picture.name + ".png"), picture.png);
-    outputs.write_text(output, report_markdown(report, prefix));
+    for (const ReportPicture& picture : report.pictures) {
+      const fs::path path = output.parent_path() / (prefix + picture.name + ".png");
+      files.write_text(path, picture.png);
+      context.findings.further_outputs.push_back(path);
+    }
+    files.write_text(output, report_markdown(report, prefix));
   }
-  outputs.keep();
+  files.keep();
 }
 
 }  // namespace
 
-void add_report_command(CLI::App& app) {
+void add_report_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* report =
       app.add_subcommand("report", "Write pictures and measures of a map, to mail or to attach");
@@ -61,8 +71,12 @@ void add_report_command(CLI::App& app) {
       "Examples:\n"
       "  bespoke report dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.md\n"
       "  bespoke report map.vdb --source a.obj --target b.obj -o map.html");
-  report->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  report->callback([arguments, take] {
+    const ReportArguments given = std::exchange(*arguments, {});
+    require_ending(given);
+    take({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
+            run(given, c);
+          }});
   });
 }
 

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
@@ -22,22 +23,24 @@ struct ViewArguments {
   RunOptions run;
 };
 
-void run(const ViewArguments& arguments, const Progress& progress) {
+std::vector<JobFile> outputs(const ViewArguments& arguments) { return {{"output", arguments.output}}; }
+
+void run(const ViewArguments& arguments, const RunContext& context) {
   require_pages();
-  require_safe_outputs(inputs_of(arguments.models), {arguments.output});
+  require_safe_outputs(inputs_of(arguments.models), outputs(arguments));
   const MapModels models = read_map_models(arguments.models);
   const std::string scene =
       view_scene({models.asset, models.source, models.target, models.products, models.findings,
                   std::filesystem::path(arguments.models.map).filename().string(), typed_command()},
-                 {.most_faces = arguments.most_faces}, progress);
-  OutputFiles outputs;
-  outputs.write_text(arguments.output, whole_page(scene));
-  outputs.keep();
+                 {.most_faces = arguments.most_faces}, context.progress);
+  OutputFiles files;
+  files.write_text(arguments.output, whole_page(scene));
+  files.keep();
 }
 
 }  // namespace
 
-void add_view_command(CLI::App& app) {
+void add_view_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view =
       app.add_subcommand("view", "Write a page that shows a map, to judge it by eye in a browser");
@@ -57,8 +60,11 @@ void add_view_command(CLI::App& app) {
       "  bespoke view dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.html\n"
       "  bespoke view map.vdb --source a.obj --target b.obj --confidence a.conf --fit-report fit.json -o "
       "map.html");
-  view->callback([arguments] {
-    run_with(arguments->run, [&](const Progress& progress) { run(*arguments, progress); });
+  view->callback([arguments, take] {
+    const ViewArguments given = std::exchange(*arguments, {});
+    take({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
+            run(given, c);
+          }});
   });
 }
 

@@ -26,11 +26,12 @@ struct Rates {
   double memory_per_byte;
 };
 
-constexpr std::array rates{Rates{"fit", 2, 3e-6, 2e8, 100},     Rates{"apply", 1e-3, 1e-7, 8e6, 1},
-                           Rates{"invert", 2, 1e-6, 2e8, 60},   Rates{"compose", 2, 1e-6, 2e8, 60},
-                           Rates{"check", 0.1, 2e-7, 2e7, 20},  Rates{"measure", 0.3, 1e-7, 1e8, 20},
-                           Rates{"diff", 0.3, 1.5e-8, 6e7, 5},  Rates{"export", 0.2, 3e-8, 5e7, 12},
-                           Rates{"measures", 0.1, 2e-8, 3e8, 1}};
+constexpr std::array rates{Rates{"fit", 2, 3e-6, 2e8, 100},      Rates{"apply", 1e-3, 1e-7, 8e6, 1},
+                           Rates{"invert", 2, 1e-6, 2e8, 60},    Rates{"compose", 2, 1e-6, 2e8, 60},
+                           Rates{"check", 0.1, 2e-7, 2e7, 20},   Rates{"measure", 0.3, 1e-7, 1e8, 20},
+                           Rates{"diff", 0.3, 1.5e-8, 6e7, 5},   Rates{"export", 0.2, 3e-8, 5e7, 12},
+                           Rates{"measures", 0.1, 2e-8, 3e8, 1}, Rates{"view", 1, 2e-7, 2e8, 30},
+                           Rates{"report", 1, 2e-7, 2e8, 30},    Rates{"picture", 0.1, 2e-8, 5e7, 5}};
 
 // An atlas and the values that it was made of, of a file's byte (the README's look-up table).
 constexpr double map_memory_per_byte = 8;

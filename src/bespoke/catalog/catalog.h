@@ -47,6 +47,9 @@ struct Catalog {
   std::vector<std::string> others;   ///< OpenVDB files that were never assets, for instance images
 };
 
+/// What a catalogue says of one asset, without its `file`. Throws as read_asset.
+CatalogEntry catalog_entry(const std::filesystem::path& path, const ReadAssetOptions& options = {});
+
 /// Reads and verifies every .vdb file in a directory and below, several at a time; hidden ones are left out.
 /// A function of the files alone. Throws FileError when there is no such directory, Interrupted.
 Catalog index_assets(const std::filesystem::path& directory, const ReadAssetOptions& options = {},

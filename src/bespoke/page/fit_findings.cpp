@@ -20,6 +20,13 @@ std::string text_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+FitFindings findings_of(const FittedMapping& fit) {
+  FitFindings findings{fit.confidence, std::vector<FitFindings::Unmet>()};
+  for (const UnmetVertex& vertex : fit.summary.elastic.unmet)
+    findings.unmet->push_back({vertex.vertex, vertex.residual, to_string(vertex.reason)});
+  return findings;
+}
+
 std::vector<double> read_confidence(const std::filesystem::path& path) {
   std::istringstream lines(text_of(path));
   std::vector<double> values;

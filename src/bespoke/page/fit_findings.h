@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/pipeline/fit_mapping.h"
+
 namespace bespoke {
 
 /// What a fit found at the source's vertices and does not store in the map.
@@ -17,6 +19,9 @@ struct FitFindings {
   std::vector<double> confidence;           ///< of every vertex, 0 to 1; empty when not given
   std::optional<std::vector<Unmet>> unmet;  ///< empty when not given
 };
+
+/// What a fit that has just been made found.
+FitFindings findings_of(const FittedMapping& fit);
 
 /// One number a line, as `fit --confidence-out` writes it. Throws FileError, FormatError naming the line.
 std::vector<double> read_confidence(const std::filesystem::path& path);

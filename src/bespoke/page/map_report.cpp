@@ -10,6 +10,7 @@
 #include "bespoke/page/detail/picture.h"
 #include "bespoke/page/detail/places.h"
 #include "bespoke/page/detail/vertex_fields.h"
+#include "bespoke/page/html_text.h"
 #include "bespoke/report/inspection.h"
 #include "bespoke/report/quality_report.h"
 #include "bespoke/statistics.h"
@@ -103,20 +104,6 @@ class Reporter {
 std::string quality_lines(const ViewInput& input, const Progress& progress) {
   const MappingQuality quality = input_quality(input, loaded_chain(input.asset.steps), progress);
   return quality_text(quality, product_names(input), input.asset.record.unit);
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text)
-    if (letter == '<')
-      result += "&lt;";
-    else if (letter == '&')
-      result += "&amp;";
-    else if (letter == '"')
-      result += "&quot;";
-    else
-      result += letter;
-  return result;
 }
 
 }  // namespace

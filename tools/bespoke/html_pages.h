@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bespoke/batch/batch_job.h"
+#include "bespoke/batch/manifest.h"
+#include "bespoke/batch/opened_maps.h"
+
+namespace bespoke::command {
+
+/// A map that `--html` shows, as far as t, with what it carries.
+struct ShownMap {
+  std::size_t line = 0;  ///< of the manifest; 0: there is none
+  std::string name;      ///< of its row and its picture, unlike all others'
+  std::string map;
+  std::string source;
+  std::string target;
+  std::vector<std::string> products;
+  std::string confidence;  ///< what the fit wrote beside the map; empty without
+  std::string fit_report;
+  double t = 1;
+};
+
+/// What a manifest fits, with the products that its other jobs carry by it.
+std::vector<ShownMap> fitted_maps(const Manifest& manifest);
+
+/// The directory of `--html`: a page for every map, a picture for every row, and an index of them.
+class HtmlPages {
+ public:
+  /// Throws FileError in a build without pages, and where `directory` is something else.
+  HtmlPages(std::filesystem::path directory, std::vector<ShownMap> maps);
+
+  /// The jobs that write the pages, as lines of a manifest.
+  std::vector<ManifestJob> page_lines() const;
+
+  /// The jobs that draw the pictures. `maps` must outlive them.
+  std::vector<BatchJob> picture_jobs(OpenedMaps& maps) const;
+
+  /// Makes the directory where there is none. Throws FileError.
+  void make_directory() const;
+
+  /// Draws the picture of a row.
+  void write_picture(const ShownMap& shown, const OpenedMap& map) const;
+
+  /// Writes the index over what has been made; names what has not.
+  void write_index() const;
+
+  bool has_index() const;
+  std::filesystem::path page(const ShownMap& shown) const;  ///< that of the first row of the same map
+
+ private:
+  std::filesystem::path picture(const ShownMap& shown) const;
+  std::filesystem::path index() const;
+
+  std::filesystem::path directory_;
+  std::vector<ShownMap> maps_;
+};
+
+}  // namespace bespoke::command
