@@ -10,6 +10,7 @@
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
+#include "bespoke/words.h"
 #include "catalog_option.h"
 #include "commands.h"
 #include "length_option.h"
@@ -56,14 +57,10 @@ std::vector<fs::path> frame_paths(const fs::path& path, std::optional<int> frame
   return paths;
 }
 
-std::string ending(const fs::path& path) {
-  std::string text = path.extension().string();
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
-bool keeps_kind(const fs::path& product, const fs::path& output) { return ending(product) == ending(output); }
+bool keeps_kind(const fs::path& product, const fs::path& output) {
+  return lower_ending(product) == lower_ending(output);
+}
 
 void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
   if (keeps_kind(product, output) && !arguments.refine) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/words.h"
 #include "commands.h"
 
 namespace bespoke::command {
@@ -29,19 +30,13 @@ constexpr std::array commands{
 constexpr std::array keys_of_the_batch{"threads", "quiet", "help", "html"};
 
 std::string command_names() {
-  std::string names;
-  for (const JobCommand& command : commands)
-    names += (names.empty() ? "" : &command == &commands.back() ? " or " : ", ") + std::string(command.name);
-  return names;
+  std::vector<std::string> names;
+  for (const JobCommand& command : commands) names.emplace_back(command.name);
+  return alternatives(names);
 }
 
 std::string upper_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
-  return text;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 

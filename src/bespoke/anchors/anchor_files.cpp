@@ -1,7 +1,6 @@
 #include "bespoke/anchors/anchor_files.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -187,9 +187,7 @@ std::vector<NamedPoint> side_of(const Anchors& anchors, Vector3 AnchorPair::*end
 }  // namespace
 
 AnchorFormat anchor_format_of(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const std::string name = lower_case(path.filename().string());
   if (name.ends_with(".mrk.json")) return AnchorFormat::markups;
   if (name.ends_with(".wrap.json")) return AnchorFormat::wrap;
   if (name.ends_with(".csv")) return AnchorFormat::csv;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/rigid_alignment.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -306,10 +306,8 @@ Points points(const Anchors& anchors, Vector3 AnchorPair::*end) {
 
 Anchors read_anchors(const std::filesystem::path& path) {
   const std::string text = read_text(path);
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  Anchors anchors = ending == ".csv" ? parse_csv(text, path.string()) : parse_json(text, path.string());
+  Anchors anchors =
+      lower_ending(path) == ".csv" ? parse_csv(text, path.string()) : parse_json(text, path.string());
   require_distinct_names(anchors, path.string());
   return anchors;
 }

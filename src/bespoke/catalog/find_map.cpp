@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -20,11 +21,6 @@ void require_digits(const std::string& hash, const char* role) {
   if (!are_digits || hash.size() < least_digits)
     throw InvalidInput(std::string("the ") + role + "'s hash \"" + hash + "\" is not of " +
                        std::to_string(least_digits) + " hexadecimal digits or more");
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 std::string listed(const std::vector<const CatalogEntry*>& entries) {

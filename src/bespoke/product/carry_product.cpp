@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string_view>
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -30,11 +30,9 @@ constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts},
                              Format{".csv", carry_csv}};
 
 const Format* find_format(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto at = std::find_if(formats.begin(), formats.end(),
-                               [&](const Format& format) { return format.ending == ending; });
+  const auto at =
+      std::find_if(formats.begin(), formats.end(),
+                   [ending = lower_ending(path)](const Format& format) { return format.ending == ending; });
   return at == formats.end() ? nullptr : at;
 }
 
@@ -43,12 +41,9 @@ const Format* find_format(const fs::path& path) {
 bool has_product_ending(const fs::path& path) { return find_format(path) != nullptr; }
 
 std::string product_endings() {
-  std::string text;
-  for (const Format& format : formats) {
-    if (!text.empty()) text += &format == &formats.back() ? " or " : ", ";
-    text += format.ending;
-  }
-  return text;
+  std::vector<std::string> known;
+  for (const Format& format : formats) known.emplace_back(format.ending);
+  return alternatives(known);
 }
 
 CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& outputs,

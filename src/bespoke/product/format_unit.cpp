@@ -1,12 +1,11 @@
 #include "bespoke/product/format_unit.h"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/named.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -18,18 +17,12 @@ constexpr std::array units{
     Named<double>{"km", 1000},       Named<double>{"in", 0.0254}, Named<double>{"inch", 0.0254},
     Named<double>{"inches", 0.0254}, Named<double>{"ft", 0.3048}};
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 }  // namespace
 
-std::optional<double> metres_per_unit(const std::string& unit) { return value_of(units, lower(unit)); }
+std::optional<double> metres_per_unit(const std::string& unit) { return value_of(units, lower_case(unit)); }
 
 std::string unit_of_format(const std::filesystem::path& path) {
-  const std::string ending = lower(path.extension().string());
+  const std::string ending = lower_ending(path);
   return ending == ".gltf" || ending == ".glb" ? "m" : "";
 }
 

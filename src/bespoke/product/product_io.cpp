@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -15,6 +14,7 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -33,22 +33,17 @@ constexpr std::array face_formats{FaceFormat{".obj", read_obj_faces, write_obj_f
                                   FaceFormat{".glb", read_gltf_faces}};
 
 const FaceFormat* find_format(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto at = std::find_if(face_formats.begin(), face_formats.end(),
-                               [&](const FaceFormat& format) { return format.ending == ending; });
+  const auto at = std::find_if(
+      face_formats.begin(), face_formats.end(),
+      [ending = lower_ending(path)](const FaceFormat& format) { return format.ending == ending; });
   return at == face_formats.end() ? nullptr : &*at;
 }
 
 std::string endings(bool written) {
-  std::vector<std::string_view> known;
+  std::vector<std::string> known;
   for (const FaceFormat& format : face_formats)
-    if (!written || format.write) known.push_back(format.ending);
-  std::string text;
-  for (const std::string_view& ending : known)
-    text.append(text.empty() ? "" : &ending == &known.back() ? " or " : ", ").append(ending);
-  return text;
+    if (!written || format.write) known.emplace_back(format.ending);
+  return alternatives(known);
 }
 
 void require_writable(const std::filesystem::path& path, const Product& product) {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/text_records.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
@@ -106,12 +106,8 @@ std::optional<std::array<std::size_t, 3>> columns(const std::vector<std::string_
                                                   const std::array<const char*, 3>& wanted) {
   std::array<std::size_t, 3> found{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto at = std::find_if(names.begin(), names.end(), [&](std::string_view name) {
-      std::string own(name);
-      std::transform(own.begin(), own.end(), own.begin(),
-                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-      return own == wanted[axis];
-    });
+    const auto at = std::find_if(names.begin(), names.end(),
+                                 [&](std::string_view name) { return lower_case(name) == wanted[axis]; });
     if (at == names.end()) return std::nullopt;
     found[axis] = static_cast<std::size_t>(at - names.begin());
   }

@@ -1,28 +1,21 @@
 #include "bespoke/product/detail/stl_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/words.h"
 
 namespace bespoke {
 namespace {
 
 constexpr std::size_t facets_a_block = std::size_t{1} << 14;
 
-std::string lower(std::string_view word) {
-  std::string result(word);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 /// The first word of a line, in lower case.
 std::string first_word(std::string_view line) {
   const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
-  return lower(line.substr(begin, line.find_first_of(" \t\r\n", begin) - begin));
+  return lower_case(line.substr(begin, line.find_first_of(" \t\r\n", begin) - begin));
 }
 
 /// How many solids begin and end.
@@ -33,7 +26,7 @@ void count_solids(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
   TextWords words(block, unnamed, {0, false});
   while (words.next_line()) {
     if (std::string_view("sSeE").find(*words.line_begin()) == std::string_view::npos) continue;
-    const std::string keyword = lower(words.word());
+    const std::string keyword = lower_case(words.word());
     sums[0] += keyword == "solid";
     sums[1] += keyword == "endsolid";
   }
@@ -43,7 +36,7 @@ void expect(TextWords& words, const char* keyword, bool on_new_line = true) {
   if (on_new_line && !words.next_line())
     words.fail(std::string("the file ends before the facet's ") + keyword);
   const std::string_view word = words.word();
-  if (lower(word) != keyword) words.fail(in_quotes(word) + " where " + keyword + " must stand");
+  if (lower_case(word) != keyword) words.fail(in_quotes(word) + " where " + keyword + " must stand");
 }
 
 }  // namespace
@@ -102,7 +95,7 @@ TextRecords StlText::records(const TextBlock& block) const {
   TextWords words(block, path_, {0, false});
   bool is_inside = block.before[0] > block.before[1];
   while (words.next_line()) {
-    const std::string keyword = lower(words.word());
+    const std::string keyword = lower_case(words.word());
     if (keyword == "solid" && !is_inside) {
       is_inside = true;
     } else if (keyword == "endsolid" && is_inside) {
