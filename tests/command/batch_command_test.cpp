@@ -126,14 +126,17 @@ TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
 }
 
 TEST_F(BatchCommand, ShowsWhatItFitsOnPages) {
-  const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "out.obj")};
+  json back = apply("map.vdb", "back.obj");
+  back["inverse"] = true;
+  back["product"] = file("target.obj");  // nothing that the source wears
+  const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "out.obj"), back};
   const ProgramResult first = batch(jobs, {"--html", file("pages")});
   if (first.exit_code == 4) GTEST_SKIP() << first.err;  // built without pages
   ASSERT_EQ(first.exit_code, 0) << first.err;
   const std::string index = read("pages/index.html");
   EXPECT_THAT(index,
-              AllOf(HasSubstr("<h1>1 result</h1>"), HasSubstr("product.obj"), HasSubstr("../map.vdb")));
-  EXPECT_THAT(batch(jobs, {"--html", file("pages")}).err, HasSubstr("4 up to date"));
+              AllOf(HasSubstr("<h1>1 result</h1>"), HasSubstr(">product.obj<"), HasSubstr("../map.vdb")));
+  EXPECT_THAT(batch(jobs, {"--html", file("pages")}).err, HasSubstr("5 up to date"));
 
   // One that fails is named; the others are shown.
   json other = fit("other.vdb");

@@ -32,11 +32,12 @@ std::string value_of(const ManifestJob& line, const std::string& key) {
   return values.empty() ? "" : values.front();
 }
 
-/// maps/anna.vdb is "maps_anna"; a second one of that name, "maps_anna_2".
+/// ../maps/anna.vdb is "maps_anna"; a second one of that name, "maps_anna_2".
 std::string name_of(const fs::path& map, std::set<std::string>& names) {
-  std::string name = fs::path(map).replace_extension().relative_path().lexically_normal().string();
-  std::replace(name.begin(), name.end(), '/', '_');
-  const std::string first = name;
+  std::string first;
+  for (const fs::path& part : fs::path(map).replace_extension().relative_path().lexically_normal())
+    if (part != "..") first += (first.empty() ? "" : "_") + part.string();
+  std::string name = first;
   for (int i = 2; !names.insert(name).second; ++i) name = first + "_" + std::to_string(i);
   return name;
 }
@@ -84,7 +85,8 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
   }
   for (const ManifestJob& line : manifest.jobs) {
     const auto row = row_of.find(fs::path(value_of(line, "map")).lexically_normal());
-    if (line.command != "apply" || row == row_of.end()) continue;
+    const bool goes_there = line.command == "apply" && values_of(line, "inverse").empty();
+    if (!goes_there || row == row_of.end()) continue;
     std::vector<std::string>& products = shown[row->second].products;
     for (std::string& product : values_of(line, "product"))
       if (std::find(products.begin(), products.end(), product) == products.end())

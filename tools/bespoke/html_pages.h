@@ -24,7 +24,7 @@ struct ShownMap {
   double t = 1;
 };
 
-/// What a manifest fits, with the products that its other jobs carry by it.
+/// What a manifest fits, with the products that its other jobs carry by it, to the target.
 std::vector<ShownMap> fitted_maps(const Manifest& manifest);
 
 /// The directory of `--html`: a page for every map, a picture for every row, and an index of them.
