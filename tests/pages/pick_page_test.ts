@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 
 import type { Browser, Page } from "playwright-core";
 
-import { bespoke, launch, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
+import { bespoke, drawn_pixels, launch, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
 
 require_browser();
 
@@ -142,8 +142,18 @@ test("preview, hint and mirror change what is shown; opening a file replaces the
   await page.getByLabel("Preview: the source").check();
   await page.getByLabel("Show where the next pair").check();
   const count = (await pairs()).length;
+  const planes = page.getByLabel("Show the planes of symmetry");
+  const picture = async (): Promise<string> => (await drawn_pixels(page)).mean.join();
+  const without_plane = await picture();
+  assert.equal(await planes.isChecked(), false);
   await page.getByRole("button", { name: "Mirror all" }).click();
   assert.ok((await pairs()).length >= count);
+  assert.ok(await planes.isChecked(), "mirroring shows by which planes");
+  await page.getByRole("button", { name: "Undo" }).click();
+  const with_plane = await picture();
+  assert.notEqual(with_plane, without_plane);
+  await planes.uncheck();
+  assert.equal(await picture(), without_plane);
   await page.locator("input[type=file]").setInputFiles(join(directory, "shoe/anchors.json"));
   await until(async () => (await pairs()).length === given.length);
   assert.deepEqual((await pairs()).map((pair) => pair.a), given.map((pair) => pair.a));

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/error.h"
 #include "bespoke/page/pick_scene.h"
 #include "bespoke/product/mesh_io.h"
 #include "commands.h"
@@ -30,10 +29,6 @@ void run(const PickArguments& arguments) {
   const PickModel target{arguments.target, read_triangle_mesh(arguments.target)};
   std::optional<Anchors> anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
-  if (anchors && !anchors->curves.empty())
-    throw InvalidInput(
-        arguments.anchors +
-        ": has curves, which the page does not show and would not save; give it the pairs alone");
   const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
   const std::string title = "Anchors of " + name(arguments.source) + " and " + name(arguments.target);
   OutputFiles outputs;
@@ -50,7 +45,8 @@ void add_pick_command(CLI::App& app) {
       app.add_subcommand("pick", "Write a page to pick anchors on: click on one model, then on the other");
   pick->add_option("A", arguments->source, "Source model")->required()->type_name("MESH");
   pick->add_option("B", arguments->target, "Target model")->required()->type_name("MESH");
-  pick->add_option("--anchors", arguments->anchors, "Pairs to begin with, JSON or CSV")->type_name("FILE");
+  pick->add_option("--anchors", arguments->anchors, "Pairs and curves to begin with, JSON or CSV")
+      ->type_name("FILE");
   pick->add_option("-o,--output", arguments->output,
                    "Page to write, .html: one file, which needs no server and no network")
       ->required()

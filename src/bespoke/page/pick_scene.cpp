@@ -9,6 +9,12 @@
 namespace bespoke {
 namespace {
 
+Json polyline_json(const Points& points) {
+  Json json = Json::array();
+  for (const auto& point : points.colwise()) json.push_back(to_json(Vector3(point)));
+  return json;
+}
+
 Json anchors_json(const Anchors& anchors) {
   Json pairs = Json::array();
   for (const AnchorPair& pair : anchors.pairs) {
@@ -17,7 +23,14 @@ Json anchors_json(const Anchors& anchors) {
     if (pair.sigma) json["sigma"] = *pair.sigma;
     pairs.push_back(std::move(json));
   }
-  return {{"units", anchors.unit}, {"pairs", std::move(pairs)}};
+  Json curves = Json::array();
+  for (const AnchorCurve& curve : anchors.curves)
+    curves.push_back({{"name", curve.name},
+                      {"a", polyline_json(curve.a)},
+                      {"b", polyline_json(curve.b)},
+                      {"closed", curve.closed},
+                      {"fixed", curve.fixed}});
+  return {{"units", anchors.unit}, {"pairs", std::move(pairs)}, {"curves", std::move(curves)}};
 }
 
 }  // namespace

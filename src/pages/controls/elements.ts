@@ -60,9 +60,10 @@ export function button_group(
 }
 
 /** Panels of which one is shown, chosen by tabs. */
-export function tabs(panels: { title: string; body: HTMLElement }[]): HTMLElement[] {
+export function tabs(panels: { title: string; body: HTMLElement }[], shown: (title: string) => void = () => undefined): HTMLElement[] {
   const list = element("div", { role: "tablist", "aria-label": "Panels" });
   const show = (index: number, focus: boolean): void => {
+    shown(panels[index].title);
     panels.forEach((panel, i) => {
       const tab = list.children[i] as HTMLElement;
       tab.setAttribute("aria-selected", String(i === index));

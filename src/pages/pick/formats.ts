@@ -1,5 +1,6 @@
 import type { Triple } from "../scene/scene";
-import { is_complete, type PickedPair } from "./history";
+import { in_order, is_complete_curve, line_of, polyline, type PickedCurve } from "./curves";
+import { is_complete, type PickedPair, type Work } from "./history";
 
 function triple(value: unknown, where: string): Triple {
   if (!Array.isArray(value) || value.length !== 3 || !value.every((x) => typeof x === "number" && Number.isFinite(x)))
@@ -7,20 +8,58 @@ function triple(value: unknown, where: string): Triple {
   return value as Triple;
 }
 
-/** The pairs of an anchors file: JSON, or CSV by the first letter. */
-export function parse_anchors(text: string): PickedPair[] {
-  return text.trimStart().startsWith("{") ? parse_json(JSON.parse(text)) : parse_csv(text);
+/** What an anchors file holds: JSON, or CSV by the first letter. */
+export function parse_anchors(text: string): Work {
+  return text.trimStart().startsWith("{") ? parse_json(JSON.parse(text)) : { pairs: parse_csv(text), curves: [] };
 }
 
-export function parse_json(document: { pairs?: unknown }): PickedPair[] {
-  if (!Array.isArray(document.pairs)) throw new Error('the key "pairs" is missing');
-  return document.pairs.map((pair: Record<string, unknown>, i) => ({
+function list(document: object, key: string): Record<string, unknown>[] {
+  const value = (document as Record<string, unknown>)[key] ?? [];
+  if (!Array.isArray(value)) throw new Error(`"${key}" is not a list`);
+  const strange = value.findIndex((each) => typeof each !== "object" || each === null);
+  if (strange >= 0) throw new Error(`"${key}": entry ${strange} is not an object`);
+  return value as Record<string, unknown>[];
+}
+
+export function parse_json(document: { pairs?: unknown; curves?: unknown }): Work {
+  if (document.pairs === undefined && document.curves === undefined) throw new Error('the key "pairs" is missing');
+  const pairs = list(document, "pairs").map((pair, i) => ({
     name: String(pair.name ?? ""),
     a: triple(pair.a, `"a" of pair ${i}`),
     b: triple(pair.b, `"b" of pair ${i}`),
     sigma: typeof pair.sigma === "number" ? pair.sigma : null,
     weight: typeof pair.weight === "number" ? pair.weight : null,
   }));
+  return { pairs, curves: list(document, "curves").map(parse_curve) };
+}
+
+function parse_curve(curve: Record<string, unknown>, number: number): PickedCurve {
+  const name = String(curve.name ?? "");
+  const where = `curve ${number}${name === "" ? "" : ` (“${name}”)`}`;
+  const points = (key: "a" | "b"): Triple[] => {
+    const model = key === "a" ? "source" : "target", value = curve[key];
+    if (value === undefined) throw new Error(`${where} has no line on the ${model}: the key "${key}" is missing`);
+    if (!Array.isArray(value) || value.length < 2)
+      throw new Error(`${where}: its line on the ${model}, "${key}", has ${Array.isArray(value) ? value.length : "no list of"} points; two at least make a line`);
+    const all = value.map((point, i) => triple(point, `${where}: point ${i} of "${key}"`));
+    if (all.every((point) => point.join() === all[0].join())) throw new Error(`${where}: "${key}" has all its points at one place`);
+    return all;
+  };
+  const a = points("a"), b = points("b");
+  if (curve.closed !== undefined && typeof curve.closed !== "boolean") throw new Error(`${where}: "closed" is neither true nor false`);
+  const closed = curve.closed === true, fixed = parse_fixed(curve.fixed ?? [], [a.length, b.length], where);
+  const on_a = line_of(a, closed, fixed.map(([i]) => i)), on_b = line_of(b, closed, fixed.map(([, j]) => j));
+  const numbers = fixed.map(([i, j]): [number, number] => [on_a.number_of.get(i) as number, on_b.number_of.get(j) as number]);
+  return { name, closed, a: on_a.line, b: on_b.line, fixed: numbers };
+}
+
+function parse_fixed(value: unknown, counts: [number, number], where: string): [number, number][] {
+  const is_number = (x: unknown, side: 0 | 1): x is number => Number.isInteger(x) && (x as number) >= 0 && (x as number) < counts[side];
+  const is_pair = (x: unknown): x is [number, number] => Array.isArray(x) && x.length === 2 && is_number(x[0], 0) && is_number(x[1], 1);
+  const rises = (pairs: [number, number][]): boolean => pairs.every(([i, j], k) => k === 0 || (i > pairs[k - 1][0] && j > pairs[k - 1][1]));
+  if (!Array.isArray(value) || !value.every(is_pair) || !rises(value))
+    throw new Error(`${where}: "fixed" is not a list of [i, j], numbers from 0 of points of "a" and of "b" that rise on both sides`);
+  return value;
 }
 
 function parse_csv(text: string): PickedPair[] {
@@ -36,8 +75,20 @@ function parse_csv(text: string): PickedPair[] {
   });
 }
 
-/** What `bespoke fit --anchors` reads; pairs with one end are left out. */
-export function anchors_json(pairs: PickedPair[], unit: string): string {
+function curve_json(curve: PickedCurve): object {
+  const ordered = in_order(curve) ?? { ...curve, fixed: [] }; // the page has said so (curve_checks.ts)
+  const a = polyline(ordered.a, ordered.closed), b = polyline(ordered.b, ordered.closed);
+  return {
+    ...(curve.name === "" ? {} : { name: curve.name }),
+    a: a.points,
+    b: b.points,
+    ...(curve.closed ? { closed: true } : {}),
+    ...(ordered.fixed.length === 0 ? {} : { fixed: ordered.fixed.map(([i, j]) => [a.clicked[i], b.clicked[j]]) }),
+  };
+}
+
+/** What `bespoke fit --anchors` reads; pairs with one end and curves without a line on both models are left out. */
+export function anchors_json({ pairs, curves }: Work, unit: string): string {
   const written = pairs.filter(is_complete).map((pair) => ({
     ...(pair.name === "" ? {} : { name: pair.name }),
     a: pair.a,
@@ -45,8 +96,9 @@ export function anchors_json(pairs: PickedPair[], unit: string): string {
     ...(pair.weight === null ? {} : { weight: pair.weight }),
     ...(pair.sigma === null || pair.weight !== null ? {} : { sigma: pair.sigma }),
   }));
-  const lines = written.map((pair) => `  ${JSON.stringify(pair)}`).join(",\n");
-  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": [\n${lines}\n]}\n`;
+  const lines = (entries: object[]): string => `[\n${entries.map((entry) => `  ${JSON.stringify(entry)}`).join(",\n")}\n]`;
+  const complete = curves.filter(is_complete_curve).map(curve_json);
+  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${complete.length === 0 ? "" : `, "curves": ${lines(complete)}`}}\n`;
 }
 
 export function anchors_csv(pairs: PickedPair[]): string {

@@ -1,4 +1,5 @@
 import type { Triple } from "../scene/scene";
+import type { PickedCurve } from "./curves";
 
 /** A pair as it is being picked: either end may still be missing. */
 export interface PickedPair {
@@ -19,17 +20,23 @@ export function is_complete(pair: PickedPair): pair is CompletePair {
   return pair.a !== null && pair.b !== null;
 }
 
-/** The pairs with everything that can be undone; every change is kept in the browser's storage. */
-export class History {
-  private past: PickedPair[][] = [];
-  private future: PickedPair[][] = [];
-  pairs: PickedPair[] = [];
+/** All that is picked. */
+export interface Work {
+  pairs: PickedPair[];
+  curves: PickedCurve[];
+}
 
-  constructor(private readonly key: string, first: PickedPair[], private readonly changed: () => void) {
-    this.pairs = first;
+/** The work with everything that can be undone; every change is kept in the browser's storage. */
+export class History {
+  private past: Work[] = [];
+  private future: Work[] = [];
+
+  constructor(private readonly key: string, public work: Work, private readonly changed: () => void) {
     try {
       const kept = localStorage.getItem(key);
-      if (kept !== null) this.pairs = JSON.parse(kept) as PickedPair[];
+      // Before there were curves a list of pairs was kept.
+      const parsed = kept === null ? work : (JSON.parse(kept) as Work | PickedPair[]);
+      this.work = Array.isArray(parsed) ? { pairs: parsed, curves: [] } : parsed;
     } catch {
       // A browser that keeps nothing for files: the page works, a reload begins anew.
     }
@@ -42,17 +49,24 @@ export class History {
     return this.future.length > 0;
   }
 
-  /** Changes a copy of the pairs; what `edit` leaves is the new state. */
-  change(edit: (pairs: PickedPair[]) => void): void {
-    this.past.push(structuredClone(this.pairs));
+  get pairs(): PickedPair[] {
+    return this.work.pairs;
+  }
+  get curves(): PickedCurve[] {
+    return this.work.curves;
+  }
+
+  /** Changes the work; what `edit` leaves is the new state, and what was there before can be had back. */
+  change(edit: (work: Work) => void): void {
+    this.past.push(structuredClone(this.work));
     this.future = [];
-    edit(this.pairs);
+    edit(this.work);
     this.keep();
   }
 
   /** While a point is dragged: the same step, again and again. */
-  change_again(edit: (pairs: PickedPair[]) => void): void {
-    edit(this.pairs);
+  change_again(edit: (work: Work) => void): void {
+    edit(this.work);
     this.keep();
   }
 
@@ -63,17 +77,17 @@ export class History {
     this.step(this.future, this.past);
   }
 
-  private step(from: PickedPair[][], to: PickedPair[][]): void {
+  private step(from: Work[], to: Work[]): void {
     const next = from.pop();
     if (next === undefined) return;
-    to.push(this.pairs);
-    this.pairs = next;
+    to.push(this.work);
+    this.work = next;
     this.keep();
   }
 
   private keep(): void {
     try {
-      localStorage.setItem(this.key, JSON.stringify(this.pairs));
+      localStorage.setItem(this.key, JSON.stringify(this.work));
     } catch {
       // As above.
     }

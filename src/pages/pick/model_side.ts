@@ -1,10 +1,13 @@
 import { Box3, Plane, Vector3 } from "three";
 
 import { element } from "../controls/elements";
+import type { Plane as MirrorPlane } from "../maths/mirror";
 import { at_rest } from "../maths/motion";
 import type { Triple } from "../scene/scene";
 import { add_controls } from "../stage/controls";
-import { Markers } from "../stage/markers";
+import { type Line, Lines } from "../stage/lines";
+import { type MarkerSize, Markers } from "../stage/markers";
+import { MirrorSheet } from "../stage/mirror_sheet";
 import { scene_of, Stage } from "../stage/stage";
 import type { Surface } from "../stage/surface";
 import type { Model } from "../view/models";
@@ -12,21 +15,29 @@ import type { Model } from "../view/models";
 export type DragMode = "surface" | "normal" | "view";
 
 export interface SideListener {
-  clicked(point: Triple): void;
-  chosen(pair: number): void;
-  drag_started(pair: number): void;
-  dragged(pair: number, point: Triple): void;
+  /** reach: what a finger or a mouse means by "there", mesh units. */
+  clicked(point: Triple, reach: number): void;
+  chosen(number: number): void;
+  drag_started(number: number): void;
+  dragged(number: number, point: Triple): void;
   turned(): void;
   key(event: KeyboardEvent): void;
 }
 
 export interface SideMarker {
-  pair: number;
+  /** For the listener; null for a point that is only to be seen. */
+  number: number | null;
   point: Triple;
   colour: string;
+  size: MarkerSize;
 }
 
 const grab_radius = 9; // pixels
+const least_lift = 0.004; // of the size: nearer to the surface, lines and faces contend for pixels
+const marker_lift = 0.02; // discs are wide, and a surface that leans would cut them
+
+type HeldMarker = SideMarker & { number: number };
+const is_held = (marker: SideMarker): marker is HeldMarker => marker.number !== null;
 
 /** One model with its points: its own stage, so that it can be turned alone. */
 export class ModelSide {
@@ -36,23 +47,31 @@ export class ModelSide {
   readonly size: number;
   readonly centre: Vector3;
   drag_mode: DragMode = "surface";
-  private readonly markers = new Markers(12);
-  private readonly hint = new Markers(16);
+  private readonly markers: Markers;
+  private readonly hint: Markers;
+  private readonly lines: Lines;
+  private readonly sheet: MirrorSheet;
+  private readonly task = element("span", { class: "task" });
   private shown_markers: SideMarker[] = [];
   private readonly ghost: Surface[] = [];
 
   constructor(readonly model: Model, label: string, private readonly listener: SideListener) {
     const canvas = element("canvas", { class: "drawing", tabIndex: 0, role: "application", "aria-label": `${label}. Click to set a point; drag a point to move it; drag elsewhere or arrow keys turn, Home resets.` });
-    this.box = element("div", { class: "pick-side" }, canvas, element("div", { class: "pane-label" }, label));
+    this.box = element("div", { class: "pick-side" }, canvas, element("div", { class: "pane-label" }, label, this.task));
     this.stage = new Stage(canvas);
     this.surface = model.surface();
-    const scene = scene_of([this.surface.object, this.markers.object, this.hint.object]);
-    this.stage.panes = [{ label, scene, pose: at_rest, left: 0, top: 0, width: 1, height: 1 }];
     const box = new Box3();
     const places = model.knots[0];
     for (let i = 0; i < places.length; i += 3) box.expandByPoint(new Vector3().fromArray(places, i));
     this.size = box.min.distanceTo(box.max);
     this.centre = box.getCenter(new Vector3());
+    const lift = least_lift * this.size;
+    this.markers = new Markers(marker_lift * this.size, 12);
+    this.hint = new Markers(marker_lift * this.size, 16);
+    this.lines = new Lines(lift);
+    this.sheet = new MirrorSheet(box, lift);
+    const scene = scene_of([this.surface.object, this.sheet.object, this.lines.object, this.markers.object, this.hint.object]);
+    this.stage.panes = [{ label, scene, pose: at_rest, left: 0, top: 0, width: 1, height: 1 }];
     this.stage.frame(box.min, box.max);
     this.stage.on_draw(() => this.listener.turned());
     add_controls(this.stage, {
@@ -64,10 +83,20 @@ export class ModelSide {
     canvas.addEventListener("keydown", (event) => this.listener.key(event));
   }
 
-  show(markers: SideMarker[], chosen: number): void {
+  /** What a click here does, for the label. */
+  show_task(task: string): void {
+    this.task.textContent = task === "" ? "" : ` · ${task}`;
+  }
+
+  show(markers: SideMarker[], lines: Line[]): void {
     this.shown_markers = markers;
-    const large = new Set(markers.map((marker, i) => (marker.pair === chosen ? i : -1)));
-    this.markers.set(markers.map((marker) => new Vector3(...marker.point)), markers.map((marker) => marker.colour), large);
+    this.markers.set(markers.map((marker) => new Vector3(...marker.point)), markers.map((marker) => marker.colour), markers.map((marker) => marker.size));
+    this.lines.set(lines);
+    this.stage.draw_soon();
+  }
+
+  show_plane(plane: MirrorPlane | null): void {
+    this.sheet.show(plane, this.surface.places(), this.surface.faces);
     this.stage.draw_soon();
   }
 
@@ -90,21 +119,11 @@ export class ModelSide {
     this.stage.draw_soon();
   }
 
-  nearest_on_surface(point: Triple): Triple {
-    const places = this.surface.places();
-    let best = 0, least = Infinity;
-    for (let i = 0; i < places.length; i += 3) {
-      const d = (places[i] - point[0]) ** 2 + (places[i + 1] - point[1]) ** 2 + (places[i + 2] - point[2]) ** 2;
-      if (d < least) [best, least] = [i, d];
-    }
-    return [places[best], places[best + 1], places[best + 2]];
-  }
-
   private click(x: number, y: number): void {
     const marker = this.marker_at(x, y);
-    if (marker !== null) return this.listener.chosen(marker.pair);
+    if (marker !== null) return this.listener.chosen(marker.number);
     const point = this.surface_point(x, y);
-    if (point !== null) this.listener.clicked(point);
+    if (point !== null) this.listener.clicked(point, grab_radius * this.stage.pixel_length(this.stage.panes[0]));
   }
 
   private surface_point(x: number, y: number): Triple | null {
@@ -112,9 +131,10 @@ export class ModelSide {
     return at === null ? null : ((this.surface.first_hit(at.ray)?.point.toArray() as Triple | undefined) ?? null);
   }
 
-  private marker_at(x: number, y: number): SideMarker | null {
-    let best: SideMarker | null = null, least = grab_radius;
+  private marker_at(x: number, y: number): HeldMarker | null {
+    let best: HeldMarker | null = null, least = grab_radius;
     for (const marker of this.shown_markers) {
+      if (!is_held(marker)) continue;
       const pixel = this.stage.pixel_of(this.stage.panes[0], new Vector3(...marker.point));
       const away = Math.hypot(pixel.x - x, pixel.y - y);
       if (away < least && this.is_seen(marker, pixel.x, pixel.y)) [best, least] = [marker, away];
@@ -123,7 +143,7 @@ export class ModelSide {
   }
 
   /** Whether the model does not hide it. */
-  private is_seen(marker: SideMarker, x: number, y: number): boolean {
+  private is_seen(marker: HeldMarker, x: number, y: number): boolean {
     const at = this.stage.ray_at(x, y);
     if (at === null) return false;
     const hit = this.surface.first_hit(at.ray);
@@ -139,9 +159,9 @@ export class ModelSide {
     const move = (now_x: number, now_y: number): void => {
       const point = this.dragged_point(start, normal, now_x, now_y);
       if (point === null || (!has_moved && Math.hypot(now_x - x, now_y - y) < 4)) return;
-      if (!has_moved) this.listener.drag_started(marker.pair);
+      if (!has_moved) this.listener.drag_started(marker.number);
       has_moved = true;
-      this.listener.dragged(marker.pair, point);
+      this.listener.dragged(marker.number, point);
     };
     return { move, release: () => undefined };
   }

@@ -8,9 +8,14 @@ import type { PickRecord, Triple } from "../scene/scene";
 import { Surface } from "../stage/surface";
 import { Model } from "../view/models";
 import { check_pairs, next_place, type PairChecks } from "./checks";
+import { curve_name } from "./curve_checks";
+import { CurveEditor } from "./curve_editor";
+import { CurvePanel } from "./curve_panel";
+import { type Side, sides } from "./curves";
 import { anchors_csv, anchors_json, parse_anchors, parse_json } from "./formats";
 import { History, type PickedPair } from "./history";
-import { type DragMode, ModelSide, type SideListener } from "./model_side";
+import { type DragMode, ModelSide, type SideListener, type SideMarker } from "./model_side";
+import { Tracer } from "./tracer";
 
 const colours = ["#1d6fd1", "#c2410c", "#0f766e", "#7e22ce", "#a16207", "#be185d", "#4d7c0f", "#334155"];
 const mirror_names: [RegExp, string][] = [[/left/i, "right"], [/right/i, "left"], [/_l$/i, "_r"], [/_r$/i, "_l"], [/\bl\b/i, "r"], [/\br\b/i, "l"]];
@@ -19,8 +24,6 @@ const mirror_names: [RegExp, string][] = [[/left/i, "right"], [/right/i, "left"]
 export function pick_page(root: HTMLElement, record: PickRecord, bytes: Uint8Array): void {
   new PickPage(root, record, bytes);
 }
-
-type Side = "a" | "b";
 
 class PickPage {
   private readonly history: History;
@@ -31,19 +34,34 @@ class PickPage {
   private readonly redo_button = element("button", { type: "button", onclick: () => this.history.redo() }, "Redo");
   private readonly command = element("pre", {});
   private readonly message = element("p", { class: "soft", role: "status" });
+  private readonly curve_message = element("p", { class: "warn", role: "status" });
+  private readonly file_message = element("p", { role: "status", "aria-label": "What was read" });
+  private readonly editor: CurveEditor;
+  private readonly curve_panel: CurvePanel;
+  /** What a click on a model sets. */
+  private mode: "pairs" | "curves" = "pairs";
+  private has_planes = false;
+  private readonly plane_box = checkbox("Show the planes of symmetry that mirroring uses", false, (on) => this.show_planes(on));
   private planes: Record<Side, Plane> | null = null;
   private chosen = -1;
   private linked = true;
   private has_preview = false;
   private has_hint = false;
+  private drag_mode: DragMode = "surface";
+  private drag_group = element("div", {});
   private active: Side = "a";
   private checks: PairChecks;
 
   constructor(root: HTMLElement, private readonly record: PickRecord, bytes: Uint8Array) {
-    const given = record.anchors === null ? [] : parse_json(record.anchors);
+    const given = record.anchors === null ? { pairs: [], curves: [] } : parse_json(record.anchors);
     this.history = new History(`bespoke-pick-${record.key}`, given, () => this.refresh());
     const models = record.meshes.map((mesh) => new Model(mesh, bytes));
+    const tracers = models.map((model) => new Tracer(model.knots[0], model.faces));
+    this.editor = new CurveEditor(this.history, { a: tracers[0], b: tracers[1] }, (text) => (this.curve_message.textContent = text));
     this.sides = { a: this.side("a", models[0]), b: this.side("b", models[1]) };
+    const stages = { refresh: () => this.refresh(), draw: () => this.draw() };
+    const mirror = element("button", { type: "button", onclick: () => this.mirror_curve() }, "Mirror chosen");
+    this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, [mirror]);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
     this.checks = check_pairs(this.history.pairs);
     root.classList.add("pick");
@@ -53,6 +71,7 @@ class PickPage {
     Object.assign(window, {
       bespoke: {
         pairs: () => structuredClone(this.history.pairs),
+        curves: () => structuredClone(this.history.curves),
         pixel: (side: Side, point: Triple) => this.pixel(side, point),
         draw: () => [this.sides.a, this.sides.b].forEach((each) => each.stage.draw()),
       },
@@ -60,17 +79,31 @@ class PickPage {
   }
 
   private side(name: Side, model: Model): ModelSide {
+    const lays_curves = (): boolean => this.mode === "curves";
     const listener: SideListener = {
-      clicked: (point) => this.set_point(name, point),
-      chosen: (pair) => this.choose(pair),
-      drag_started: (pair) => {
-        this.chosen = pair;
+      clicked: (point, reach) => {
+        if (lays_curves()) this.editor.clicked(name, point, reach);
+        else this.set_point(name, point);
+      },
+      chosen: (number) => {
+        if (lays_curves()) this.editor.point_clicked(name, number);
+        else this.chosen = number;
+        this.refresh();
+      },
+      drag_started: (number) => {
+        if (lays_curves()) return this.editor.drag_started(name, number);
+        this.chosen = number;
         this.history.change(() => undefined);
       },
-      dragged: (pair, point) => this.history.change_again((pairs) => (pairs[pair][name] = point)),
+      dragged: (number, point) => {
+        if (lays_curves()) this.editor.dragged(name, number, point);
+        else this.history.change_again(({ pairs }) => (pairs[number][name] = point));
+      },
       turned: () => this.follow(name),
       key: (event) => {
-        if (event.key === "Delete" || event.key === "Backspace") this.remove(this.chosen);
+        if (event.key !== "Delete" && event.key !== "Backspace") return;
+        if (lays_curves()) this.editor.remove_point(name);
+        else this.remove(this.chosen);
       },
     };
     const side = new ModelSide(model, `${name === "a" ? "Source" : "Target"}: ${model.record.name}`, listener);
@@ -84,9 +117,9 @@ class PickPage {
     const views = element("div", { class: "group", role: "group", "aria-label": "Views" },
       ...(["front", "side", "top"] as const).map((side) => plain(side[0].toUpperCase() + side.slice(1), () => this.both((each) => each.stage.look_from(side)))),
       plain("Reset", () => this.both((each) => each.stage.reset())));
-    const drag = button_group("Dragging a point moves it", [{ value: "surface", label: "On surface" }, { value: "normal", label: "Along normal" }, { value: "view", label: "In view plane" }], "surface",
-      (mode) => this.both((each) => (each.drag_mode = mode as DragMode)));
-    return element("header", {}, element("h1", {}, this.record.title), element("span", { class: "space" }), this.undo_button, this.redo_button, drag, views, theme_button(() => this.both((each) => each.stage.draw_soon())));
+    this.drag_group = button_group("Dragging a point moves it", [{ value: "surface", label: "On surface" }, { value: "normal", label: "Along normal" }, { value: "view", label: "In view plane" }], "surface",
+      (mode) => { this.drag_mode = mode as DragMode; this.set_drag_mode(); });
+    return element("header", {}, element("h1", {}, this.record.title), element("span", { class: "space" }), element("div", { class: "group" }, this.undo_button, this.redo_button), this.drag_group, views, theme_button(() => this.both((each) => each.stage.draw_soon())));
   }
 
   private panel(): HTMLElement {
@@ -97,21 +130,22 @@ class PickPage {
       element("p", { class: "soft" }, "Click a point on the source, then its counterpart on the target. Drag points to move them."),
       this.warnings,
       element("table", {}, element("thead", {}, element("tr", {}, ...heads)), this.list),
-      element("p", {}, ""),
-      element("p", {}, button("Mirror chosen", () => this.mirror(false)), " ", button("Mirror all", () => this.mirror(true)), " ", button("Delete all", () => this.history.change((all) => all.splice(0)))),
+      element("p", { class: "actions" }, button("Mirror chosen", () => this.mirror(false)), button("Mirror all", () => this.mirror(true)), button("Delete all", () => this.history.change(({ pairs: all }) => all.splice(0)))),
       this.message,
+      this.plane_box,
       checkbox("Cameras linked", true, (on) => (this.linked = on)),
       checkbox("Preview: the source, warped by the pairs, over the target", false, (on) => { this.has_preview = on; this.refresh(); }),
       checkbox("Show where the next pair would help most", false, (on) => { this.has_hint = on; this.refresh(); }));
     const saving = element("section", {},
       element("h2", {}, "Save"),
-      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.pairs, this.record.unit)), "main"), " ",
-        button("Save as CSV", () => this.save("anchors.csv", anchors_csv(this.history.pairs)))),
+      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.work, this.record.unit)), "main"), " ",
+        button("Save pairs as CSV", () => this.save("anchors.csv", anchors_csv(this.history.pairs)))),
       element("h2", {}, "Then fit"), this.command,
       element("h2", {}, "Import"),
       element("p", {}, button("Open JSON or CSV", () => file.click()), file),
+      this.file_message,
       element("p", { class: "soft" }, "bespoke anchors convert makes JSON of MeshLab, 3D Slicer, Wrap and Landmark Editor files. Work is kept in this browser until it is deleted."));
-    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Save and import", body: saving }]));
+    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Curves", body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
   }
 
   // ---- pairs
@@ -122,7 +156,7 @@ class PickPage {
     const lacking = (i: number): boolean => pairs[i] !== undefined && pairs[i][side] === null;
     const index = lacking(this.chosen) ? this.chosen : pairs.findIndex((_, i) => lacking(i));
     this.chosen = index >= 0 ? index : pairs.length;
-    this.history.change((all) => {
+    this.history.change(({ pairs: all }) => {
       if (index >= 0) all[index][side] = point;
       else all.push({ name: this.free_name(), a: side === "a" ? point : null, b: side === "b" ? point : null, sigma: null, weight: null });
     });
@@ -138,7 +172,7 @@ class PickPage {
   private remove(index: number): void {
     if (this.history.pairs[index] === undefined) return;
     this.chosen = -1;
-    this.history.change((pairs) => pairs.splice(index, 1));
+    this.history.change(({ pairs }) => pairs.splice(index, 1));
   }
 
   private choose(index: number): void {
@@ -146,22 +180,62 @@ class PickPage {
     this.refresh();
   }
 
+  private set_mode(title: string): void {
+    if (title === "Pairs") this.mode = "pairs";
+    if (title === "Curves") this.mode = "curves";
+    if (this.sides === undefined) return;
+    this.set_drag_mode();
+    this.draw();
+  }
+
+  /** Points of curves stay on the surface; those of pairs may leave it. */
+  private set_drag_mode(): void {
+    const lays_curves = this.mode === "curves";
+    this.both((each) => (each.drag_mode = lays_curves ? "surface" : this.drag_mode));
+    for (const button of this.drag_group.querySelectorAll("button")) button.disabled = lays_curves;
+  }
+
+  // ---- the other side
+
   private mirror(all: boolean): void {
-    this.planes ??= { a: this.plane("a"), b: this.plane("b") };
-    const planes = this.planes;
+    const planes = this.found_planes();
     const added: PickedPair[] = [];
     const pairs = this.history.pairs;
     const reach = 0.02; // of the size: what lies nearer to the plane has no other side
     for (const [i, pair] of pairs.entries()) {
       if (pair.a === null || pair.b === null || (!all && i !== this.chosen)) continue;
-      const a = this.sides.a.nearest_on_surface(mirrored(pair.a, planes.a));
-      const b = this.sides.b.nearest_on_surface(mirrored(pair.b, planes.b));
+      const a = this.editor.tracers.a.nearest(mirrored(pair.a, planes.a));
+      const b = this.editor.tracers.b.nearest(mirrored(pair.b, planes.b));
       const is_there = [...pairs, ...added].some((other) => other.a !== null && distance(other.a, a) < reach * this.sides.a.size);
       if (!is_there) added.push({ ...pair, name: this.mirror_name(pair.name, [...pairs, ...added]), a, b });
     }
+    this.message.textContent = !all && this.chosen < 0 ? "No pair is chosen." : `${added.length} mirrored. ${this.symmetry(planes)}`;
+    if (added.length > 0) this.history.change(({ pairs: every }) => every.push(...added));
+  }
+
+  private mirror_curve(): void {
+    const planes = this.found_planes();
+    const images = { a: (point: Triple) => mirrored(point, planes.a), b: (point: Triple) => mirrored(point, planes.b) };
+    const done = this.editor.mirror(images, (name) => this.mirror_name(name, this.history.curves));
+    this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve that has its lines on both models.";
+  }
+
+  /** Found once; from then on they are shown until somebody hides them. */
+  private found_planes(): Record<Side, Plane> {
+    if (this.planes === null) this.planes = { a: this.plane("a"), b: this.plane("b") };
+    if (!this.has_planes) (this.plane_box.firstChild as HTMLInputElement).click();
+    return this.planes;
+  }
+
+  private show_planes(on: boolean): void {
+    this.has_planes = on;
+    const planes = on ? (this.planes ??= { a: this.plane("a"), b: this.plane("b") }) : null;
+    for (const side of sides) this.sides[side].show_plane(planes === null ? null : planes[side]);
+  }
+
+  private symmetry(planes: Record<Side, Plane>): string {
     const quality = (plane: Plane): string => `${shown(100 * plane.misfit)} %`;
-    this.message.textContent = `${added.length} mirrored. Symmetric to ${quality(planes.a)} of the size (source) and ${quality(planes.b)} (target): check them.`;
-    if (added.length > 0) this.history.change((every) => every.push(...added));
+    return `Symmetric to ${quality(planes.a)} of the size (source) and ${quality(planes.b)} (target): check what was mirrored.`;
   }
 
   private plane(side: Side): Plane {
@@ -171,11 +245,11 @@ class PickPage {
     return symmetry_plane(points);
   }
 
-  private mirror_name(name: string, pairs: PickedPair[]): string {
+  private mirror_name(name: string, taken: { name: string }[]): string {
     const rule = mirror_names.find(([pattern]) => pattern.test(name));
     const wished = rule === undefined ? `${name}_mirrored` : name.replace(rule[0], rule[1]);
     let unique = wished;
-    for (let k = 2; pairs.some((pair) => pair.name === unique); ++k) unique = `${wished}_${k}`;
+    for (let k = 2; taken.some((other) => other.name === unique); ++k) unique = `${wished}_${k}`;
     return unique;
   }
 
@@ -185,8 +259,9 @@ class PickPage {
     if (this.sides === undefined) return;
     const pairs = this.history.pairs;
     this.checks = check_pairs(pairs);
-    for (const side of ["a", "b"] as const)
-      this.sides[side].show(pairs.flatMap((pair, i) => (pair[side] === null ? [] : [{ pair: i, point: pair[side], colour: colours[i % colours.length] }])), this.chosen);
+    this.editor.settle();
+    this.curve_panel.show(this.checks.complete);
+    this.draw();
     this.undo_button.disabled = !this.history.can_undo;
     this.redo_button.disabled = !this.history.can_redo;
     this.list.replaceChildren(...pairs.map((pair, i) => this.pair_row(pair, i)));
@@ -194,6 +269,19 @@ class PickPage {
     this.command.textContent = `bespoke fit ${this.record.source_path} ${this.record.target_path} --anchors anchors.json -o map.vdb`;
     this.sides.a.show_hint(this.has_hint ? next_place(this.sides.a.surface.places(), pairs.flatMap((pair) => (pair.a === null ? [] : [pair.a]))) : null);
     this.show_preview();
+  }
+
+  private draw(): void {
+    const lays_curves = this.mode === "curves";
+    const curve = this.editor.curve;
+    const task = !lays_curves ? "" : curve === null ? "a click begins a curve" : `a click adds to ${curve_name(curve, this.editor.chosen)}`;
+    for (const side of sides) {
+      const pairs = this.history.pairs.flatMap((pair, i): SideMarker[] =>
+        pair[side] === null ? [] : [{ number: lays_curves ? null : i, point: pair[side], colour: colours[i % colours.length], size: lays_curves ? "small" : i === this.chosen ? "large" : "plain" }],
+      );
+      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side));
+      this.sides[side].show_task(task);
+    }
   }
 
   private show_preview(): void {
@@ -210,9 +298,9 @@ class PickPage {
     const off = complete >= 0 ? this.checks.left_out[complete] : null;
     const suspicion = complete >= 0 ? this.checks.suspicions[complete] : "";
     const name = element("input", { type: "text", value: pair.name, "aria-label": `Name of pair ${index + 1}`, class: "name" });
-    name.addEventListener("change", () => this.history.change((pairs) => (pairs[index].name = name.value.trim())));
+    name.addEventListener("change", () => this.history.change(({ pairs }) => (pairs[index].name = name.value.trim())));
     const sigma = element("input", { type: "number", "aria-label": `Sigma of ${pair.name}`, value: pair.sigma === null ? "" : String(pair.sigma), placeholder: "auto", step: "any", min: "0" });
-    sigma.addEventListener("change", () => this.history.change((pairs) => (pairs[index].sigma = sigma.value === "" || sigma.valueAsNumber < 0 ? null : sigma.valueAsNumber)));
+    sigma.addEventListener("change", () => this.history.change(({ pairs }) => (pairs[index].sigma = sigma.value === "" || sigma.valueAsNumber < 0 ? null : sigma.valueAsNumber)));
     const swatch = element("button", { type: "button", class: "swatch", title: "Choose this pair", "aria-label": `Choose ${pair.name}`, onclick: () => this.fly_to(index) });
     swatch.style.background = colours[index % colours.length];
     const state = pair.a === null ? "no source" : pair.b === null ? "no target" : shown(off);
@@ -270,11 +358,16 @@ class PickPage {
     const file = input.files?.[0];
     if (file === undefined) return;
     try {
-      const pairs = parse_anchors(await file.text());
-      this.history.change((all) => all.splice(0, all.length, ...pairs));
-      this.message.textContent = `${pairs.length} pairs from ${file.name}.`;
+      const work = parse_anchors(await file.text());
+      this.chosen = -1;
+      this.editor.choose(-1);
+      this.history.change((all) => Object.assign(all, work));
+      const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
+      this.file_message.className = "soft";
+      this.file_message.textContent = `${counted(work.pairs.length, "pair")} and ${counted(work.curves.length, "curve")} from ${file.name}, in the place of what was there; Undo brings it back.`;
     } catch (error) {
-      this.message.textContent = `${file.name}: ${error instanceof Error ? error.message : String(error)}`;
+      this.file_message.className = "warn";
+      this.file_message.textContent = `${file.name} was not taken: ${error instanceof Error ? error.message : String(error)}.`;
     }
     input.value = "";
   }

@@ -136,7 +136,7 @@ export class Stage {
 
   /** By pixels of the pane. */
   pan(right: number, down: number): void {
-    const scale = this.panes.length > 0 ? (2 * this.half_height(this.panes[0])) / Math.max(1, this.rectangle(this.panes[0])[3]) : 0;
+    const scale = this.panes.length > 0 ? this.pixel_length(this.panes[0]) : 0;
     const turn = this.turn();
     this.view.centre.add(new Vector3(-right * scale, down * scale, 0).applyQuaternion(turn));
     this.draw_soon();
@@ -167,6 +167,11 @@ export class Stage {
     camera.updateMatrixWorld();
     const place = point.clone().project(camera);
     return new Vector2(left + ((place.x + 1) / 2) * width, top + ((1 - place.y) / 2) * height);
+  }
+
+  /** How long a CSS pixel of a pane is at the middle of what is seen, mesh units. */
+  pixel_length(pane: Pane): number {
+    return (2 * this.half_height(pane)) / Math.max(1, this.rectangle(pane)[3]);
   }
 
   camera(pane: Pane): Camera {

@@ -226,6 +226,19 @@ export class Surface {
     return best;
   }
 
+  /** The vertex nearest to the eye among those within `reach` of a ray. */
+  first_point(ray: Ray, reach: number): Hit | null {
+    const places = this.places(), point = new Vector3();
+    let best: Hit | null = null;
+    for (let vertex = 0; vertex < this.vertex_count; ++vertex) {
+      point.fromArray(places, 3 * vertex);
+      if (ray.distanceSqToPoint(point) > reach * reach) continue;
+      const distance = point.distanceTo(ray.origin);
+      if (best === null || distance < best.distance) best = { vertex, distance, point: point.clone(), face: -1 };
+    }
+    return best;
+  }
+
   normal_at(vertex: number): Vector3 {
     const normals = this.normal_attributes[this.place.knot].array;
     return new Vector3().fromArray(normals, 3 * vertex).applyMatrix3(this.uniform<Matrix3>("turn")).normalize();

@@ -14,6 +14,7 @@ import type { ViewState } from "./view_state";
 
 const level_colours = ["#30678d", "#2a9d8f", "#8ab17d", "#e9c46a", "#f4a261", "#c8553d", "#8d3b72", "#5b4b8a"];
 const anchor_colour = "#1d6fd1", suspicious_colour = "#d1491d";
+const marker_lift = 0.005; // of the diagonal: in front of the surface, which would else cut them where it leans
 const start: Place = { knot: 0, fraction: 0 };
 
 /** A model in a pane. */
@@ -79,7 +80,7 @@ export class ViewStage {
       if (side === "source" ? role === "target" : side === "target" && role === "source") return;
       shown.push({ model, index, surface: model.surface(), moves: side !== "source" && role !== "target" });
     });
-    const markers = new Markers(7);
+    const markers = new Markers(marker_lift * this.record.diagonal, 7);
     const extras = new Scene();
     const scene = scene_of([...shown.map((each) => each.surface.object), extras, markers.object]);
     return { pane: { label, scene, pose, ...place } as Pane, shown, side, markers, extras };
@@ -124,7 +125,7 @@ export class ViewStage {
     surface.object.visible = !this.state.hidden.has(index);
     if (shown.moves) surface.set_motion(this.motion.place(this.state.t), this.moving_pose());
     else surface.set_motion(start, role === "target" ? this.standing_pose() : at_rest);
-    const field = index === this.state.coloured ? model.field(this.state.field) : null;
+    const field = this.state.coloured.includes(index) ? model.field(this.state.field) : null;
     surface.set_values(field?.values ?? null);
     surface.set_range(...this.state.range, field?.record.middle !== null);
     const is_veil = content.side === "both" && role === "target";
@@ -184,7 +185,7 @@ export class ViewStage {
       at_source ? new Vector3(...anchor.a) : moved(new Vector3(...anchor.b), standing),
     );
     const colours = this.record.anchors.map((anchor) => (anchor.suspicion === null ? anchor_colour : suspicious_colour));
-    content.markers.set(points, colours, new Set([this.state.chosen_anchor]));
+    content.markers.set(points, colours, points.map((_, i) => (i === this.state.chosen_anchor ? "large" : "plain")));
     if (at_source) return;
     // From where the map takes it to where it should be.
     const ends = new Float32Array(6 * points.length);
@@ -203,14 +204,16 @@ export class ViewStage {
     let best: Found | null = null;
     for (const shown of content.shown) {
       if (!shown.surface.object.visible) continue;
-      const hit = this.hit(shown, at.ray);
+      const hit = this.hit(shown, at.ray, at.pane);
       if (hit !== null && (best === null || hit.distance < best.hit.distance)) best = { content, shown, hit };
     }
     return best;
   }
 
-  private hit(shown: Shown, ray: Ray): Hit | null {
-    return shown.surface.first_hit(ray);
+  /** Of what has no faces, the point nearest to the eye within a few pixels of the ray. */
+  private hit(shown: Shown, ray: Ray, pane: Pane): Hit | null {
+    const few = 6;
+    return shown.surface.faces.length > 0 ? shown.surface.first_hit(ray) : shown.surface.first_point(ray, few * this.stage.pixel_length(pane));
   }
 
   fly_to(source_point: Vector3 | null, target_point: Vector3): void {
