@@ -26,7 +26,7 @@ interface Exposed {
 before(async () => {
   bespoke(directory, "samples", ".", "shoe", "--quiet");
   bespoke(directory, "fit", "shoe/source.obj", "shoe/target.obj", "--anchors", "shoe/anchors.json", "-o", "shoe.vdb", "--quiet");
-  bespoke(directory, "view", "shoe.vdb", "--source", "shoe/source.obj", "--target", "shoe/target.obj", "--product", "shoe/upper.obj", "-o", file, "--quiet");
+  bespoke(directory, "view", "shoe.vdb", "--source", "shoe/source.obj", "--target", "shoe/target.obj", "--product", "shoe/upper.obj", "--product", "shoe/sole.obj", "-o", file, "--quiet");
   browser = await launch();
   opened = await open_page(browser, file);
 });
@@ -50,6 +50,31 @@ test("opens from a file URL, small, and draws the models", async () => {
   assert.ok(statSync(file).size < 15e6, `${statSync(file).size} bytes`);
   const { drawn } = await drawn_pixels(opened.page);
   assert.ok(drawn > 320 * 200 * 0.05, `${drawn} of 64,000 pixels are drawn`);
+});
+
+test("all products carry colours in one range, or one of them alone; each says its value", async () => {
+  const { page } = opened;
+  const model = page.getByLabel("Model that is coloured"), both = "2,3";
+  assert.equal(await model.inputValue(), both);
+  const box = (await page.locator("canvas.drawing").boundingBox())!;
+  const said = async (x: number, y: number): Promise<string> => {
+    await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+    await until(async () => page.locator(".readout").isVisible());
+    await page.evaluate(() => new Promise(requestAnimationFrame));
+    return page.locator(".readout").innerText();
+  };
+  const toe = [0.17, 0.655] as const, heel = [0.33, 0.624] as const; // of the canvas, in the left picture
+  assert.match(await said(...toe), /upper\.obj.*\n.*\nchange of clearance/);
+  assert.match(await said(...heel), /sole\.obj.*\n.*\nchange of clearance/);
+  const seen = new Set<string>();
+  for (const value of ["2", "3", both]) {
+    await model.selectOption(value);
+    seen.add((await drawn_pixels(page)).mean.map((channel) => channel.toFixed(1)).join());
+  }
+  assert.equal(seen.size, 3);
+  await model.selectOption("3");
+  assert.doesNotMatch(await said(...toe), /clearance/);
+  await model.selectOption(both);
 });
 
 test("the slider takes every vertex of the product to where apply takes it", async () => {

@@ -55,8 +55,8 @@ function anchor_row(anchor: AnchorRecord, index: number, body: HTMLElement, chos
 
 /** Folds, mended cells, contacts, unmet vertices: by kind, the largest first; a click flies there. */
 export function place_panel(record: ViewRecord, chosen: (place: PlaceRecord) => void): HTMLElement {
-  if (record.places.length === 0) return element("p", {}, "No folds, no regions that miss the tolerance, nothing touching, nothing unmet.");
   const parts: HTMLElement[] = [];
+  if (record.places.length === 0) parts.push(element("p", {}, "No place stands out: no folds, no regions that miss the tolerance, no vertices unmet, in cavities or stretched too far."));
   for (const kind of new Set(record.places.map((place) => place.kind))) {
     const places = record.places.filter((place) => place.kind === kind);
     parts.push(
@@ -64,5 +64,23 @@ export function place_panel(record: ViewRecord, chosen: (place: PlaceRecord) => 
       element("ul", { class: "plain" }, ...places.map((place) => element("li", {}, element("button", { type: "button", class: "link", onclick: () => chosen(place) }, place.text)))),
     );
   }
-  return element("div", {}, ...parts);
+  return element("div", {}, ...parts, counted(record.info));
+}
+
+/** What a map's record only counts: its stage, its key, and in words. */
+const counts: [string, string, string][] = [
+  ["surface-fit", "unmatched_vertices", "vertices without counterpart"],
+  ["surface-fit", "mended_vertices", "mended vertices"],
+  ["contact", "touching_vertices", "vertices in contact, held apart"],
+  ["contact", "left", "of them still touching"],
+  ["bake", "repaired_cells", "mended cells"],
+];
+
+function counted(info: Record<string, unknown>): HTMLElement {
+  const stages = Array.isArray(info.stages) ? (info.stages as Record<string, unknown>[]) : [];
+  const known = counts.flatMap(([name, key, label]) => {
+    const value = stages.find((stage) => stage.name === name)?.[key];
+    return typeof value === "number" ? [element("dt", {}, label), element("dd", {}, shown(value))] : [];
+  });
+  return known.length === 0 ? element("div", {}) : element("div", {}, element("h2", {}, "Counted by the fit"), element("dl", {}, ...known));
 }

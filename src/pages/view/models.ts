@@ -55,6 +55,19 @@ export class Model {
   }
 }
 
+/** One quantity of several models: one range and one histogram for all. */
+export function joint_field(models: Model[], id: string): Field | null {
+  const fields = models.map((model) => model.field(id)).filter((field) => field !== null);
+  if (fields.length <= 1) return fields[0] ?? null;
+  const values = new Float32Array(fields.reduce((count, field) => count + field.values.length, 0));
+  let at = 0;
+  for (const field of fields) {
+    values.set(field.values, at);
+    at += field.values.length;
+  }
+  return { record: fields[0].record, values, sorted: sorted_finite(values) };
+}
+
 /** Where colours begin and end: outliers of 1 % are left to the ends; symmetric about the middle where there is one. */
 export function default_range(field: Field): [number, number] {
   const low = quantile(field.sorted, 0.01), high = quantile(field.sorted, 0.99);

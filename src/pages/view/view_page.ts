@@ -6,7 +6,7 @@ import type { ViewRecord } from "../scene/scene";
 import { add_controls } from "../stage/controls";
 import { type Side, Stage } from "../stage/stage";
 import { Legend } from "./legend";
-import { default_range, type Model } from "./models";
+import { default_range, type Field, joint_field, type Model } from "./models";
 import { anchor_panel, place_panel } from "./lists";
 import { object_view } from "./tables";
 import { first_state } from "./view_state";
@@ -45,6 +45,8 @@ class ViewPage {
   private readonly time_text = element("output", {}, "t = 1");
   private readonly play = element("button", { type: "button", class: "main", onclick: () => this.toggle_play() }, "▶ Play");
   private readonly colour_controls = element("div", {});
+  /** What the colours show, of all models that carry them. */
+  private field: Field | null = null;
   private playing = false;
   private pins: Pin[] = [];
 
@@ -114,35 +116,44 @@ class ViewPage {
   private choose_first_field(): void {
     const wished = ["clearance_change", "target_distance", "displacement"];
     const models = this.view.models;
-    const order = [...models.keys()].sort((a, b) => Number(models[b].record.role === "product") - Number(models[a].record.role === "product"));
+    const order = [...models.keys()].sort((a, b) => Number(models[b].record.role === "product") - Number(models[a].record.role === "product")).map((index) => [index]);
+    if (this.products.length > 1) order.unshift(this.products);
     for (const id of wished)
-      for (const index of order)
-        if (models[index].field(id) !== null) return this.colour_by(index, id);
+      for (const indices of order)
+        if (indices.some((index) => models[index].field(id) !== null)) return this.colour_by(indices, id);
   }
 
-  private colour_by(index: number, id: string): void {
-    this.state.coloured = index;
+  private get products(): number[] {
+    return [...this.view.models.keys()].filter((index) => this.view.models[index].record.role === "product");
+  }
+
+  private get coloured_models(): Model[] {
+    return this.state.coloured.map((index) => this.view.models[index]);
+  }
+
+  private colour_by(indices: number[], id: string): void {
+    this.state.coloured = indices;
     this.state.field = id;
-    const field = this.view.models[index].field(id);
-    if (field !== null) this.state.range = default_range(field);
+    this.field = joint_field(this.coloured_models, id);
+    if (this.field !== null) this.state.range = default_range(this.field);
     this.recolour();
   }
 
   private recolour(): void {
-    const model: Model = this.view.models[this.state.coloured];
-    this.legend.show(model.field(this.state.field), ...this.state.range);
+    this.legend.show(this.field, ...this.state.range);
     this.view.update();
-    this.fill_colour_controls(model);
+    this.fill_colour_controls(this.coloured_models[0]);
     for (const pin of this.pins) this.label_pin(pin);
   }
 
   private fill_colour_controls(model: Model): void {
     const models = this.view.models.map((each, i) => ({ value: String(i), label: each.label }));
     const fields = [{ value: "", label: "plain" }, ...model.record.fields.map((field) => ({ value: field.id, label: field.label }))];
+    if (this.products.length > 1) models.push({ value: this.products.join(), label: "all products" });
     const choose_model = (value: string): void => {
-      const next = this.view.models[Number(value)];
+      const indices = value.split(",").map(Number), next = this.view.models[indices[0]];
       const id = next.field(this.state.field) !== null ? this.state.field : (next.record.fields[0]?.id ?? "");
-      this.colour_by(Number(value), id);
+      this.colour_by(indices, id);
     };
     const number = (end: 0 | 1, name: string): HTMLElement => {
       const input = element("input", { type: "number", "aria-label": name, step: "any", value: String(Number(this.state.range[end].toPrecision(4))) });
@@ -154,7 +165,7 @@ class ViewPage {
     };
     this.colour_controls.replaceChildren(
       element("h2", {}, "Colours"),
-      row("Model", choice(models, String(this.state.coloured), choose_model, "Model that is coloured")),
+      row("Model", choice(models, this.state.coloured.join(), choose_model, "Model that is coloured")),
       row("Quantity", choice(fields, this.state.field, (id) => this.colour_by(this.state.coloured, id), "Quantity")),
       element("div", { class: "row" }, element("label", { class: "row" }, element("span", {}, "Range"), number(0, "Lower end"), " to ", number(1, "Upper end"))),
       element(
@@ -322,7 +333,7 @@ class ViewPage {
   }
 
   private value_text(shown: Shown, vertex: number): string {
-    const field = shown.index === this.state.coloured ? shown.model.field(this.state.field) : null;
+    const field = this.state.coloured.includes(shown.index) ? shown.model.field(this.state.field) : null;
     return field === null ? "" : `${field.record.label} ${number_text(field.values[vertex], field.record.unit)}`;
   }
 

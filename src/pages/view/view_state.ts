@@ -6,8 +6,8 @@ export interface ViewState {
   rigid: boolean;
   hidden: Set<number>;
   opacity: number;
-  /** The model that carries the colours, by its number in the scene. */
-  coloured: number;
+  /** The models that carry the colours, by their numbers in the scene. */
+  coloured: number[];
   field: string;
   range: [number, number];
   clip: { on: boolean; axis: 0 | 1 | 2; position: number; flipped: boolean };
@@ -24,7 +24,7 @@ export function first_state(): ViewState {
     rigid: true,
     hidden: new Set(),
     opacity: 0.35,
-    coloured: 0,
+    coloured: [0],
     field: "",
     range: [0, 1],
     clip: { on: false, axis: 0, position: 0.5, flipped: false },
