@@ -159,6 +159,17 @@ test("preview, hint and mirror change what is shown; opening a file replaces the
   assert.deepEqual((await pairs()).map((pair) => pair.a), given.map((pair) => pair.a));
 });
 
+test("two pairs of one name, which fit refuses, are warned of", async () => {
+  const { page } = opened;
+  const name = page.getByLabel("Name of pair 2", { exact: true }), first = given[0].name;
+  await name.fill(first);
+  await name.press("Enter");
+  const warnings = page.getByRole("status", { name: "Warnings" });
+  await until(async () => (await warnings.innerText()).includes(`Two pairs are named “${first}”`));
+  await page.getByRole("button", { name: "Undo" }).click();
+  assert.equal(await warnings.innerText(), "");
+});
+
 test("swapped targets are warned of, sound pairs are not", async () => {
   const warnings = opened.page.getByRole("status", { name: "Warnings" });
   assert.equal(await warnings.innerText(), "");

@@ -41,6 +41,8 @@ export function check_pairs(pairs: PickedPair[]): PairChecks {
     const rigid = rigid_warp(a, b);
     checks.rigid = a.map((point, i) => distance(rigid(point), b[i]));
   }
+  const twins = new Set(complete.filter((pair, i) => pair.name !== "" && complete.findIndex((other) => other.name === pair.name) < i).map((pair) => pair.name));
+  for (const name of twins) checks.warnings.push(`Two pairs are named “${name}”: fit takes only names that differ.`);
   warn_of_places(complete, checks);
   if (complete.length >= 4) warn_of_shape(a, b, checks);
   if (complete.length >= 5) warn_of_outliers(complete, a, b, sigmas, checks);

@@ -29,6 +29,7 @@ export interface Pane {
 }
 
 const field_of_view = 30; // degrees, upright: little perspective, as in technical pictures
+const first_pitch = 0.25; // radians above the horizon
 const pitch_limit = Math.PI / 2 - 1e-3;
 
 export type Side = "front" | "side" | "top";
@@ -36,7 +37,7 @@ export type Side = "front" | "side" | "top";
 /** The drawing area: panes with linked cameras, drawn only when something changed. */
 export class Stage {
   readonly renderer: WebGLRenderer;
-  readonly view: ViewPoint = { centre: new Vector3(), yaw: 0.5, pitch: 0.25, half_height: 1, orthographic: false };
+  readonly view: ViewPoint = { centre: new Vector3(), yaw: 0.5, pitch: first_pitch, half_height: 1, orthographic: false };
   panes: Pane[] = [];
   upright: "y" | "z" = "y";
   frames_drawn = 0;
@@ -89,8 +90,8 @@ export class Stage {
     const size = high.clone().sub(low);
     const tall = this.upright === "y" ? size.y : size.z;
     const wide = Math.hypot(size.x, this.upright === "y" ? size.z : size.y);
-    // From above a flat thing is as high as it is deep.
-    const height = Math.max(tall, 0.75 * wide);
+    // Seen from a little above, depth adds to the height; from the top a flat thing is as high as it is deep.
+    const height = Math.max(tall * Math.cos(first_pitch) + wide * Math.sin(first_pitch), 0.75 * wide);
     const margin = 1.14;
     this.extent = size.length();
     this.widest = wide / height;
@@ -100,7 +101,7 @@ export class Stage {
 
   reset(): void {
     this.view.yaw = 0.5;
-    this.view.pitch = 0.25;
+    this.view.pitch = first_pitch;
     this.show_all();
   }
 
