@@ -12,6 +12,9 @@ project = "bespoke"
 release = re.search(r"project\(bespoke VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text()).group(1)
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton"]
 
+# What a page prints is not to be copied, what it asks for is.
+copybutton_selector = ".highlight-sh pre, .highlight-python pre, .highlight-cpp pre, .highlight-json pre"
+
 html_theme = "furo"
 html_title = f"bespoke {release}"
 html_static_path = [str(out / "pages" / "static")]

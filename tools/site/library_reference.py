@@ -11,8 +11,11 @@ NAMESPACE = "bespoke::"
 
 
 def escaped(text):
-    """As plain text for reStructuredText."""
-    return re.sub(r"([*`|_\\])", r"\\\1", text)
+    """As plain text for reStructuredText, `names` in it as code."""
+    parts = re.split(r"(?<!\w)`([^`]+)`(?!\w)", text)
+    plain = [re.sub(r"([*`|_\\])", r"\\\1", part) for part in parts[::2]]
+    code = [f"``{part}``" for part in parts[1::2]] + [""]
+    return "".join(a + b for a, b in zip(plain, code))
 
 
 def inline(element):

@@ -41,7 +41,8 @@ vectors, name = 4 * len(flat), pathlib.Path(source).stem
 text = json.dumps({
     "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": name, "mesh": 0}],
     "meshes": [{"name": name, "primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 0}]}],
-    "materials": [{"name": name, "doubleSided": True, "pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.1, 0.2, 1], "metallicFactor": 0}}],
+    "materials": [{"name": name, "doubleSided": True,
+                   "pbrMetallicRoughness": {"baseColorFactor": [0.6, 0.1, 0.2, 1], "metallicFactor": 0}}],
     "buffers": [{"byteLength": len(data)}],
     "bufferViews": [{"buffer": 0, "byteLength": vectors}, {"buffer": 0, "byteOffset": vectors, "byteLength": vectors},
                     {"buffer": 0, "byteOffset": 2 * vectors, "byteLength": 4 * len(corners)}],

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Makes of a clean head what a scanner delivers: noise, no back of the head, crumbs. make_scan.py HEAD.obj SCAN.ply
+"""Makes of a clean head what a scanner delivers: noise, and no back of the head. make_scan.py HEAD.obj SCAN.ply
 
-Noise is 0.2 mm in each coordinate. Faces on the back half of the skull, where hair was, are missing. Lengths stay those of
+Noise is 0.2 mm in each coordinate. Faces on the back of the skull, where hair was, are missing. Lengths stay those of
 the head, cm.
 """
 import random
@@ -15,7 +15,7 @@ lines = [line.split() for line in open(head)]
 vertices = [[float(x) for x in words[1:4]] for words in lines if words[:1] == ["v"]]
 faces = [[int(corner.split("/")[0]) - 1 for corner in words[1:]] for words in lines if words[:1] == ["f"]]
 
-# The target looks along the direction from the skull's middle to the tip of the nose, the vertex farthest from its neck's axis.
+# The head looks from its middle towards the tip of the nose, the vertex farthest from its axis.
 low, high = ([f(v[k] for v in vertices) for k in range(3)] for f in (min, max))
 middle = [(a + b) / 2 for a, b in zip(low, high)]
 above = [v for v in vertices if v[1] > middle[1]]
