@@ -32,7 +32,7 @@ function warn_of_way(curve: PickedCurve, name: string, rigid: Warp | null, warni
   if (in_order(curve) === null) warnings.push(`${name}: its fixed points come in different orders on the two models; it is saved without them.`);
   // Where a closed curve begins, and two fixed points or more, decide the way round; else it is as clicked.
   const is_free = curve.closed && curve.fixed.length === 0;
-  if (is_free && rigid === null) warnings.push(`${name}: without three pairs its two lines are matched from their first points on, the way round that they were clicked.`);
+  if (is_free && rigid === null) warnings.push(`${name} is closed: where it begins on the target follows from three pairs, or from points of it that are fixed together; without, fit refuses it.`);
   const decides = curve.closed ? 3 : 2;
   if (is_free || rigid === null || curve.fixed.length >= decides) return;
   const start = curve.closed && curve.fixed.length > 0 ? curve.fixed[0] : [0, 0];
