@@ -56,6 +56,21 @@ TEST(CurvePairs, LieAtEqualSharesOfLength) {
   EXPECT_TRUE(pairs.curves.empty());
 }
 
+// A seam from one pair to another, and a second seam that begins on it.
+TEST(CurvePairs, LeavePlacesThatAreTakenToWhatIsThere) {
+  Anchors anchors;
+  anchors.pairs = {{"begin", corner.col(0), corner.col(0)}, {"beside", {1, 0.2, 0}, {1, 0.2, 0}}};
+  anchors.curves = {{"seam", corner, corner, false, {}},
+                    {"branch", Points{{2, 2}, {0, 1}, {0, 0}}, Points{{2, 2}, {0, 1}, {0, 0}}, false, {}}};
+  CurvePairs curves(anchors, 0.5);
+  const Anchors pairs = curves.pairs(0.1);
+  ASSERT_EQ(pairs.pairs.size(), 2u + 7u + 2u);
+  EXPECT_EQ(curves.sources().cols(), 9);
+  for (std::size_t i = 0; i < pairs.pairs.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GE((pairs.pairs[i].a - pairs.pairs[j].a).norm(), 0.25) << i << " and " << j;
+}
+
 // The second point of a, at three quarters of its length, belongs to the middle of b.
 TEST(CurvePairs, KeepFixedPoints) {
   Anchors anchors;
@@ -96,7 +111,7 @@ TEST(CurvePairs, DoNotGuessWhereAClosedCurveBegins) {
   EXPECT_THAT(test::error_message<InvalidInput>([&] { CurvePairs(anchors, 0.1); }),
               AllOf(HasSubstr("\"waist\""), HasSubstr("there are 2"), HasSubstr("\"fixed\"")));
   anchors.curves[0].fixed = {{0, 0}};
-  EXPECT_GE(CurvePairs(anchors, 0.1).pairs(0).pairs.size(), 65u);
+  EXPECT_NO_THROW(CurvePairs(anchors, 0.1));
 }
 
 class CurveFiles : public ::testing::Test {

@@ -16,6 +16,9 @@ namespace {
 constexpr int starts = 180;
 constexpr std::size_t pairs_that_fix_a_turn = 3;
 
+/// Of the spacing: nearer to one another, two pairs leave the warp's equations singular, or bend it sharply.
+constexpr double too_near = 0.5;
+
 Eigen::Index segments(const Points& polyline, bool closed) { return polyline.cols() - (closed ? 0 : 1); }
 
 Vector3 end_of(const Points& polyline, Eigen::Index segment) {
@@ -136,6 +139,7 @@ CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
     const std::vector<Knot> knots = knots_of(curve, given);
     const double length = lengths_up_to(curve.a, curve.closed).back();
     const auto add = [&](double a, double b, bool is_fixed) {
+      if (is_taken(point_along(curve.a, curve.closed, a), k, too_near * spacing)) return;
       AnchorPair pair{curve.name + '[' + std::to_string(samples_.size()) + ']',
                       point_along(curve.a, curve.closed, a), point_along(curve.b, curve.closed, b)};
       samples_.push_back({k, std::move(pair), is_fixed});
@@ -152,6 +156,13 @@ CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
     }
     if (!curve.closed) add(1, 1, !curve.fixed.empty() && curve.fixed.back().first == curve.a.cols() - 1);
   }
+}
+
+bool CurvePairs::is_taken(const Vector3& source, std::size_t curve, double distance) const {
+  const auto is_near = [&](const AnchorPair& pair) { return (pair.a - source).norm() < distance; };
+  return std::any_of(given_.pairs.begin(), given_.pairs.end(), is_near) ||
+         std::any_of(samples_.begin(), samples_.end(),
+                     [&](const Sample& sample) { return sample.curve != curve && is_near(sample.pair); });
 }
 
 Anchors CurvePairs::pairs(double sigma) const {

@@ -21,8 +21,9 @@ class CurvePairs {
  public:
   /// Pairs lie at most `spacing` (> 0, mesh units) apart on the source, at equal shares of length between
   /// fixed points. A closed curve without fixed points begins, and runs, where and as the pairs, moved
-  /// rigidly, put it. Throws InvalidInput for a spacing that is not positive, and for such a curve with fewer
-  /// than three pairs or collinear ones.
+  /// rigidly, put it. Where a pair, or an earlier curve, lies within half a spacing on the source, that
+  /// speaks for the place alone. Throws InvalidInput for a spacing that is not positive, and for such a
+  /// closed curve with fewer than three pairs or collinear ones.
   CurvePairs(const Anchors& given, double spacing);
 
   /// All pairs; those of curves, but for fixed points, with this accuracy (≥ 0, mesh units).
@@ -40,6 +41,8 @@ class CurvePairs {
     AnchorPair pair;
     bool is_fixed = false;
   };
+
+  bool is_taken(const Vector3& source, std::size_t curve, double distance) const;
 
   Anchors given_;  // without its curves
   std::vector<AnchorCurve> curves_;
