@@ -139,9 +139,9 @@ CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
     const std::vector<Knot> knots = knots_of(curve, given);
     const double length = lengths_up_to(curve.a, curve.closed).back();
     const auto add = [&](double a, double b, bool is_fixed) {
-      if (is_taken(point_along(curve.a, curve.closed, a), k, too_near * spacing)) return;
       AnchorPair pair{curve.name + '[' + std::to_string(samples_.size()) + ']',
                       point_along(curve.a, curve.closed, a), point_along(curve.b, curve.closed, b)};
+      if (is_taken(pair.a, k, is_fixed ? 0 : too_near * spacing)) return;
       samples_.push_back({k, std::move(pair), is_fixed});
     };
     for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
@@ -159,7 +159,7 @@ CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
 }
 
 bool CurvePairs::is_taken(const Vector3& source, std::size_t curve, double distance) const {
-  const auto is_near = [&](const AnchorPair& pair) { return (pair.a - source).norm() < distance; };
+  const auto is_near = [&](const AnchorPair& pair) { return (pair.a - source).norm() <= distance; };
   return std::any_of(given_.pairs.begin(), given_.pairs.end(), is_near) ||
          std::any_of(samples_.begin(), samples_.end(),
                      [&](const Sample& sample) { return sample.curve != curve && is_near(sample.pair); });

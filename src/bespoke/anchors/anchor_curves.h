@@ -21,9 +21,9 @@ class CurvePairs {
  public:
   /// Pairs lie at most `spacing` (> 0, mesh units) apart on the source, at equal shares of length between
   /// fixed points. A closed curve without fixed points begins, and runs, where and as the pairs, moved
-  /// rigidly, put it. Where a pair, or an earlier curve, lies within half a spacing on the source, that
-  /// speaks for the place alone. Throws InvalidInput for a spacing that is not positive, and for such a
-  /// closed curve with fewer than three pairs or collinear ones.
+  /// rigidly, put it. Where a pair, or an earlier curve, lies within half a spacing on the source (of a
+  /// fixed point: at its place), that speaks for the place alone. Throws InvalidInput for a spacing that is
+  /// not positive, and for such a closed curve with fewer than three pairs or collinear ones.
   CurvePairs(const Anchors& given, double spacing);
 
   /// All pairs; those of curves, but for fixed points, with this accuracy (≥ 0, mesh units).
