@@ -39,37 +39,7 @@ std::vector<fs::path> vdb_files(const fs::path& directory) {
   return files;
 }
 
-/// Whether a file is OpenVDB's and says nothing in its head of being an asset: somebody else's volume, or an
-/// exported image. An asset that was cut short does say so.
-bool is_other_volume(const fs::path& path) {
-  constexpr std::string_view magic(" BDV\0\0\0\0", 8);
-  constexpr std::string_view entry = "bespoke:format_version";
-  std::string head(std::size_t{1} << 16, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.starts_with(magic) && head.find(entry) == std::string::npos;
-}
-
-using Indexed = std::variant<CatalogEntry, RefusedFile, std::string>;
-
-Indexed index_file(const fs::path& path, const std::string& name, const ReadAssetOptions& options) {
-  if (is_other_volume(path)) return name;
-  try {
-    CatalogEntry entry = catalog_entry(path, options);
-    entry.file = name;
-    return entry;
-  } catch (const Error& error) {
-    // The catalogue may be moved with its directory: it does not say where that lay.
-    std::string reason = error.what();
-    if (reason.starts_with(path.string() + ": ")) reason.erase(0, path.string().size() + 2);
-    return RefusedFile{name, reason};
-  }
-}
-
-}  // namespace
-
-CatalogEntry catalog_entry(const fs::path& path, const ReadAssetOptions& options) {
-  const Asset asset = read_asset(path, options);
+CatalogEntry entry_of(const fs::path& path, const Asset& asset) {
   const Certificate certificate = whole_certificate(asset);
   CatalogEntry entry;
   entry.sha256 = sha256_of_file(path);
@@ -90,8 +60,42 @@ CatalogEntry catalog_entry(const fs::path& path, const ReadAssetOptions& options
   entry.steps = asset.steps.size();
   entry.voxels = voxel_count(asset);
   entry.anchors = asset.record.anchors.size();
-  entry.thumbnail = source_thumbnail(asset, thumbnail_pixels);
   return entry;
+}
+
+/// Whether a file is OpenVDB's and says nothing in its head of being an asset: somebody else's volume, or an
+/// exported image. An asset that was cut short does say so.
+bool is_other_volume(const fs::path& path) {
+  constexpr std::string_view magic(" BDV\0\0\0\0", 8);
+  constexpr std::string_view entry = "bespoke:format_version";
+  std::string head(std::size_t{1} << 16, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.starts_with(magic) && head.find(entry) == std::string::npos;
+}
+
+using Indexed = std::variant<CatalogEntry, RefusedFile, std::string>;
+
+Indexed index_file(const fs::path& path, const std::string& name, const ReadAssetOptions& options) {
+  if (is_other_volume(path)) return name;
+  try {
+    const Asset asset = read_asset(path, options);
+    CatalogEntry entry = entry_of(path, asset);
+    entry.file = name;
+    entry.thumbnail = source_thumbnail(asset, thumbnail_pixels);
+    return entry;
+  } catch (const Error& error) {
+    // The catalogue may be moved with its directory: it does not say where that lay.
+    std::string reason = error.what();
+    if (reason.starts_with(path.string() + ": ")) reason.erase(0, path.string().size() + 2);
+    return RefusedFile{name, reason};
+  }
+}
+
+}  // namespace
+
+CatalogEntry catalog_entry(const fs::path& path, const ReadAssetOptions& options) {
+  return entry_of(path, read_asset(path, options));
 }
 
 Catalog index_assets(const fs::path& directory, const ReadAssetOptions& options, const Progress& progress) {

@@ -47,7 +47,7 @@ struct Catalog {
   std::vector<std::string> others;   ///< OpenVDB files that were never assets, for instance images
 };
 
-/// What a catalogue says of one asset, without its `file`. Throws as read_asset.
+/// What a catalogue says of one asset, without its `file` and thumbnail. Throws as read_asset.
 CatalogEntry catalog_entry(const std::filesystem::path& path, const ReadAssetOptions& options = {});
 
 /// Reads and verifies every .vdb file in a directory and below, several at a time; hidden ones are left out.

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {

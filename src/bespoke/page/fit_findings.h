@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/pipeline/fit_mapping.h"
-
 namespace bespoke {
+
+struct FittedMapping;
 
 /// What a fit found at the source's vertices and does not store in the map.
 struct FitFindings {
