@@ -52,6 +52,14 @@ class BatchCommand : public testing::Test {
     arguments.insert(arguments.end(), extra.begin(), extra.end());
     return bespoke(arguments);
   }
+  /// The only page of a map in a directory.
+  std::string page_name(const std::string& directory) const {
+    std::string name;
+    for (const fs::directory_entry& entry : fs::directory_iterator(file(directory)))
+      if (entry.path().extension() == ".html" && entry.path().filename() != "index.html")
+        name = directory + "/" + entry.path().filename().string();
+    return name;
+  }
   std::vector<json> log(const std::string& name) const {
     std::vector<json> records;
     std::istringstream lines(read(name));
@@ -137,6 +145,12 @@ TEST_F(BatchCommand, ShowsWhatItFitsOnPages) {
   EXPECT_THAT(index,
               AllOf(HasSubstr("<h1>1 result</h1>"), HasSubstr(">product.obj<"), HasSubstr("../map.vdb")));
   EXPECT_THAT(batch(jobs, {"--html", file("pages")}).err, HasSubstr("5 up to date"));
+  // The page tells what makes it alone, not which batch did.
+  const std::string name = page_name("pages"), page = read(name);
+  fs::remove_all(file("pages"));
+  ASSERT_EQ(batch(jobs, {"--html", file("pages"), "--jobs", "1", "--shard", "1/1"}).exit_code, 0);
+  EXPECT_TRUE(read(name) == page);
+  EXPECT_TRUE(read("pages/index.html") == index);
 
   // One that fails is named; the others are shown.
   json other = fit("other.vdb");

@@ -45,6 +45,10 @@ TEST(ViewCommand, IsWhatFitWritesWithItsFindings) {
   EXPECT_THAT(read_text(pair.file("pages/map.html")), HasSubstr("<!doctype html>"));
   EXPECT_THAT(read_text(pair.file("pages/map.png")), testing::StartsWith("\x89PNG"));
   EXPECT_THAT(read_text(pair.file("pages/index.html")), HasSubstr("href=\"map.html\""));
+
+  // A map called as the index takes another name there.
+  ASSERT_EQ(pair.fit("index.vdb", {"--html", pair.file("pages")}).exit_code, 0);
+  EXPECT_THAT(read_text(pair.file("pages/index.html")), HasSubstr("href=\"index_2.html\""));
 }
 
 TEST(ViewCommand, RefusesOtherModelsAndFindings) {

@@ -10,6 +10,7 @@
 #include "bespoke/error.h"
 #include "bespoke/words.h"
 #include "commands.h"
+#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -124,6 +125,7 @@ JobPlanner::Parser& JobPlanner::parser_of(const std::string& command) {
 BatchJob JobPlanner::plan(const ManifestJob& line) {
   Parser& parser = parser_of(line.command);
   std::vector<std::string> arguments = arguments_of(line, *parser.command);
+  const std::string command = command_text(arguments);
   std::reverse(arguments.begin(), arguments.end());  // as the parser wants them
   try {
     parser.app.parse(arguments);
@@ -131,10 +133,10 @@ BatchJob JobPlanner::plan(const ManifestJob& line) {
     parsers_.erase(line.command);  // it may hold half of the line
     throw;
   }
-  return job_of(line, std::exchange(planned_, {}));
+  return job_of(line, std::exchange(planned_, {}), command);
 }
 
-BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned) const {
+BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned, const std::string& command) const {
   BatchJob job;
   job.line = line.line;
   job.command = line.command;
@@ -148,10 +150,10 @@ BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned) const {
     if (!roles.contains(entry.key) && !entry.values.empty())
       job.options.emplace_back(entry.key, joined(entry.values));
   std::sort(job.options.begin(), job.options.end());
-  job.run = [run = std::move(planned.run), &maps = maps_](const Progress& progress) {
+  job.run = [run = std::move(planned.run), &maps = maps_, command](const Progress& progress) {
     JobFindings findings;
     run({progress, maps, findings, [&](const std::string& warning) { findings.warnings.push_back(warning); },
-         [](const std::string&) {}});
+         [](const std::string&) {}, command});
     return findings;
   };
   return job;

@@ -27,7 +27,7 @@ class JobPlanner {
   struct Parser;
 
   Parser& parser_of(const std::string& command);
-  BatchJob job_of(const ManifestJob& line, PlannedRun planned) const;
+  BatchJob job_of(const ManifestJob& line, PlannedRun planned, const std::string& command) const;
 
   OpenedMaps& maps_;
   PlannedRun planned_;

@@ -21,7 +21,6 @@
 #include "memory_option.h"
 #include "name_option.h"
 #include "output_files.h"
-#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -143,42 +142,29 @@ std::vector<JobFigure> figures(const MadeMap& made) {
           {"voxels", voxel_count(made.asset)}};
 }
 
-ShownMap shown_map(const FitArguments& arguments) {
-  return {0,
-          std::filesystem::path(arguments.output).stem().string(),
-          arguments.output,
-          arguments.source,
-          arguments.target,
-          {},
-          {},
-          {},
-          1};
+std::optional<HtmlPages> html_pages(const FitArguments& arguments) {
+  if (arguments.html.empty()) return std::nullopt;
+  ShownMap shown;
+  shown.name = std::filesystem::path(arguments.output).stem().string();
+  shown.map = arguments.output;
+  shown.source = arguments.source;
+  shown.target = arguments.target;
+  return HtmlPages(arguments.html, {shown});
 }
 
 /// The map's page, which shows what the fit found as well, its picture, and the index.
 void write_pages(const HtmlPages& pages, const FitArguments& arguments, const MakeMapInput& input,
                  const MadeMap& made, const RunContext& context) {
-  const ShownMap shown = shown_map(arguments);
-  const std::string scene = view_scene({made.asset,
-                                        input.source,
-                                        input.target,
-                                        {},
-                                        findings_of(made.fit),
-                                        std::filesystem::path(shown.map).filename().string(),
-                                        typed_command()},
-                                       {}, context.progress);
-  pages.make_directory();
-  OutputFiles files;
-  files.write_text(pages.page(shown), whole_page(scene));
-  files.keep();
-  pages.write_picture(shown, *context.maps.open(shown.map, MapForm::grids, {}));
-  pages.write_index();
+  const std::string title = std::filesystem::path(arguments.output).filename().string();
+  const std::string scene =
+      view_scene({made.asset, input.source, input.target, {}, findings_of(made.fit), title, context.command},
+                 {}, context.progress);
+  pages.write(scene, *context.maps.open(arguments.output, MapForm::grids, {}));
 }
 
 void run(const FitArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
-  std::optional<HtmlPages> pages;
-  if (!arguments.html.empty()) pages.emplace(arguments.html, std::vector{shown_map(arguments)});
+  const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;
   const TriangleMesh source = read_model("source", arguments.source, quiet);

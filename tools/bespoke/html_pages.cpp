@@ -2,17 +2,19 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "bespoke/catalog/map_index.h"
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/page/carried_picture.h"
+#include "bespoke/parallel.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "output_files.h"
 #include "page_output.h"
-#include "planned_run.h"
 
 namespace bespoke::command {
 namespace {
@@ -32,14 +34,19 @@ std::string value_of(const ManifestJob& line, const std::string& key) {
   return values.empty() ? "" : values.front();
 }
 
-/// ../maps/anna.vdb is "maps_anna"; a second one of that name, "maps_anna_2".
-std::string name_of(const fs::path& map, std::set<std::string>& names) {
-  std::string first;
+/// ../maps/anna.vdb is "maps_anna".
+std::string name_of(const fs::path& map) {
+  std::string name;
   for (const fs::path& part : fs::path(map).replace_extension().relative_path().lexically_normal())
-    if (part != "..") first += (first.empty() ? "" : "_") + part.string();
-  std::string name = first;
-  for (int i = 2; !names.insert(name).second; ++i) name = first + "_" + std::to_string(i);
+    if (part != "..") name += (name.empty() ? "" : "_") + part.string();
   return name;
+}
+
+/// The name, or with a number behind it where it is taken.
+std::string free_name(const std::string& name, std::set<std::string>& taken) {
+  std::string free = name;
+  for (int i = 2; !taken.insert(free).second; ++i) free = name + "_" + std::to_string(i);
+  return free;
 }
 
 std::vector<TriangleMesh> meshes_of(const std::vector<std::string>& products) {
@@ -68,13 +75,12 @@ std::vector<JobFile> inputs_of(const ShownMap& shown) {
 std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
   std::vector<ShownMap> shown;
   std::map<fs::path, std::size_t> row_of;
-  std::set<std::string> names;
   for (const ManifestJob& line : manifest.jobs) {
     const std::string map = value_of(line, "output");
     if (line.command != "fit" || map.empty()) continue;
     row_of.try_emplace(fs::path(map).lexically_normal(), shown.size());
     shown.push_back({line.line,
-                     name_of(map, names),
+                     name_of(map),
                      map,
                      value_of(line, "source"),
                      value_of(line, "target"),
@@ -95,23 +101,31 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
   return shown;
 }
 
-HtmlPages::HtmlPages(fs::path directory, std::vector<ShownMap> maps)
-    : directory_(std::move(directory)), maps_(std::move(maps)) {
+HtmlPages::HtmlPages(fs::path directory, const std::vector<ShownMap>& maps)
+    : directory_(std::move(directory)), index_(directory_ / "index.html") {
   require_pages();
   if (fs::exists(directory_) && !fs::is_directory(directory_))
     throw FileError(directory_.string() + ": is no directory");
+  std::map<std::string, fs::path> page_of;
+  std::set<std::string> taken{"index"};
+  for (const ShownMap& shown : maps) {
+    const std::string name = free_name(shown.name, taken);
+    const fs::path& page = page_of.try_emplace(shown.map, directory_ / (name + ".html")).first->second;
+    rows_.push_back({shown, page, directory_ / (name + ".png")});
+  }
 }
 
 std::vector<ManifestJob> HtmlPages::page_lines() const {
   std::vector<ManifestJob> lines;
   std::set<fs::path> pages;
-  for (const ShownMap& shown : maps_) {
-    if (!pages.insert(page(shown)).second) continue;
+  for (const Row& row : rows_) {
+    if (!pages.insert(row.page).second) continue;
+    const ShownMap& shown = row.shown;
     ManifestJob line{shown.line, "view", {}};
     line.entries = {{"map", {shown.map}},
                     {"source", {shown.source}},
                     {"target", {shown.target}},
-                    {"output", {page(shown).string()}}};
+                    {"output", {row.page.string()}}};
     if (!shown.products.empty()) line.entries.push_back({"product", shown.products});
     if (!shown.confidence.empty()) line.entries.push_back({"confidence", {shown.confidence}});
     if (!shown.fit_report.empty()) line.entries.push_back({"fit-report", {shown.fit_report}});
@@ -122,16 +136,16 @@ std::vector<ManifestJob> HtmlPages::page_lines() const {
 
 std::vector<BatchJob> HtmlPages::picture_jobs(OpenedMaps& maps) const {
   std::vector<BatchJob> jobs;
-  for (const ShownMap& shown : maps_) {
+  for (const Row& row : rows_) {
     BatchJob job;
-    job.line = shown.line;
+    job.line = row.shown.line;
     job.command = "picture";
-    job.options = {{"t", std::to_string(shown.t)}};
-    job.inputs = inputs_of(shown);
-    job.outputs = {{"output", picture(shown)}};
-    job.shared_map = shown.map;
-    job.run = [this, shown, &maps](const Progress&) {
-      write_picture(shown, *maps.open(shown.map, MapForm::grids, {}));
+    job.options = {{"t", in_digits(row.shown.t, 17)}};
+    job.inputs = inputs_of(row.shown);
+    job.outputs = {{"output", row.picture}};
+    job.shared_map = row.shown.map;
+    job.run = [&row, &maps](const Progress&) {
+      write_picture(row, *maps.open(row.shown.map, MapForm::grids, {}));
       return JobFindings{};
     };
     jobs.push_back(std::move(job));
@@ -145,45 +159,56 @@ void HtmlPages::make_directory() const {
   if (error) throw FileError(directory_.string() + ": cannot be made: " + error.message());
 }
 
-void HtmlPages::write_picture(const ShownMap& shown, const OpenedMap& map) const {
-  const TriangleMesh source = read_triangle_mesh(shown.source), target = read_triangle_mesh(shown.target);
-  const std::vector<TriangleMesh> products = meshes_of(shown.products);
-  OutputFiles files;
-  files.write_text(
-      picture(shown),
-      carried_picture({*map.elastic, map.target_from_source, {map.path}, shown.t, source, target, products},
-                      picture_pixels));
-  files.keep();
-}
+bool HtmlPages::has_index() const { return fs::exists(index_); }
 
 void HtmlPages::write_index() const {
+  std::vector<std::optional<MapIndexRow>> made(rows_.size());
+  parallel_for(rows_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [shown, page, picture] = rows_[i];
+      if (!fs::exists(shown.map) || !fs::exists(page) || !fs::exists(picture)) continue;
+      CatalogEntry entry = catalog_entry(shown.map);
+      entry.file = fs::proximate(shown.map, directory_).generic_string();
+      made[i] = {shown.name,
+                 shown.t,
+                 std::move(entry),
+                 page.filename().string(),
+                 picture.filename().string(),
+                 file_names(shown.products)};
+    }
+  });
   std::vector<MapIndexRow> rows;
   std::vector<std::string> missing;
-  for (const ShownMap& shown : maps_) {
-    if (!fs::exists(shown.map) || !fs::exists(page(shown)) || !fs::exists(picture(shown))) {
-      missing.push_back(shown.name);
-      continue;
-    }
-    CatalogEntry entry = catalog_entry(shown.map);
-    entry.file = fs::proximate(shown.map, directory_).generic_string();
-    rows.push_back({shown.name, shown.t, std::move(entry), page(shown).filename().string(),
-                    picture(shown).filename().string(), file_names(shown.products)});
-  }
+  for (std::size_t i = 0; i < made.size(); ++i)
+    if (made[i])
+      rows.push_back(std::move(*made[i]));
+    else
+      missing.push_back(rows_[i].shown.name);
   OutputFiles files;
-  files.write_text(index(), map_index(rows, missing));
+  files.write_text(index_, map_index(rows, missing));
   files.keep();
 }
 
-bool HtmlPages::has_index() const { return fs::exists(index()); }
-
-fs::path HtmlPages::page(const ShownMap& shown) const {
-  const auto first =
-      std::find_if(maps_.begin(), maps_.end(), [&](const ShownMap& other) { return other.map == shown.map; });
-  return directory_ / ((first == maps_.end() ? shown : *first).name + ".html");
+void HtmlPages::write(const std::string& scene, const OpenedMap& map) const {
+  make_directory();
+  OutputFiles files;
+  files.write_text(rows_.front().page, whole_page(scene));
+  files.keep();
+  write_picture(rows_.front(), map);
+  write_index();
 }
 
-fs::path HtmlPages::picture(const ShownMap& shown) const { return directory_ / (shown.name + ".png"); }
-
-fs::path HtmlPages::index() const { return directory_ / "index.html"; }
+void HtmlPages::write_picture(const Row& row, const OpenedMap& map) {
+  const TriangleMesh source = read_triangle_mesh(row.shown.source);
+  const TriangleMesh target = read_triangle_mesh(row.shown.target);
+  const std::vector<TriangleMesh> products = meshes_of(row.shown.products);
+  OutputFiles files;
+  files.write_text(
+      row.picture,
+      carried_picture(
+          {*map.elastic, map.target_from_source, {map.path}, row.shown.t, source, target, products},
+          picture_pixels));
+  files.keep();
+}
 
 }  // namespace bespoke::command

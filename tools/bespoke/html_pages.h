@@ -14,7 +14,7 @@ namespace bespoke::command {
 /// A map that `--html` shows, as far as t, with what it carries.
 struct ShownMap {
   std::size_t line = 0;  ///< of the manifest; 0: there is none
-  std::string name;      ///< of its row and its picture, unlike all others'
+  std::string name;      ///< of its row; its files are called after it
   std::string map;
   std::string source;
   std::string target;
@@ -31,32 +31,37 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest);
 class HtmlPages {
  public:
   /// Throws FileError in a build without pages, and where `directory` is something else.
-  HtmlPages(std::filesystem::path directory, std::vector<ShownMap> maps);
+  HtmlPages(std::filesystem::path directory, const std::vector<ShownMap>& maps);
 
   /// The jobs that write the pages, as lines of a manifest.
   std::vector<ManifestJob> page_lines() const;
 
-  /// The jobs that draw the pictures. `maps` must outlive them.
+  /// The jobs that draw the pictures. This and `maps` must outlive them.
   std::vector<BatchJob> picture_jobs(OpenedMaps& maps) const;
 
   /// Makes the directory where there is none. Throws FileError.
   void make_directory() const;
 
-  /// Draws the picture of a row.
-  void write_picture(const ShownMap& shown, const OpenedMap& map) const;
+  bool has_index() const;
 
   /// Writes the index over what has been made; names what has not.
   void write_index() const;
 
-  bool has_index() const;
-  std::filesystem::path page(const ShownMap& shown) const;  ///< that of the first row of the same map
+  /// All of it for a single map, whose page shows this scene.
+  void write(const std::string& scene, const OpenedMap& map) const;
 
  private:
-  std::filesystem::path picture(const ShownMap& shown) const;
-  std::filesystem::path index() const;
+  struct Row {
+    ShownMap shown;
+    std::filesystem::path page;  ///< that of the first row of its map
+    std::filesystem::path picture;
+  };
+
+  static void write_picture(const Row& row, const OpenedMap& map);
 
   std::filesystem::path directory_;
-  std::vector<ShownMap> maps_;
+  std::filesystem::path index_;
+  std::vector<Row> rows_;
 };
 
 }  // namespace bespoke::command

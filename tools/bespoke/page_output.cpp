@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/page/page_file.h"
@@ -42,10 +41,12 @@ std::string whole_page(const std::string& scene) {
 
 void remember_arguments(int argc, const char* const* argv) { arguments().assign(argv + 1, argv + argc); }
 
-std::string typed_command() {
+std::string command_text(const std::vector<std::string>& arguments) {
   std::string text = "bespoke";
-  for (const std::string& word : arguments()) text += " " + quoted(word);
+  for (const std::string& word : arguments) text += " " + quoted(word);
   return text;
 }
+
+std::string typed_command() { return command_text(arguments()); }
 
 }  // namespace bespoke::command

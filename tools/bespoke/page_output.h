@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace bespoke::command {
 
@@ -10,8 +11,10 @@ void require_pages();
 /// The page with the scene in it.
 std::string whole_page(const std::string& scene);
 
-/// The command as it was typed, for a person to type again: words with other letters than those of names and
-/// numbers stand in quotes.
+/// A command for a person to type: words with other letters than those of names and numbers stand in quotes.
+std::string command_text(const std::vector<std::string>& arguments);
+
+/// The command as it was typed.
 std::string typed_command();
 
 /// Remembers the arguments of main.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "output_files.h"
+#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -24,7 +25,7 @@ void run_at_once(PlannedRun planned) {
     planned.run(
         {progress, maps, findings,
          [](const std::string& warning) { std::fprintf(stderr, "bespoke: warning: %s\n", warning.c_str()); },
-         [](const std::string& text) { std::fputs(text.c_str(), stdout); }});
+         [](const std::string& text) { std::fputs(text.c_str(), stdout); }, typed_command()});
   });
 }
 

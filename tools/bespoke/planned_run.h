@@ -21,6 +21,8 @@ struct RunContext {
   std::function<void(const std::string&)> warn;
   /// What a run without an output is for: printed, but not in a batch.
   std::function<void(const std::string&)> print;
+  /// What does this run alone, for a person to type.
+  std::string command;
 };
 
 /// A subcommand's arguments, checked as far as they can be without reading a file.

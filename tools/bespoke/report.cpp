@@ -7,7 +7,6 @@
 #include "commands.h"
 #include "map_models.h"
 #include "output_files.h"
-#include "page_output.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -36,7 +35,7 @@ void run(const ReportArguments& arguments, const RunContext& context) {
   const MapModels models = read_map_models(arguments.models);
   const MapReport report =
       map_report({models.asset, models.source, models.target, models.products, models.findings,
-                  fs::path(arguments.models.map).filename().string(), typed_command()},
+                  fs::path(arguments.models.map).filename().string(), context.command},
                  context.progress);
   OutputFiles files;
   if (is_html(arguments)) {

@@ -31,7 +31,7 @@ void run(const ViewArguments& arguments, const RunContext& context) {
   const MapModels models = read_map_models(arguments.models);
   const std::string scene =
       view_scene({models.asset, models.source, models.target, models.products, models.findings,
-                  std::filesystem::path(arguments.models.map).filename().string(), typed_command()},
+                  std::filesystem::path(arguments.models.map).filename().string(), context.command},
                  {.most_faces = arguments.most_faces}, context.progress);
   OutputFiles files;
   files.write_text(arguments.output, whole_page(scene));
