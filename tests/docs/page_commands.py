@@ -1,4 +1,4 @@
-"""Runs every command that a page shows, as its reader would: page_commands.py BESPOKE MODELS PAGE.md
+"""Runs every command that a page, or a section of it, shows, as its reader would: page_commands.py BESPOKE MODELS PAGE.md [HEADING]
 
 Blocks of `sh` are run in their order, from a directory with the repository's `samples` in it, the generated `models`, and the
 command in the PATH; a command that fails, fails the page, unless the block's last line says which exit code it shows. A block of
@@ -35,10 +35,17 @@ def run(block, directory, environment):
     return result.stdout, result.returncode == int(shown.group(1) if shown else 0)
 
 
-def faults(page, directory, environment):
-    """What does not happen as the page says, and the number of blocks that ran."""
+def section(text, heading):
+    """From this heading to the next of its rank."""
+    begin = text.index(f"\n{heading}\n") + 1
+    end = text.find(f"\n{heading.split()[0]} ", begin)
+    return text[begin:] if end < 0 else text[begin:end]
+
+
+def faults(text, directory, environment):
+    """What does not happen as the text says, and the number of blocks that ran."""
     found, count, printed = [], 0, None
-    for language, block in FENCE.findall(page.read_text()):
+    for language, block in FENCE.findall(text):
         if language == "sh":
             printed, succeeded = run(block, directory, environment)
             count += 1
@@ -56,14 +63,17 @@ def faults(page, directory, environment):
 
 
 def main():
-    command, models, page = (Path(word).resolve() for word in sys.argv[1:])
+    command, models, page = (Path(word).resolve() for word in sys.argv[1:4])
+    text = page.read_text()
+    if len(sys.argv) > 4:
+        text = section(text, sys.argv[4])
     models.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         directory = Path(scratch)
         (directory / "samples").symlink_to(ROOT / "samples")
         (directory / "models").symlink_to(models)
         path = f"{command.parent}{os.pathsep}{os.environ['PATH']}"
-        found, count = faults(page, directory, os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1"})
+        found, count = faults(text, directory, os.environ | {"PATH": path, "PYTHONDONTWRITEBYTECODE": "1"})
     print(*found, sep="\n\n")
     if count == 0:
         sys.exit(f"{page}: shows no commands")
