@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <filesystem>
 
 #include "command/example_pair.h"
 
 namespace bespoke::test {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -63,7 +65,7 @@ TEST_F(GradeCommand, GivesEverySizeAFolderWithItsProductsAndMeasures) {
   EXPECT_NEAR(cell(csv, "side", 3), cell(csv, "side", 2), 0.03);
   EXPECT_EQ(cell(read_text(file("sizes/measures.csv")), "waist", 3), cell(csv, "waist", 2));
   EXPECT_THAT(read_text(file("sizes/M/measures.md")), HasSubstr("| model | carried |"));
-  EXPECT_THAT(grade({"--sizes", file("sizes.csv")}).err, HasSubstr("3 up to date"));
+  EXPECT_THAT(grade({"--sizes", file("sizes.csv")}).err, HasSubstr("4 up to date"));
 }
 
 TEST_F(GradeCommand, FillsTheSizesBetweenFromOneMap) {
@@ -90,6 +92,27 @@ TEST_F(GradeCommand, FillsTheSizesBetweenFromOneMap) {
   EXPECT_TRUE(read_text(file("sizes/half/product.obj")) == read_text(file("half.obj")));
   EXPECT_TRUE(read_text(file("sizes/half/map.vdb")) == read_text(file("sizes/map.vdb")));
   EXPECT_FALSE(pair_.has("sizes/whole/map.vdb"));
+}
+
+TEST_F(GradeCommand, GoesOnWithTheOtherSizes) {
+  // A line is no model that the source could be laid onto.
+  write_text(file("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  write_text(file("sizes.csv"), "size,target,anchors\nS," + file("flat.obj") + "," + file("anchors.json") +
+                                    "\nM," + file("target.obj") + "," + file("anchors.json") + "\n");
+  const ProgramResult result = grade({"--sizes", file("sizes.csv"), "--keep-going"});
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_THAT(result.err, AllOf(HasSubstr("sizes.csv:2: "), HasSubstr("flat.obj has no area")));
+  EXPECT_TRUE(pair_.has("sizes/M/product.obj"));
+  EXPECT_TRUE(pair_.has("sizes/M/measures.md"));
+  EXPECT_FALSE(pair_.has("sizes/S/measures.md"));
+  EXPECT_FALSE(pair_.has("sizes/measures.md"));
+
+  // Mended, only what lacks is made: map, product and table of the size, the table of all.
+  fs::copy_file(file("target.obj"), file("flat.obj"), fs::copy_options::overwrite_existing);
+  const ProgramResult again = grade({"--sizes", file("sizes.csv")});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("3 up to date"));
+  EXPECT_THAT(again.out, HasSubstr("| source | S | M |"));
 }
 
 TEST_F(GradeCommand, ShowsTheSizesOnPages) {

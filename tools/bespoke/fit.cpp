@@ -79,7 +79,7 @@ std::string confidence_lines(const std::vector<double>& confidence) {
 
 TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
   TriangleMesh mesh = read_triangle_mesh(path);
-  require_valid(mesh, role + " " + path);
+  require_surface(mesh, role + " " + path);
   if (!quiet) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
   return mesh;
 }

@@ -8,8 +8,8 @@ namespace bespoke {
 namespace {
 
 void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& options) {
-  require_valid(input.source, "source of the surface fitting");
-  require_valid(input.target, "target of the surface fitting");
+  require_surface(input.source, "source of the surface fitting");
+  require_surface(input.target, "target of the surface fitting");
   if (input.warped_vertices.cols() != input.source.vertices.cols())
     throw InvalidInput("surface fitting: " + std::to_string(input.source.vertices.cols()) +
                        " source vertices, but " + std::to_string(input.warped_vertices.cols()) +
