@@ -108,15 +108,6 @@ TEST(RequireValidMesh, NamesWhatIsWrong) {
   EXPECT_THAT(complaint(shapes::cube(1e200)), HasSubstr("too large"));
 }
 
-TEST(RequireSurface, RefusesLinesAndPoints) {
-  TriangleMesh mesh = shapes::triangle();
-  require_surface(mesh, "source a.obj");
-  mesh.vertices.col(2) = 2 * mesh.vertices.col(1) - mesh.vertices.col(0);
-  EXPECT_EQ(complaint(mesh), "accepted");
-  EXPECT_THAT(test::error_message<InvalidInput>([&] { require_surface(mesh, "source a.obj"); }),
-              HasSubstr("source a.obj has no area"));
-}
-
 TEST(BoundingBox, EnclosesAllColumnsTightly) {
   EXPECT_EQ(bounding_box(shapes::cube(2).vertices).min(), Vector3(0, 0, 0));
   EXPECT_EQ(bounding_box(shapes::cube(2).vertices).max(), Vector3(2, 2, 2));

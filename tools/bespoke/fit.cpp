@@ -9,6 +9,7 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
+#include "bespoke/mesh/require_surface.h"
 #include "bespoke/page/view_scene.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/product/format_unit.h"

@@ -114,11 +114,6 @@ void require_valid(const TriangleMesh& mesh, const std::string& what) {
   if (!std::isfinite(extent)) throw InvalidInput(what + ": coordinates are too large to compute with");
 }
 
-void require_surface(const TriangleMesh& mesh, const std::string& what) {
-  require_valid(mesh, what);
-  if (face_normals(mesh).isZero(0)) throw InvalidInput(what + " has no area: its faces are lines or points");
-}
-
 Box bounding_box(const Points& points) {
   Box box;
   for (Eigen::Index i = 0; i < points.cols(); ++i) box.extend(points.col(i));

@@ -37,9 +37,6 @@ std::string to_string(const MeshFindings& findings);
 /// face, only finite coordinates, only indices within range, and a positive, finite bounding-box diagonal.
 void require_valid(const TriangleMesh& mesh, const std::string& what);
 
-/// The same, and throws InvalidInput unless some face has an area, as a reference model must.
-void require_surface(const TriangleMesh& mesh, const std::string& what);
-
 /// Axis-aligned bounding box of all columns; empty for no columns.
 Box bounding_box(const Points& points);
 

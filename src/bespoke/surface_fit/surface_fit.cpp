@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/require_surface.h"
 
 namespace bespoke {
 namespace {
