@@ -51,6 +51,26 @@ TEST(RefineLongEdges, KeepsVerticesAndNamesTheParentsOfNewOnes) {
   }
 }
 
+TEST(RefineLongEdges, NamesTheFaceThatEachPartIsOf) {
+  const TriangleMesh cube = shapes::cube(1);
+  const RefinedMesh refined = refine_long_edges(cube, 0.3);
+  ASSERT_EQ(refined.origins.size(), static_cast<std::size_t>(refined.mesh.faces.cols()));
+  const auto twice_area = [](const TriangleMesh& mesh, Eigen::Index face) {
+    const Vector3 a = mesh.vertices.col(mesh.faces(0, face));
+    return (mesh.vertices.col(mesh.faces(1, face)) - a).cross(mesh.vertices.col(mesh.faces(2, face)) - a);
+  };
+  Points sums = Points::Zero(3, 12);
+  for (Eigen::Index face = 0; face < refined.mesh.faces.cols(); ++face) {
+    const int origin = refined.origins[static_cast<std::size_t>(face)];
+    const Vector3 corner = cube.vertices.col(cube.faces(0, origin)), normal = twice_area(cube, origin);
+    for (const int vertex : refined.mesh.faces.col(face))
+      EXPECT_NEAR(normal.dot(refined.mesh.vertices.col(vertex) - corner), 0, 1e-12);
+    sums.col(origin) += twice_area(refined.mesh, face);
+  }
+  for (Eigen::Index face = 0; face < 12; ++face)
+    EXPECT_TRUE(sums.col(face).isApprox(twice_area(cube, face), 1e-12));
+}
+
 TEST(RefineLongEdges, HalvesOneTwoOrThreeEdgesOfAFace) {
   TriangleMesh one = shapes::triangle();
   one.vertices.col(1) = Vector3(1, 0, 0);

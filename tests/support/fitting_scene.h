@@ -13,10 +13,13 @@ struct FittingScene {
   Points anchor_targets = Points(3, 0);
   Eigen::VectorXd anchor_weights = Eigen::VectorXd(0);
   Eigen::VectorXd anchor_sigmas = Eigen::VectorXd(0);
+  FacePatches source_patches = {};
+  FacePatches target_patches = {};
 
   SurfaceFit fit(const SurfaceFitOptions& options = {}) const {
-    return fit_surface(
-        {source, warped, target, anchor_sources, anchor_targets, anchor_weights, anchor_sigmas}, options);
+    return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights, anchor_sigmas,
+                        source_patches, target_patches},
+                       options);
   }
 };
 

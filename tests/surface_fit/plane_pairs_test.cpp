@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -56,6 +58,25 @@ TEST(PlanePairs, OfAFewSamplesSpeakForAsMuchAsThoseOfAll) {
 TEST(PlanePairs, AreNoneWhereNothingIsNear) {
   const TriangleMesh sphere = shapes::icosphere(2);
   EXPECT_TRUE(pairs_between(sphere, shapes::moved(sphere, {Matrix3::Identity(), Vector3(9, 0, 0)})).empty());
+}
+
+// Two sheets close to each other, which have changed places on the target.
+TEST(PlanePairs, StayWithinTheirPatches) {
+  const TriangleMesh sheet = shapes::square_grid(6);
+  const auto sheets = [&](double first, double second) {
+    return shapes::joined(shapes::moved(sheet, {Matrix3::Identity(), Vector3(0, 0, first)}),
+                          shapes::moved(sheet, {Matrix3::Identity(), Vector3(0, 0, second)}));
+  };
+  FacePatches patches;
+  patches.of_face.assign(static_cast<std::size_t>(2 * sheet.faces.cols()), 0);
+  std::fill(patches.of_face.begin() + sheet.faces.cols(), patches.of_face.end(), FacePatches::none);
+  const TargetSurface from(sheets(0, 0.05), patches), to(sheets(0.05, 0), patches);
+  const auto pairs = find_plane_pairs({from, to, from.areas(), to.areas(), 1.5}, every_vertex, {});
+  EXPECT_EQ(pairs.size(), 2 * 2 * 25u);  // the inner vertices of both, both ways
+  for (const PlanePair& pair : pairs) {
+    const Vector3 x = from.mesh().vertices.col(pair.vertex);
+    EXPECT_NEAR((pair.point - x).dot(pair.normal), x.z() < 0.025 ? 0.05 : -0.05, 1e-12);
+  }
 }
 
 }  // namespace

@@ -90,5 +90,64 @@ TEST(TargetSurface, KnowsAreasAndBoundary) {
   EXPECT_THROW(TargetSurface{empty}, InvalidInput);
 }
 
+/// The left half of the unit square is patch 0, the right half is in none, the square above is excluded.
+FacePatches halves_of(const TriangleMesh& mesh) {
+  FacePatches patches;
+  for (const auto& face : mesh.faces.colwise()) {
+    const Vector3 middle = mesh.vertices(Eigen::all, face).rowwise().mean();
+    patches.of_face.push_back(middle.z() > 0.1   ? FacePatches::excluded
+                              : middle.x() < 0.5 ? 0
+                                                 : FacePatches::none);
+  }
+  return patches;
+}
+
+void expect_answers_in_one_patch(const TargetSurface& surface) {
+  const Vector3 up = Vector3::UnitZ();
+  MatchLimits limits{0, 1};
+  const auto left = [&] { return surface.match({0.3, 0.6, 0.15}, up, limits); };
+  EXPECT_EQ(left()->point, Vector3(0.3, 0.6, 0.2));
+  limits.patch = 0;
+  EXPECT_EQ(left()->point, Vector3(0.3, 0.6, 0));
+  EXPECT_LT(surface.mesh().vertices(0, surface.mesh().faces.col(left()->face)).mean(), 0.5);
+  EXPECT_FALSE(surface.match({0.7, 0.6, 0.05}, up, limits));  // nearest where the patch ends
+  limits.boundary_answers = true;
+  EXPECT_EQ(surface.match({0.7, 0.6, 0.05}, up, limits)->point, Vector3(0.5, 0.6, 0));
+  limits.boundary_answers = false;
+  limits.patch = FacePatches::none;
+  EXPECT_FALSE(left());
+  EXPECT_EQ(surface.match({0.7, 0.6, 0.15}, up, limits)->point, Vector3(0.7, 0.6, 0));
+  for (const int nobody : {FacePatches::excluded, 1}) {
+    limits.patch = nobody;
+    EXPECT_FALSE(left());
+  }
+}
+
+TEST(TargetSurface, AnswersInOnePatchOnly) {
+  const TriangleMesh square = shapes::square_grid(4);
+  const TriangleMesh both =
+      shapes::joined(square, shapes::moved(square, {Matrix3::Identity(), Vector3(0, 0, 0.2)}));
+  const TargetSurface surface(both, halves_of(both));
+  expect_answers_in_one_patch(surface);
+  expect_answers_in_one_patch(surface.moved(both.vertices));
+  MatchLimits limits{0, 1};
+  limits.patch = 3;  // a surface without patches does not ask
+  EXPECT_TRUE(TargetSurface(square).match({0.3, 0.6, 0.15}, Vector3::UnitZ(), limits));
+}
+
+TEST(TargetSurface, KnowsThePatchOfAVertex) {
+  const TriangleMesh square = shapes::square_grid(4);
+  const TargetSurface surface(square, halves_of(square));
+  for (Eigen::Index i = 0; i < square.vertices.cols(); ++i) {
+    const double x = square.vertices(0, i);
+    const std::optional<int> expected = x < 0.5   ? std::optional(0)
+                                        : x > 0.5 ? std::optional(FacePatches::none)
+                                                  : std::nullopt;
+    EXPECT_EQ(surface.patch(i), expected);
+    EXPECT_FALSE(surface.is_excluded(i));
+  }
+  EXPECT_EQ(TargetSurface(square).patch(0), std::nullopt);
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -54,6 +54,19 @@ std::vector<std::filesystem::path> as_paths(const std::vector<std::string>& name
   return {names.begin(), names.end()};
 }
 
+std::string counted(std::size_t count, const std::string& one, const std::string& more) {
+  return std::to_string(count) + ' ' + (count == 1 ? one : more);
+}
+
+/// What a file has beside pairs; empty for nothing.
+std::string lines_and_parts(const Anchors& anchors) {
+  std::string text;
+  if (!anchors.curves.empty()) text = counted(anchors.curves.size(), "curve", "curves");
+  if (!anchors.patches.empty())
+    text += (text.empty() ? "" : " and ") + counted(anchors.patches.size(), "patch", "patches");
+  return text;
+}
+
 // ---- convert
 
 struct ConvertArguments {
@@ -70,7 +83,12 @@ void convert(const ConvertArguments& arguments) {
       file_options(models, arguments.coordinates == "RAS" ? PatientSystem::ras : PatientSystem::lps);
   const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), options);
   write_anchor_files(as_paths(arguments.outputs), anchors, options);
-  std::cout << anchors.pairs.size() << " pairs\n";
+  std::cout << anchors.pairs.size() << " pairs";
+  const std::string others = lines_and_parts(anchors);
+  const bool keeps_them = anchor_format_of(arguments.outputs[0]) == AnchorFormat::json;
+  if (!others.empty())
+    std::cout << (keeps_them ? " and " : "; left out, for want of a place in the format: ") << others;
+  std::cout << '\n';
 }
 
 void add_convert(CLI::App& app) {
@@ -125,7 +143,7 @@ void audit(const AuditArguments& arguments) {
   const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), file_options(models));
   const AnchorAudit found = audit_anchors(anchors);
   std::cout << anchors.pairs.size() << " pairs";
-  if (!anchors.curves.empty()) std::cout << " and " << anchors.curves.size() << " curves";
+  if (const std::string others = lines_and_parts(anchors); !others.empty()) std::cout << " and " << others;
   if (found.typical_distance)
     std::cout << ", each pair within " << *found.typical_distance << " (median) of where the others put it\n";
   else

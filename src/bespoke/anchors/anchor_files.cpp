@@ -142,6 +142,20 @@ Json curve_json(const AnchorCurve& curve) {
   return json;
 }
 
+Json side_json(const PatchSide& side) {
+  if (!side.faces.empty()) return {{"faces", side.faces}};
+  return {{"border", polyline_json(side.border)}};
+}
+
+Json patch_json(const AnchorPatch& patch) {
+  Json json = Json::object();
+  if (!patch.name.empty()) json["name"] = patch.name;
+  if (!patch.a.is_empty()) json["a"] = side_json(patch.a);
+  if (!patch.b.is_empty()) json["b"] = side_json(patch.b);
+  if (patch.exclude) json["exclude"] = true;
+  return json;
+}
+
 std::string json_text(const Anchors& anchors) {
   Json pairs = Json::array();
   for (const AnchorPair& pair : anchors.pairs) {
@@ -157,6 +171,7 @@ std::string json_text(const Anchors& anchors) {
   if (!anchors.unit.empty()) document["units"] = anchors.unit;
   document["pairs"] = std::move(pairs);
   for (const AnchorCurve& curve : anchors.curves) document["curves"].push_back(curve_json(curve));
+  for (const AnchorPatch& patch : anchors.patches) document["patches"].push_back(patch_json(patch));
   return document.dump(1) + "\n";
 }
 

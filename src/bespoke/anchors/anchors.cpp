@@ -6,12 +6,12 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "bespoke/anchors/detail/anchor_json.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/rigid_alignment.h"
@@ -19,8 +19,6 @@
 
 namespace bespoke {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string read_text(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -33,169 +31,11 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Names are printed and compared; a line break or a kilobyte in one would spoil every message and table.
-void require_printable(const std::string& name, const std::string& where) {
-  constexpr std::size_t longest = 200;
-  const bool printable = std::none_of(name.begin(), name.end(),
-                                      [](unsigned char letter) { return letter < 0x20 || letter == 0x7F; });
-  if (!printable) throw FormatError(where + ": the name holds a control character");
-  if (name.size() > longest)
-    throw FormatError(where + ": the name has " + std::to_string(name.size()) + " bytes, at most " +
-                      std::to_string(longest) + " are allowed");
-}
-
 void require_distinct_names(const Anchors& anchors, const std::string& file) {
   std::set<std::string> seen;
   for (const AnchorPair& pair : anchors.pairs)
     if (!pair.name.empty() && !seen.insert(pair.name).second)
       throw FormatError(file + ": two pairs are named \"" + pair.name + "\"; names must differ or be empty");
-}
-
-/// Which of the two should hold cannot be known.
-void require_one_accuracy(const AnchorPair& pair, const std::string& where) {
-  if (pair.sigma && std::isfinite(pair.weight))
-    throw FormatError(where + ": has both a weight and a sigma; give one of them");
-}
-
-// ---- JSON
-
-double json_number(const Json& value, const std::string& where) {
-  if (!value.is_number()) throw FormatError(where + " is " + value.type_name() + ", not a number");
-  const double number = value.get<double>();
-  if (!std::isfinite(number)) throw FormatError(where + " is not finite");
-  return number;
-}
-
-Vector3 json_point(const Json& pair, const char* key, const std::string& where) {
-  const auto found = pair.find(key);
-  if (found == pair.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
-  if (!found->is_array() || found->size() != 3)
-    throw FormatError(where + ": \"" + key + "\" must be an array of three numbers");
-  Vector3 point;
-  for (int axis = 0; axis < 3; ++axis)
-    point[axis] = json_number((*found)[static_cast<std::size_t>(axis)],
-                              where + ": \"" + key + "\"[" + std::to_string(axis) + "]");
-  return point;
-}
-
-/// Empty without one.
-std::string json_name(const Json& value, const std::string& position) {
-  const auto name = value.find("name");
-  if (name == value.end()) return "";
-  if (!name->is_string())
-    throw FormatError(position + ": \"name\" is " + name->type_name() + ", not a string");
-  require_printable(name->get<std::string>(), position);
-  return name->get<std::string>();
-}
-
-AnchorPair json_pair(const Json& value, const std::string& position) {
-  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
-  AnchorPair pair;
-  pair.name = json_name(value, position);
-  const std::string where = pair.name.empty() ? position : position + " (\"" + pair.name + "\")";
-  pair.a = json_point(value, "a", where);
-  pair.b = json_point(value, "b", where);
-  if (const auto weight = value.find("weight"); weight != value.end()) {
-    pair.weight = json_number(*weight, where + ": \"weight\"");
-    if (!(pair.weight > 0))
-      throw FormatError(where + ": \"weight\" is " + weight->dump() + ", but must be > 0");
-  }
-  if (const auto sigma = value.find("sigma"); sigma != value.end()) {
-    pair.sigma = json_number(*sigma, where + ": \"sigma\"");
-    if (!(*pair.sigma >= 0))
-      throw FormatError(where + ": \"sigma\" is " + sigma->dump() + ", but must be >= 0");
-  }
-  require_one_accuracy(pair, where);
-  return pair;
-}
-
-Points json_polyline(const Json& curve, const char* key, const std::string& where) {
-  const auto found = curve.find(key);
-  if (found == curve.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
-  if (!found->is_array() || found->size() < 2)
-    throw FormatError(where + ": \"" + key + "\" must be an array of two points at least");
-  Points points(3, static_cast<Eigen::Index>(found->size()));
-  for (std::size_t i = 0; i < found->size(); ++i)
-    points.col(static_cast<Eigen::Index>(i)) =
-        json_point({{key, (*found)[i]}}, key, where + ": point " + std::to_string(i));
-  for (Eigen::Index i = 1; i < points.cols(); ++i)
-    if (points.col(i) != points.col(0)) return points;
-  throw FormatError(where + ": \"" + key + "\" has all its points at one place");
-}
-
-std::vector<std::pair<int, int>> json_fixed(const Json& list, const AnchorCurve& curve,
-                                            const std::string& where) {
-  const std::string rule = where +
-                           ": \"fixed\" must be an array of [i, j], a point of a and one of b, by their "
-                           "numbers from 0, rising on both sides";
-  if (!list.is_array()) throw FormatError(rule);
-  std::vector<std::pair<int, int>> fixed;
-  for (const Json& entry : list) {
-    const auto is_number = [](const Json& value, Eigen::Index count) {
-      return value.is_number_unsigned() && value.get<std::uint64_t>() < static_cast<std::uint64_t>(count);
-    };
-    if (!entry.is_array() || entry.size() != 2 || !is_number(entry[0], curve.a.cols()) ||
-        !is_number(entry[1], curve.b.cols()))
-      throw FormatError(rule);
-    fixed.emplace_back(entry[0].get<int>(), entry[1].get<int>());
-    const std::size_t last = fixed.size() - 1;
-    if (last > 0 &&
-        !(fixed[last - 1].first < fixed[last].first && fixed[last - 1].second < fixed[last].second))
-      throw FormatError(rule);
-  }
-  return fixed;
-}
-
-AnchorCurve json_curve(const Json& value, const std::string& position) {
-  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
-  AnchorCurve curve;
-  curve.name = json_name(value, position);
-  const std::string where = curve.name.empty() ? position : position + " (\"" + curve.name + "\")";
-  curve.a = json_polyline(value, "a", where);
-  curve.b = json_polyline(value, "b", where);
-  if (const auto closed = value.find("closed"); closed != value.end()) {
-    if (!closed->is_boolean()) throw FormatError(where + ": \"closed\" must be true or false");
-    curve.closed = closed->get<bool>();
-  }
-  if (const auto fixed = value.find("fixed"); fixed != value.end())
-    curve.fixed = json_fixed(*fixed, curve, where);
-  return curve;
-}
-
-/// The array under a key; empty without it.
-const Json& json_list(const Json& document, const char* key, const std::string& file) {
-  static const Json none = Json::array();
-  const auto list = document.find(key);
-  if (list == document.end()) return none;
-  if (!list->is_array())
-    throw FormatError(file + ": \"" + key + "\" is " + list->type_name() + ", not an array");
-  return *list;
-}
-
-Anchors parse_json(const std::string& text, const std::string& file) {
-  Json document;
-  try {
-    document = Json::parse(text);
-  } catch (const Json::exception& error) {
-    throw FormatError(file + ": not valid JSON: " + error.what());
-  }
-  if (!document.is_object()) throw FormatError(file + ": must be an object with a key \"pairs\"");
-  Anchors anchors;
-  if (const auto units = document.find("units"); units != document.end()) {
-    if (!units->is_string())
-      throw FormatError(file + ": \"units\" is " + units->type_name() + ", not a string");
-    anchors.unit = units->get<std::string>();
-    require_printable(anchors.unit, file + ": \"units\"");
-  }
-  if (!document.contains("pairs") && !document.contains("curves"))
-    throw FormatError(file + ": key \"pairs\" is missing");
-  const Json& pairs = json_list(document, "pairs", file);
-  for (std::size_t index = 0; index < pairs.size(); ++index)
-    anchors.pairs.push_back(json_pair(pairs[index], file + ": pair " + std::to_string(index)));
-  const Json& curves = json_list(document, "curves", file);
-  for (std::size_t index = 0; index < curves.size(); ++index)
-    anchors.curves.push_back(json_curve(curves[index], file + ": curve " + std::to_string(index)));
-  return anchors;
 }
 
 // ---- CSV
@@ -307,7 +147,7 @@ Points points(const Anchors& anchors, Vector3 AnchorPair::*end) {
 Anchors read_anchors(const std::filesystem::path& path) {
   const std::string text = read_text(path);
   Anchors anchors =
-      lower_ending(path) == ".csv" ? parse_csv(text, path.string()) : parse_json(text, path.string());
+      lower_ending(path) == ".csv" ? parse_csv(text, path.string()) : parse_anchor_json(text, path.string());
   require_distinct_names(anchors, path.string());
   return anchors;
 }

@@ -34,18 +34,39 @@ struct AnchorCurve {
   std::vector<std::pair<int, int>> fixed = {};
 };
 
+/// A part of a model's surface: what a line around it encloses, or its faces themselves.
+struct PatchSide {
+  Points border = Points(3, 0);  ///< 3×n, a closed polyline on the surface, mesh units
+  std::vector<int> faces = {};   ///< by their numbers from 0
+
+  bool is_empty() const { return border.cols() == 0 && faces.empty(); }
+};
+
+/// A part of the source and its counterpart on the target: what lies inside the one goes inside the other,
+/// and border goes onto border. Or parts that have no counterpart, for instance a stand, hair, or what filled
+/// a hole of a scan.
+struct AnchorPatch {
+  std::string name;      ///< may be empty
+  PatchSide a;           ///< source
+  PatchSide b;           ///< target
+  bool exclude = false;  ///< attracts nothing and is attracted by nothing; one side may be empty then
+};
+
 struct Anchors {
   std::string unit;  ///< as the file says it, for instance "cm"; empty when it does not
   std::vector<AnchorPair> pairs;
   std::vector<AnchorCurve> curves = {};
+  std::vector<AnchorPatch> patches = {};
 };
 
 /// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"? or
-/// "sigma"?}], "curves": [{"name", "a": [[x,y,z], …], "b": [[x,y,z], …], "closed"?, "fixed"?: [[i,j], …]}]}
-/// (either list may be missing) or, by the ending .csv, rows name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an
-/// optional header row, which may also name sigma alone or first. Throws FileError, or FormatError naming the
-/// file and the line or the pair and what is wrong (not finite, weight ≤ 0, sigma < 0, both of them, missing
-/// key, two pairs of one name).
+/// "sigma"?}], "curves": [{"name", "a": [[x,y,z], …], "b": [[x,y,z], …], "closed"?, "fixed"?: [[i,j], …]}],
+/// "patches": [{"name", "a": SIDE, "b": SIDE, "exclude"?}]} with a SIDE {"border": [[x,y,z], …]} or
+/// {"faces": [i, …]} (any of the lists may be missing) or, by the ending .csv, rows
+/// name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header row, which may also name sigma alone or
+/// first. Throws FileError, or FormatError naming the file and the line or the pair and what is wrong (not
+/// finite, weight ≤ 0, sigma < 0, both of them, missing key, two pairs or two patches of one name, a patch
+/// with one side that excludes nothing).
 Anchors read_anchors(const std::filesystem::path& path);
 
 /// Appends the eight corners of the bounding boxes as exact pairs (σ = 0) named "corner_000" … "corner_111"

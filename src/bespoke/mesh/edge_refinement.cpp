@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@ namespace {
 struct Refinement {
   TriangleMesh mesh;
   std::vector<Eigen::Vector2i> parents;
+  std::vector<int> origins;
 };
 
 /// The edges of a face turned such that one halved edge comes first, or the whole one of three last.
@@ -60,6 +62,7 @@ bool halve_long_edges(Refinement& state, double max_length) {
   std::vector<std::optional<int>> midpoint(table.edges.size());
   std::vector<Vector3> added;
   std::vector<Eigen::Vector3i> parts;
+  std::vector<int> origins;
   parts.reserve(static_cast<std::size_t>(state.mesh.faces.cols()) * 2);
   for (Eigen::Index column = 0; column < state.mesh.faces.cols(); ++column) {
     const Eigen::Vector3i face = state.mesh.faces.col(column);
@@ -76,6 +79,7 @@ bool halve_long_edges(Refinement& state, double max_length) {
       middle[static_cast<std::size_t>(k)] = made;
     }
     append_parts(face, middle, parts);
+    origins.resize(parts.size(), state.origins[static_cast<std::size_t>(column)]);
   }
   if (added.empty()) return false;
   const Eigen::Index before = vertices.cols();
@@ -83,6 +87,7 @@ bool halve_long_edges(Refinement& state, double max_length) {
   for (std::size_t i = 0; i < added.size(); ++i)
     state.mesh.vertices.col(before + static_cast<Eigen::Index>(i)) = added[i];
   state.mesh.faces = as_faces(parts);
+  state.origins = std::move(origins);
   return true;
 }
 
@@ -92,9 +97,10 @@ RefinedMesh refine_long_edges(const TriangleMesh& mesh, double max_length, int m
   if (!(max_length > 0))
     throw InvalidInput("edges cannot be refined to a length of " + std::to_string(max_length) +
                        "; it must be positive");
-  Refinement state{mesh, {}};
+  Refinement state{mesh, {}, std::vector<int>(static_cast<std::size_t>(mesh.faces.cols()))};
+  std::iota(state.origins.begin(), state.origins.end(), 0);
   for (int pass = 0; pass < max_passes && halve_long_edges(state, max_length);) ++pass;
-  RefinedMesh result{std::move(state.mesh), {}};
+  RefinedMesh result{std::move(state.mesh), {}, std::move(state.origins)};
   result.parents.resize(2, static_cast<Eigen::Index>(state.parents.size()));
   for (std::size_t i = 0; i < state.parents.size(); ++i)
     result.parents.col(static_cast<Eigen::Index>(i)) = state.parents[i];

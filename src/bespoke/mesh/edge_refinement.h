@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -8,6 +10,7 @@ namespace bespoke {
 struct RefinedMesh {
   TriangleMesh mesh;         ///< the vertices of the input first, in their order
   Eigen::Matrix2Xi parents;  ///< one column per new vertex: the two vertices it is the midpoint of
+  std::vector<int> origins;  ///< one per face: the face of the input that it is a part of
 };
 
 /// Halves every edge longer than `max_length` (> 0, mesh units) at its midpoint, in up to `max_passes`

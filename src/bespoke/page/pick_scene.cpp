@@ -15,6 +15,20 @@ Json polyline_json(const Points& points) {
   return json;
 }
 
+Json patch_json(const AnchorPatch& patch) {
+  Json json = Json::object();
+  if (!patch.name.empty()) json["name"] = patch.name;
+  if (patch.exclude) json["exclude"] = true;
+  for (const auto& [key, side] : {std::pair{"a", &patch.a}, {"b", &patch.b}}) {
+    if (side->is_empty()) continue;
+    if (side->faces.empty())
+      json[key] = {{"border", polyline_json(side->border)}};
+    else
+      json[key] = {{"faces", side->faces}};
+  }
+  return json;
+}
+
 Json anchors_json(const Anchors& anchors) {
   Json pairs = Json::array();
   for (const AnchorPair& pair : anchors.pairs) {
@@ -30,7 +44,12 @@ Json anchors_json(const Anchors& anchors) {
                       {"b", polyline_json(curve.b)},
                       {"closed", curve.closed},
                       {"fixed", curve.fixed}});
-  return {{"units", anchors.unit}, {"pairs", std::move(pairs)}, {"curves", std::move(curves)}};
+  Json patches = Json::array();
+  for (const AnchorPatch& patch : anchors.patches) patches.push_back(patch_json(patch));
+  return {{"units", anchors.unit},
+          {"pairs", std::move(pairs)},
+          {"curves", std::move(curves)},
+          {"patches", std::move(patches)}};
 }
 
 }  // namespace

@@ -36,6 +36,11 @@ struct Uncertainty {
 
 Anchors turned_round(Anchors anchors) {
   for (AnchorPair& pair : anchors.pairs) std::swap(pair.a, pair.b);
+  for (AnchorCurve& curve : anchors.curves) {
+    std::swap(curve.a, curve.b);
+    for (auto& [a, b] : curve.fixed) std::swap(a, b);
+  }
+  for (AnchorPatch& patch : anchors.patches) std::swap(patch.a, patch.b);
   return anchors;
 }
 
@@ -119,6 +124,13 @@ std::vector<SuggestedAnchor> suggest_anchors(const TriangleMesh& source, const T
   const Points x = source.vertices(Eigen::all, found.vertices);
   const double length = reach * diagonal(source.vertices);
   Eigen::VectorXd worth = found.around;
+  if (there.summary.surface) {
+    // What patches exclude has no counterpart that could be proposed.
+    const std::vector<int>& excluded = there.summary.surface->excluded_vertices;
+    for (Eigen::Index k = 0; k < worth.size(); ++k)
+      if (std::binary_search(excluded.begin(), excluded.end(), found.vertices[static_cast<std::size_t>(k)]))
+        worth[k] = 0;
+  }
   Names names(anchors);
   std::vector<SuggestedAnchor> suggestions;
   while (suggestions.size() < options.count) {

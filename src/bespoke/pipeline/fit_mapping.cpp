@@ -10,6 +10,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/elastic_pairs.h"
+#include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/rbf/global_rbf.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
@@ -167,12 +168,21 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.seconds = watch.seconds();
 }
 
+/// What is laid onto what, and as which parts.
+struct LayInput {
+  const TriangleMesh& source;
+  const TriangleMesh& target;
+  const FitPatches& patches;
+  const Anchors& given;
+  const FitOptions& options;
+};
+
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
 /// anchors as the fit took them.
-Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                       const Anchors& anchors, const Anchors& given, const FitOptions& options,
+Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
                        const Progress& progress) {
   FitSummary& summary = result.summary;
+  const auto& [source, target, patches, given, options] = input;
   RatedAnchors rated = rate_anchors(anchors, source, target);
   summary.accuracy = std::move(rated.accuracy);
   result.anchor_sigma = std::move(rated.sigmas);
@@ -194,9 +204,9 @@ Anchors lay_by_anchors(FittedMapping& result, const TriangleMesh& source, const 
   const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
 
   // IV.C: H'_a.
-  SurfaceFit fit = fit_surface(
-      {source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights, pairs.sigmas},
-      options.surface_fit, progress);
+  SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
+                                pairs.sigmas, patches.source, patches.target},
+                               options.surface_fit, progress);
   result.fitted_vertices = std::move(fit.vertices);
   result.confidence = std::move(fit.confidence);
   summary.surface = std::move(fit.summary);
@@ -219,15 +229,15 @@ Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, c
 
 /// The same with curves, in two fits: the first may move along them, and across within what matching by
 /// length leaves open; the second meets them where the first came to lie.
-Anchors lay_by_curves(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                      const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+Anchors lay_by_curves(FittedMapping& result, const LayInput& input, const Anchors& anchors,
+                      const Progress& progress) {
   constexpr double spacing = 0.01, sliding = 0.02;  // of the source's diagonal
-  const double size = diagonal(source.vertices);
+  const double size = diagonal(input.source.vertices);
   CurvePairs curves(anchors, spacing * size);
   FittedMapping first;
-  lay_by_anchors(first, source, target, curves.pairs(sliding * size), anchors, options, progress);
-  curves.slide(laid_with_source(first, source, curves.sources()));
-  return lay_by_anchors(result, source, target, curves.pairs(0), anchors, options, progress);
+  lay_by_anchors(first, input, curves.pairs(sliding * size), progress);
+  curves.slide(laid_with_source(first, input.source, curves.sources()));
+  return lay_by_anchors(result, input, curves.pairs(0), progress);
 }
 
 /// Γ and H'_a by the two surfaces alone.
@@ -250,20 +260,33 @@ Anchors lay(FittedMapping& result, const TriangleMesh& source, const TriangleMes
             const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   require_usable(source, anchors, options);
   require_valid(target, "target");
-  if (!anchors.curves.empty()) return lay_by_curves(result, source, target, anchors, options, progress);
-  if (!anchors.pairs.empty())
-    return lay_by_anchors(result, source, target, anchors, anchors, options, progress);
+  const FitPatches patches = fit_patches(anchors, source, target);
+  result.summary.patches = patches.found;
+  const LayInput input{source, target, patches, anchors, options};
+  Anchors lines = anchors;
+  for (const PatchBorder& border : patches.borders) lines.curves.push_back(border.curve);
+  if (!lines.curves.empty()) return lay_by_curves(result, input, lines, progress);
+  if (!anchors.pairs.empty()) return lay_by_anchors(result, input, anchors, progress);
   lay_by_surfaces(result, source, target, options, progress);
   return {};
 }
 
-void judge_curves(FittedMapping& result, const std::vector<AnchorCurve>& curves) {
+/// Of places along the mapped curve from its counterpart, mesh units.
+double largest_distance(const FittedMapping& result, const AnchorCurve& curve) {
   constexpr int places = 1000;
-  for (const AnchorCurve& curve : curves) {
-    Points along(3, places);
-    for (int i = 0; i < places; ++i) along.col(i) = point_along(curve.a, curve.closed, i / (places - 1.0));
-    const Points mapped = result.target_from_source * (*result.elastic)(along);
-    result.summary.curves.push_back({curve.name, distance_from_polyline(curve.b, curve.closed, mapped)});
+  Points along(3, places);
+  for (int i = 0; i < places; ++i) along.col(i) = point_along(curve.a, curve.closed, i / (places - 1.0));
+  const Points mapped = result.target_from_source * (*result.elastic)(along);
+  return distance_from_polyline(curve.b, curve.closed, mapped);
+}
+
+void judge_lines(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                 const Anchors& anchors) {
+  for (const AnchorCurve& curve : anchors.curves)
+    result.summary.curves.push_back({curve.name, largest_distance(result, curve)});
+  for (const PatchBorder& border : patch_borders(anchors, source, target)) {
+    std::optional<double>& largest = result.summary.patches[border.patch].largest_distance;
+    largest = std::max(largest.value_or(0), largest_distance(result, border.curve));
   }
 }
 
@@ -304,7 +327,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   // IV.D, IV.E: E.
   fit_elastic_map(result, source, rated, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
-  judge_curves(result, anchors.curves);
+  judge_lines(result, source, target, anchors);
   return result;
 }
 
@@ -324,6 +347,8 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   require_same_connectivity(source, fitted);
   if (!anchors.curves.empty())
     throw InvalidInput("curves lead the surface fitting, but the fitted source is given; leave them out");
+  if (!anchors.patches.empty())
+    throw InvalidInput("patches lead the surface fitting, but the fitted source is given; leave them out");
   FittedMapping result;
 
   const Stopwatch rigid_watch;

@@ -48,8 +48,8 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
 /// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
 /// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
 /// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with
-/// certainty), MemoryLimitError. Curves (anchors.h) take a surface fitting more, which finds where along them
-/// their points lie.
+/// certainty), MemoryLimitError. Curves and borders of patches (anchors.h) take a surface fitting more, which
+/// finds where along them their points lie; the borders are curves that every patch has.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 

@@ -72,6 +72,19 @@ std::string to_string(const std::vector<CurveSummary>& curves) {
   return line;
 }
 
+std::string to_string(const std::vector<PatchSummary>& patches) {
+  std::string line;
+  for (const PatchSummary& patch : patches) {
+    line +=
+        (line.empty() ? "" : ", ") + (patch.name.empty() ? std::string("a patch") : '"' + patch.name + '"');
+    if (patch.exclude) line += " excluded";
+    line += " (" + std::to_string(patch.source_faces) + " faces on the source, " +
+            std::to_string(patch.target_faces) + " on the target)";
+    if (patch.largest_distance) line += " border at most " + in_digits(*patch.largest_distance, 4) + " off";
+  }
+  return line;
+}
+
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageLine> lines;
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
@@ -85,6 +98,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});
+  if (!summary.patches.empty()) lines.push_back({"patches", to_string(summary.patches)});
   if (summary.bake) lines.push_back({"bake", to_string(*summary.bake)});
   return lines;
 }

@@ -54,6 +54,16 @@ struct CurveSummary {
   double largest_distance = 0;  ///< of places along the mapped curve from the target's, mesh units
 };
 
+/// What became of a patch.
+struct PatchSummary {
+  std::string name;
+  bool exclude = false;
+  std::size_t source_faces = 0;
+  std::size_t target_faces = 0;
+  /// Of places along its mapped border from the target's, mesh units; empty without border or map.
+  std::optional<double> largest_distance;
+};
+
 /// What every stage of a fit found.
 struct FitSummary {
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
@@ -65,6 +75,7 @@ struct FitSummary {
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
   ElasticSummary elastic;
   std::vector<CurveSummary> curves;
+  std::vector<PatchSummary> patches;
   std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map
   std::vector<BakeSummary> bake_steps;  ///< of a chain, one per step
 };
@@ -74,11 +85,12 @@ std::string to_string(const RigidSummary& summary);
 std::string to_string(const CoarseSummary& summary, const Anchors& anchors);
 std::string to_string(const ElasticSummary& summary);
 std::string to_string(const std::vector<CurveSummary>& curves);
+std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
   std::string name;  ///< "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic",
-                     ///< "curves", "bake"
+                     ///< "curves", "patches", "bake"
   std::string line;
 };
 

@@ -154,6 +154,8 @@ Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
                {"cavity_vertices", summary.cavity_vertices},
                {"stretched_vertices", summary.stretched_vertices},
                {"mended_vertices", summary.mended_vertices}};
+  // Only where there are any: the records of all other fits stay as they were.
+  if (!summary.excluded_vertices.empty()) json["excluded_vertices"] = summary.excluded_vertices;
   if (summary.posed_by_anchors) json["posed_by_anchors_degrees"] = summary.anchor_turn_degrees;
   return json;
 }
@@ -202,6 +204,19 @@ Json to_json(const std::vector<CurveSummary>& curves) {
   return {{"curves", std::move(list)}};
 }
 
+Json to_json(const std::vector<PatchSummary>& patches) {
+  Json list = Json::array();
+  for (const PatchSummary& patch : patches) {
+    Json json = {{"name", patch.name},
+                 {"exclude", patch.exclude},
+                 {"source_faces", patch.source_faces},
+                 {"target_faces", patch.target_faces}};
+    if (patch.largest_distance) json["largest_distance"] = *patch.largest_distance;
+    list.push_back(std::move(json));
+  }
+  return {{"patches", std::move(list)}};
+}
+
 std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageJson> stages;
   const auto add = [&](const char* name, const Json& found, double seconds) {
@@ -221,6 +236,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
   if (!summary.curves.empty()) add("curves", to_json(summary.curves), 0);
+  if (!summary.patches.empty()) add("patches", to_json(summary.patches), 0);
   if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);
   return stages;
 }

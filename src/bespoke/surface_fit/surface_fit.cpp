@@ -8,6 +8,22 @@
 namespace bespoke {
 namespace {
 
+void require_consistent_patches(const SurfaceFitInput& input, const SurfaceFitOptions& options) {
+  const FacePatches &source = input.source_patches, &target = input.target_patches;
+  if (source.is_empty() && target.is_empty()) return;
+  if (options.method != SurfaceFitMethod::deformation_graph)
+    throw InvalidInput("patches are known to the surface fitting \"" +
+                       std::string(entry_of(SurfaceFitMethod::deformation_graph).name) +
+                       "\" alone, not to \"" + std::string(entry_of(options.method).name) +
+                       "\"; leave the patches out, or take the other");
+  if (static_cast<Eigen::Index>(source.of_face.size()) != input.source.faces.cols() ||
+      static_cast<Eigen::Index>(target.of_face.size()) != input.target.faces.cols())
+    throw InvalidInput("surface fitting: patches of " + std::to_string(source.of_face.size()) +
+                       " source faces and " + std::to_string(target.of_face.size()) +
+                       " target faces, but there are " + std::to_string(input.source.faces.cols()) + " and " +
+                       std::to_string(input.target.faces.cols()));
+}
+
 void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& options) {
   require_surface(input.source, "source of the surface fitting");
   require_surface(input.target, "target of the surface fitting");
@@ -26,6 +42,7 @@ void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& o
                                           !(input.anchor_sigmas.array() >= 0).all()))
     throw InvalidInput("surface fitting: " + std::to_string(input.anchor_weights.size()) +
                        " anchors need as many accuracies, each at least 0");
+  require_consistent_patches(input, options);
   if (!(options.max_iterations >= 1))
     throw InvalidInput("surface fitting: max_iterations is " + std::to_string(options.max_iterations) +
                        ", but must be at least 1");
@@ -80,6 +97,9 @@ std::string to_string(const SurfaceFitSummary& summary) {
   if (!summary.cavity_vertices.empty())
     line +=
         ", " + std::to_string(summary.cavity_vertices.size()) + " vertices in cavities that the target lacks";
+  if (!summary.excluded_vertices.empty())
+    line += ", " + std::to_string(summary.excluded_vertices.size()) +
+            " vertices without counterpart since patches exclude it";
   if (!summary.stretched_vertices.empty())
     line += ", " + std::to_string(summary.stretched_vertices.size()) + " vertices stretched too far";
   if (summary.mended_vertices > 0)

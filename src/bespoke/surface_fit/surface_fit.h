@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/anchors/patch_faces.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/named.h"
 #include "bespoke/progress.h"
@@ -67,8 +68,9 @@ enum class StopReason {
 const char* to_string(StopReason reason);
 
 struct SurfaceFitSummary {
-  Statistics before;  ///< distance of the warped source's vertices from the target surface, mesh units
-  Statistics after;   ///< the same for the fitted source
+  /// Distance of the warped source's vertices from the target surface, without what is excluded, mesh units.
+  Statistics before;
+  Statistics after;  ///< the same for the fitted source
   int iterations = 0;
   StopReason stop_reason = StopReason::iteration_cap;
   std::size_t unmatched_vertices =
@@ -82,6 +84,8 @@ struct SurfaceFitSummary {
   int matched_boundaries = 0;     ///< open boundaries of the source taken for the target's cut
   /// By index: in cavities that the target lacks (detail/cavities.h), so they follow their neighbours.
   std::vector<int> cavity_vertices;
+  /// By index: without counterpart since a patch excludes it, or what lies nearest to it on the target.
+  std::vector<int> excluded_vertices;
   std::size_t mended_vertices = 0;  ///< drawn over a fold or stretched, so they follow their neighbours
   std::vector<int>
       stretched_vertices;  ///< of those, by index: stretched beyond SurfaceFitOptions::max_stretch
@@ -111,9 +115,14 @@ struct SurfaceFitInput {
   /// k, ≥ 0, mesh units: accuracies. Empty is 0 for all; where it is 0 the weight says how much an anchor
   /// counts. The deformation graph goes by it, the laplacian fit by the weights alone.
   Eigen::VectorXd anchor_sigmas = {};
+  /// Both, or neither: a vertex of the source is drawn only to its own patch of the target, and by it, and
+  /// what is excluded attracts nothing. The deformation graph only.
+  FacePatches source_patches = {};
+  FacePatches target_patches = {};
 };
 
-/// Throws InvalidInput for unusable meshes or sizes that differ, SolverError when the factorisation fails.
+/// Throws InvalidInput for unusable meshes, sizes that differ and patches that the method does not know,
+/// SolverError when the factorisation fails.
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress = {});
 

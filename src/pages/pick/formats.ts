@@ -10,7 +10,7 @@ function triple(value: unknown, where: string): Triple {
 
 /** What an anchors file holds: JSON, or CSV by the first letter. */
 export function parse_anchors(text: string): Work {
-  return text.trimStart().startsWith("{") ? parse_json(JSON.parse(text)) : { pairs: parse_csv(text), curves: [] };
+  return text.trimStart().startsWith("{") ? parse_json(JSON.parse(text)) : { pairs: parse_csv(text), curves: [], patches: [] };
 }
 
 function list(document: object, key: string): Record<string, unknown>[] {
@@ -21,8 +21,8 @@ function list(document: object, key: string): Record<string, unknown>[] {
   return value as Record<string, unknown>[];
 }
 
-export function parse_json(document: { pairs?: unknown; curves?: unknown }): Work {
-  if (document.pairs === undefined && document.curves === undefined) throw new Error('the key "pairs" is missing');
+export function parse_json(document: { pairs?: unknown; curves?: unknown; patches?: unknown }): Work {
+  if (document.pairs === undefined && document.curves === undefined && document.patches === undefined) throw new Error('the key "pairs" is missing');
   const pairs = list(document, "pairs").map((pair, i) => ({
     name: String(pair.name ?? ""),
     a: triple(pair.a, `"a" of pair ${i}`),
@@ -30,7 +30,7 @@ export function parse_json(document: { pairs?: unknown; curves?: unknown }): Wor
     sigma: typeof pair.sigma === "number" ? pair.sigma : null,
     weight: typeof pair.weight === "number" ? pair.weight : null,
   }));
-  return { pairs, curves: list(document, "curves").map(parse_curve) };
+  return { pairs, curves: list(document, "curves").map(parse_curve), patches: list(document, "patches") };
 }
 
 function parse_curve(curve: Record<string, unknown>, number: number): PickedCurve {
@@ -88,7 +88,7 @@ function curve_json(curve: PickedCurve): object {
 }
 
 /** What `bespoke fit --anchors` reads; pairs with one end and curves without a line on both models are left out. */
-export function anchors_json({ pairs, curves }: Work, unit: string): string {
+export function anchors_json({ pairs, curves, patches = [] }: Work, unit: string): string {
   const written = pairs.filter(is_complete).map((pair) => ({
     ...(pair.name === "" ? {} : { name: pair.name }),
     a: pair.a,
@@ -98,7 +98,7 @@ export function anchors_json({ pairs, curves }: Work, unit: string): string {
   }));
   const lines = (entries: object[]): string => `[\n${entries.map((entry) => `  ${JSON.stringify(entry)}`).join(",\n")}\n]`;
   const complete = curves.filter(is_complete_curve).map(curve_json);
-  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${complete.length === 0 ? "" : `, "curves": ${lines(complete)}`}}\n`;
+  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${complete.length === 0 ? "" : `, "curves": ${lines(complete)}`}${patches.length === 0 ? "" : `, "patches": ${lines(patches as object[])}`}}\n`;
 }
 
 export function anchors_csv(pairs: PickedPair[]): string {

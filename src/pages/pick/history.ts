@@ -24,6 +24,8 @@ export function is_complete(pair: PickedPair): pair is CompletePair {
 export interface Work {
   pairs: PickedPair[];
   curves: PickedCurve[];
+  /** As the file has them: the page keeps patches and has nothing to edit them with. */
+  patches?: unknown[];
 }
 
 /** The work with everything that can be undone; every change is kept in the browser's storage. */

@@ -364,7 +364,9 @@ class PickPage {
       this.history.change((all) => Object.assign(all, work));
       const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
       this.file_message.className = "soft";
-      this.file_message.textContent = `${counted(work.pairs.length, "pair")} and ${counted(work.curves.length, "curve")} from ${file.name}, in the place of what was there; Undo brings it back.`;
+      const patches = work.patches?.length ?? 0;
+      const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
+      this.file_message.textContent = `${counted(work.pairs.length, "pair")} and ${counted(work.curves.length, "curve")} from ${file.name}, in the place of what was there; Undo brings it back.${hidden}`;
     } catch (error) {
       this.file_message.className = "warn";
       this.file_message.textContent = `${file.name} was not taken: ${error instanceof Error ? error.message : String(error)}.`;

@@ -121,7 +121,7 @@ export interface PickRecord {
   source_path: string;
   target_path: string;
   meshes: MeshRecord[];
-  anchors: { units: string; pairs: unknown[]; curves: unknown[] } | null;
+  anchors: { units: string; pairs: unknown[]; curves: unknown[]; patches: unknown[] } | null;
 }
 
 export type SceneRecord = ViewRecord | PickRecord;

@@ -34,6 +34,8 @@ py::tuple anchors_of_file(const fs::path& path) {
   const Anchors anchors = read_anchors(path);
   if (!anchors.curves.empty())
     throw InvalidInput(path.string() + ": has curves, which only the command's fit takes so far");
+  if (!anchors.patches.empty())
+    throw InvalidInput(path.string() + ": has patches, which only the command's fit takes so far");
   py::list pairs;
   for (const AnchorPair& pair : anchors.pairs) {
     const py::object weight = std::isinf(pair.weight) ? py::object(py::none()) : py::float_(pair.weight);

@@ -115,6 +115,7 @@ std::vector<Place> places_to_see(const Asset& asset, const TriangleMesh& source,
     if (name == "bake") add_relaxed(stage, places);
     if (name != "surface-fit") continue;
     add_listed(stage, "cavity_vertices", "in a cavity that the target lacks", source, places);
+    add_listed(stage, "excluded_vertices", "without counterpart: excluded by a patch", source, places);
     add_listed(stage, "stretched_vertices", "stretched too far, following their neighbours", source, places);
   }
   std::map<std::string, std::vector<RatedVertex>> unmet;

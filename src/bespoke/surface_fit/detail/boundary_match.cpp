@@ -26,6 +26,7 @@ BoundaryMatcher::BoundaryMatcher(const BoundaryMatchInput& input, const Boundary
   std::map<int, double> length;
   DisjointSets boundaries(static_cast<int>(rest.cols()));
   for (const auto& edge : edges.colwise()) {
+    if (input.source_rest.is_excluded(edge[0]) || input.source_rest.is_excluded(edge[1])) continue;
     const double half = (rest.col(edge[0]) - rest.col(edge[1])).norm() / 2;
     for (int k = 0; k < 2; ++k) length[edge[k]] += half;
     boundaries.join(edge[0], edge[1]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,20 +37,20 @@ struct SurfaceAnchors {
 
 /// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
 /// their anchors are from the source.
-void lay_on_target(const TriangleMesh& source, const TargetSurface& target, SurfaceAnchors& anchors) {
-  const ClosestPointTree source_surface(source);
+void lay_on_target(const TriangleMesh& source, const TriangleMesh& target, SurfaceAnchors& anchors) {
+  if (!(anchors.sigmas.array() > 0).any()) return;
+  const ClosestPointTree source_surface(source), target_surface(target);
   for (Eigen::Index k = 0; k < anchors.sigmas.size(); ++k) {
     if (!(anchors.sigmas[k] > 0)) continue;
     const double wanted = source_surface.closest(anchors.sources.col(k))->squared_distance;
-    const SurfacePoint foot = target.closest(anchors.targets.col(k));
+    const SurfacePoint foot = *target_surface.closest(anchors.targets.col(k));
     if (foot.squared_distance > wanted)
       anchors.targets.col(k) =
           foot.point + std::sqrt(wanted / foot.squared_distance) * (anchors.targets.col(k) - foot.point);
   }
 }
 
-SurfaceAnchors anchors_of(const SurfaceFitInput& input, const TargetSurface& target,
-                          const NodeFitSettings& settings) {
+SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& settings) {
   const std::vector<Eigen::Index> near = anchors_near(input.source, input.anchor_sources, settings);
   const Eigen::VectorXd sigmas = input.anchor_sigmas.size() == 0
                                      ? Eigen::VectorXd::Zero(input.anchor_weights.size())
@@ -65,26 +66,34 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const TargetSurface& tar
     else if (std::isinf(anchors.weights[k]))
       anchors.exact.push_back(k);
   }
-  lay_on_target(input.source, target, anchors);
+  lay_on_target(input.source, input.target, anchors);
   return anchors;
 }
 
 /// The source with halved long edges.
-TriangleMesh refined_source(const TriangleMesh& source, double edges_per_area) {
-  const double area = vertex_areas(source).sum();
+PatchedMesh refined_source(const SurfaceFitInput& input, double edges_per_area) {
+  const double area = vertex_areas(input.source).sum();
   if (!(area > 0)) throw InvalidInput("the source of the surface fitting has no area");
-  return refine_long_edges(source, std::sqrt(area / edges_per_area)).mesh;
+  RefinedMesh refined = refine_long_edges(input.source, std::sqrt(area / edges_per_area));
+  PatchedMesh result{std::move(refined.mesh), {}};
+  if (input.source_patches.is_empty()) return result;
+  for (const int face : refined.origins)
+    result.patches.of_face.push_back(input.source_patches.of_face[static_cast<std::size_t>(face)]);
+  return result;
 }
 
 /// 1 where a vertex has a counterpart at its place that faces the same way, 0 where it has none.
-std::vector<double> confidences(const TriangleMesh& fitted, const TargetSurface& target, double diagonal,
+std::vector<double> confidences(const TriangleMesh& fitted, const FacePatches& patches,
+                                const TargetSurface& target, double diagonal,
                                 const ConfidenceSettings& settings) {
-  const MatchLimits limits{0, settings.reach * diagonal};
+  const std::vector<std::optional<int>> own = vertex_patches(fitted, patches);
   std::vector<double> all(static_cast<std::size_t>(fitted.vertices.cols()), 0.0);
   const Points normals = vertex_normals(fitted);
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
+      MatchLimits limits{0, settings.reach * diagonal};
+      if (!own.empty()) limits.patch = own[k];
       const auto found = target.match(fitted.vertices.col(i), normals.col(i), limits);
       if (!found) continue;
       const double offset = (found->point - fitted.vertices.col(i)).norm() / (settings.near * diagonal);
@@ -138,10 +147,44 @@ struct Scene {
   Points exact_sources;  // 3×k, carried with the surface
   Points exact_targets;  // 3×k
   double diagonal;
+  FacePatches patches;       // of the surface
   std::vector<char> hidden;  // n: in a cavity that the target lacks
 
-  DetailInput details() const { return {surface, target, exact_sources, exact_targets, diagonal, hidden}; }
+  DetailInput details() const {
+    DetailInput input{
+        surface, target, exact_sources, exact_targets, diagonal, hidden, vertex_patches(surface, patches)};
+    for (std::size_t i = 0; i < std::min(hidden.size(), input.patches.size()); ++i)
+      if (input.patches[i] == FacePatches::excluded) input.hidden[i] = 1;
+    return input;
+  }
 };
+
+/// Vertices of the source that an excluded patch leaves without counterpart: those in one, and those that
+/// found nothing where the target is nearest in one.
+std::vector<int> excluded_vertices(const SurfaceFitInput& input, const SurfaceFit& fit) {
+  std::vector<int> all;
+  if (!input.source_patches.has_excluded() && !input.target_patches.has_excluded()) return all;
+  const std::vector<std::optional<int>> own = vertex_patches(input.source, input.source_patches);
+  const ClosestPointTree target(input.target);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const auto face =
+        static_cast<std::size_t>(target.closest(fit.vertices.col(static_cast<Eigen::Index>(i)))->face);
+    const bool is_opposite =
+        fit.confidence[i] == 0 && input.target_patches.of_face[face] == FacePatches::excluded;
+    if (own[i] == FacePatches::excluded || is_opposite) all.push_back(static_cast<int>(i));
+  }
+  return all;
+}
+
+/// Of what is not excluded, to what is not excluded.
+void measure_distances(const SurfaceFitInput& input, const TargetSurface& target, SurfaceFit& fit) {
+  std::vector<int> measured;
+  for (int i = 0; i < input.source.vertices.cols(); ++i)
+    if (!std::binary_search(fit.summary.excluded_vertices.begin(), fit.summary.excluded_vertices.end(), i))
+      measured.push_back(i);
+  fit.summary.before = distances(target, input.warped_vertices(Eigen::all, measured));
+  fit.summary.after = distances(target, fit.vertices(Eigen::all, measured));
+}
 
 /// Bends the surface by the anchors alone, and carries the anchors along, where that turns a part far.
 void bend_by_anchors(Scene& scene, Points& anchors, const PoseSettings& settings,
@@ -166,7 +209,7 @@ SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitO
   bend_by_anchors(scene, aligned_anchors, settings.pose, summary);
   const NodeFit nodes =
       fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets, scene.anchors.weights,
-                 scene.diagonal, options.boundaries, scene.anchors.sigmas},
+                 scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
                 settings.nodes, progress);
   scene.surface.vertices = nodes.vertices;
   scene.hidden = nodes.hidden;
@@ -212,17 +255,20 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
     throw InvalidInput("a largest stretch of " + std::to_string(options.max_stretch) +
                        "; it must be above 1");
   const DeformationGraphSettings settings;
-  TriangleMesh surface = refined_source(input.source, settings.edges_per_area);
-  const TargetSurface target(input.target);
-  const SurfaceAnchors anchors = anchors_of(input, target, settings.nodes);
-  const auto [aligned, suffices] = align(input, surface, target, anchors, settings.similarity);
-  surface.vertices = aligned * surface.vertices;
-  Scene scene{std::move(surface),
+  PatchedMesh source = refined_source(input, settings.edges_per_area);
+  const PatchedMesh attracting = without_excluded(input.target, input.target_patches);
+  const TargetSurface target(attracting.mesh, attracting.patches);
+  const SurfaceAnchors anchors = anchors_of(input, settings.nodes);
+  const auto [aligned, suffices] =
+      align(input, without_excluded(source.mesh, source.patches).mesh, target, anchors, settings.similarity);
+  source.mesh.vertices = aligned * source.mesh.vertices;
+  Scene scene{std::move(source.mesh),
               target,
               anchors,
               aligned * anchors.exact_sources(),
               anchors.exact_targets(),
               aligned.scale * diagonal(input.source.vertices),
+              std::move(source.patches),
               {}};
 
   SurfaceFit fit;
@@ -232,8 +278,8 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
     fit.summary = deform(scene, aligned * anchors.sources, options, settings, progress);
   fit.vertices =
       meet_anchors(scene.details(), settings.details).vertices.leftCols(input.source.vertices.cols());
-  fit.confidence =
-      confidences({fit.vertices, input.source.faces}, target, scene.diagonal, settings.confidence);
+  fit.confidence = confidences({fit.vertices, input.source.faces}, input.source_patches, target,
+                               scene.diagonal, settings.confidence);
   for (std::size_t i = 0; i < std::min(scene.hidden.size(), fit.confidence.size()); ++i)
     if (scene.hidden[i]) {
       fit.confidence[i] = 0;
@@ -246,8 +292,8 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   fit.summary.similarity_suffices = suffices;
   fit.summary.off_surface_anchors =
       static_cast<std::size_t>(input.anchor_sources.cols() - anchors.sources.cols());
-  fit.summary.before = distances(target, input.warped_vertices);
-  fit.summary.after = distances(target, fit.vertices);
+  fit.summary.excluded_vertices = excluded_vertices(input, fit);
+  measure_distances(input, target, fit);
   for (const double confidence : fit.confidence) fit.summary.unmatched_vertices += confidence > 0 ? 0 : 1;
   fit.summary.seconds = watch.seconds();
   return fit;

@@ -122,7 +122,9 @@ std::vector<Residual> residuals(const DetailStep& step) {
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      const auto found = step.input.target.match(vertices.col(i), normals.col(i), limits);
+      MatchLimits own = limits;
+      if (!step.input.patches.empty()) own.patch = step.input.patches[k];
+      const auto found = step.input.target.match(vertices.col(i), normals.col(i), own);
       if (!found) continue;
       const double weight = step.areas[i] * found->agreement * found->agreement;
       all[k].form =

@@ -68,13 +68,15 @@ std::vector<double> next_limits(const NodeFitInput& input, const std::vector<Nod
 }  // namespace
 
 NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress) {
-  const TargetSurface rest(input.rest);
+  const TargetSurface rest(input.rest, input.patches);
   Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
   const Eigen::VectorXd target_areas = informative_areas(input.target, input.diagonal, settings.areas);
   const std::vector<NodeAnchor> anchors = node_anchors(input, rest);
   BoundaryMatcher boundaries({rest, input.anchor_sources, input.target, input.boundaries},
                              settings.boundaries);
   const NodeSurface node_surface{input.rest, areas.sum(), input.diagonal};
+  for (Eigen::Index i = 0; i < areas.size(); ++i)
+    if (rest.is_excluded(i)) areas[i] = 0;
   AnchorLimits limits(input.anchor_sigmas, node_surface.area, input.diagonal, settings.anchors);
 
   NodeFit fit;

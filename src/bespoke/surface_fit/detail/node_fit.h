@@ -21,6 +21,8 @@ struct NodeFitInput {
   BoundaryRule boundaries = BoundaryRule::automatic;
   /// k, ≥ 0, mesh units: accuracies of anchors of infinite weight; empty is 0 for all.
   Eigen::VectorXd anchor_sigmas = {};
+  /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
+  FacePatches patches = {};
 };
 
 struct NodeFit {

@@ -28,7 +28,9 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
   parallel_for(found.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
-      const auto match = search.answering.match(points.col(i), search.asking.normals().col(i), search.limits);
+      MatchLimits limits = search.limits;
+      limits.patch = search.asking.patch(i);
+      const auto match = search.answering.match(points.col(i), search.asking.normals().col(i), limits);
       if (!match) continue;
       found[k] = make_pair(i, *match);
       found[k].normal = match->halfway;

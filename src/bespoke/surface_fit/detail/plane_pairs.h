@@ -29,7 +29,7 @@ struct PairSurfaces {
 
 /// Closest compatible points of evenly chosen vertices, from the source to the target first, then back. A
 /// target vertex pulls on the nearest corner of the face that it finds. Vertices that find nothing give no
-/// pair.
+/// pair; those of a patch look in the other surface's same patch only.
 std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const NodeLevel& level,
                                         const NodeFitSettings& settings);
 

@@ -15,40 +15,66 @@ constexpr double on_edge = 1e-9;
 
 }  // namespace
 
-std::shared_ptr<const TargetSurface::Boundary> TargetSurface::boundary_of(const TriangleMesh& mesh) {
-  Boundary boundary{mesh_edges(mesh), {}, {}};
-  boundary.edges = bespoke::boundary_edges(mesh, boundary.table);
-  boundary.vertices.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
-  for (const int vertex : boundary.edges.reshaped()) boundary.vertices[static_cast<std::size_t>(vertex)] = 1;
-  return std::make_shared<const Boundary>(std::move(boundary));
+TargetSurface::Part TargetSurface::part_of(const TriangleMesh& mesh, std::vector<int> numbers) {
+  const TriangleMesh part{mesh.vertices,
+                          numbers.empty() ? mesh.faces : Faces(mesh.faces(Eigen::all, numbers))};
+  Extent extent{part.faces, std::move(numbers), mesh_edges(part), {}, {}};
+  extent.boundary_edges = bespoke::boundary_edges(part, extent.edges);
+  extent.boundary_vertices.assign(static_cast<std::size_t>(mesh.vertices.cols()), 0);
+  for (const int vertex : extent.boundary_edges.reshaped())
+    extent.boundary_vertices[static_cast<std::size_t>(vertex)] = 1;
+  return {std::make_shared<const Extent>(std::move(extent)), ClosestPointTree(part)};
 }
 
-TargetSurface::TargetSurface(TriangleMesh mesh, ClosestPointTree tree,
-                             std::shared_ptr<const Boundary> boundary)
-    : mesh_(std::move(mesh)),
-      tree_(std::move(tree)),
-      normals_(vertex_normals(mesh_)),
-      areas_(vertex_areas(mesh_)),
-      boundary_(std::move(boundary)) {}
+std::map<int, TargetSurface::Part> TargetSurface::parts_of(const TriangleMesh& mesh,
+                                                           const FacePatches& patches) {
+  std::map<int, std::vector<int>> faces;
+  for (std::size_t face = 0; face < patches.of_face.size(); ++face)
+    if (patches.of_face[face] != FacePatches::excluded)
+      faces[patches.of_face[face]].push_back(static_cast<int>(face));
+  std::map<int, Part> parts;
+  for (auto& [patch, numbers] : faces) parts.emplace(patch, part_of(mesh, std::move(numbers)));
+  return parts;
+}
 
-TargetSurface::TargetSurface(TriangleMesh mesh)
-    : TargetSurface(mesh, ClosestPointTree(mesh), boundary_of(mesh)) {}
+TargetSurface::TargetSurface(TriangleMesh mesh, Part whole, std::map<int, Part> parts,
+                             std::shared_ptr<const VertexPatches> vertex_patches)
+    : mesh_(std::move(mesh)),
+      whole_(std::move(whole)),
+      parts_(std::move(parts)),
+      vertex_patches_(std::move(vertex_patches)),
+      normals_(vertex_normals(mesh_)),
+      areas_(vertex_areas(mesh_)) {}
+
+TargetSurface::TargetSurface(TriangleMesh mesh, const FacePatches& patches)
+    : TargetSurface(mesh, part_of(mesh, {}), parts_of(mesh, patches),
+                    std::make_shared<const VertexPatches>(bespoke::vertex_patches(mesh, patches))) {}
+
+TargetSurface::Part TargetSurface::Part::moved(const Points& vertices) const {
+  return {extent, tree.moved({vertices, extent->faces})};
+}
 
 TargetSurface TargetSurface::moved(Points vertices) const {
-  TriangleMesh mesh{std::move(vertices), mesh_.faces};
-  ClosestPointTree tree = tree_.moved(mesh);
-  return TargetSurface(std::move(mesh), std::move(tree), boundary_);
+  std::map<int, Part> parts;
+  for (const auto& [patch, part] : parts_) parts.emplace(patch, part.moved(vertices));
+  Part whole = whole_.moved(vertices);
+  return TargetSurface({std::move(vertices), mesh_.faces}, std::move(whole), std::move(parts),
+                       vertex_patches_);
 }
 
-bool TargetSurface::on_boundary(const SurfacePoint& found) const {
+std::optional<int> TargetSurface::patch(Eigen::Index vertex) const {
+  return vertex_patches_->empty() ? std::nullopt : (*vertex_patches_)[static_cast<std::size_t>(vertex)];
+}
+
+bool TargetSurface::Part::ends_at(const SurfacePoint& found) const {
   int zeros = 0;
   for (int k = 0; k < 3; ++k) zeros += found.barycentric[k] <= on_edge ? 1 : 0;
   if (zeros == 0) return false;
   for (int k = 0; k < 3; ++k) {
     const bool at_corner = zeros == 2 && found.barycentric[k] > on_edge;
-    if (at_corner) return boundary_->vertices[mesh_.faces(k, found.face)] != 0;
+    if (at_corner) return extent->boundary_vertices[extent->faces(k, found.face)] != 0;
     const bool on_opposite_edge = zeros == 1 && found.barycentric[(k + 2) % 3] <= on_edge;
-    if (on_opposite_edge) return boundary_->table.on_boundary(found.face, k);
+    if (on_opposite_edge) return extent->edges.on_boundary(found.face, k);
   }
   return false;
 }
@@ -61,8 +87,16 @@ std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3
   query.normal = normal;
   query.min_cosine = limits.min_cosine;
   query.normal_length = limits.normal_length;
-  const std::optional<SurfacePoint> found = tree_.closest(x, query);
-  if (!found || (!limits.boundary_answers && on_boundary(*found))) return std::nullopt;
+  const Part* part = &whole_;
+  if (limits.patch && !parts_.empty()) {
+    const auto asked = parts_.find(*limits.patch);
+    if (asked == parts_.end()) return std::nullopt;
+    part = &asked->second;
+  }
+  std::optional<SurfacePoint> found = part->tree.closest(x, query);
+  if (!found || (!limits.boundary_answers && part->ends_at(*found))) return std::nullopt;
+  const std::vector<int>& numbers = part->extent->numbers;
+  if (!numbers.empty()) found->face = numbers[static_cast<std::size_t>(found->face)];
   SurfaceMatch match;
   match.point = found->point;
   match.face = found->face;
@@ -78,7 +112,7 @@ std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3
   return match;
 }
 
-SurfacePoint TargetSurface::closest(const Vector3& x) const { return *tree_.closest(x); }
+SurfacePoint TargetSurface::closest(const Vector3& x) const { return *whole_.tree.closest(x); }
 
 Statistics distances(const TargetSurface& surface, const Points& points) {
   constexpr std::size_t grain = 64;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "bespoke/anchors/patch_faces.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/mesh/triangle_mesh.h"
@@ -31,13 +33,16 @@ struct MatchLimits {
   /// Whether a point on the surface's boundary answers. Usually it does not: there the surface ends, not the
   /// body, and whatever lies beyond would collapse onto the boundary curve.
   bool boundary_answers = false;
+  /// Only faces of this patch answer (FacePatches::none: those of no patch), and where it ends is boundary. A
+  /// surface without patches does not ask.
+  std::optional<int> patch = std::nullopt;
 };
 
 /// A surface that answers closest compatible points. Thread-safe.
 class TargetSurface {
  public:
   /// Throws InvalidInput as ClosestPointTree.
-  explicit TargetSurface(TriangleMesh mesh);
+  explicit TargetSurface(TriangleMesh mesh, const FacePatches& patches = {});
 
   /// The same faces with other vertices (3×n, mesh units).
   TargetSurface moved(Points vertices) const;
@@ -53,23 +58,40 @@ class TargetSurface {
   const Points& normals() const { return normals_; }       ///< 3×n, unit or zero, per vertex
   const Eigen::VectorXd& areas() const { return areas_; }  ///< n, a third of the adjacent faces' areas
   /// 2×e: the vertices of the edges of exactly one face, along the face.
-  const Eigen::Matrix2Xi& boundary_edges() const { return boundary_->edges; }
+  const Eigen::Matrix2Xi& boundary_edges() const { return whole_.extent->boundary_edges; }
+  /// The patch that all faces at a vertex are in; empty between patches, and where there are none.
+  std::optional<int> patch(Eigen::Index vertex) const;
+  bool is_excluded(Eigen::Index vertex) const { return patch(vertex) == FacePatches::excluded; }
 
  private:
-  struct Boundary {
-    MeshEdges table;
-    Eigen::Matrix2Xi edges;
-    std::vector<char> vertices;
+  /// Faces that answer together, and where they end: what stays as vertices move.
+  struct Extent {
+    Faces faces;
+    std::vector<int> numbers;  // of the faces in the mesh; empty for all of them
+    MeshEdges edges;
+    Eigen::Matrix2Xi boundary_edges;
+    std::vector<char> boundary_vertices;
   };
-  TargetSurface(TriangleMesh mesh, ClosestPointTree tree, std::shared_ptr<const Boundary> boundary);
-  static std::shared_ptr<const Boundary> boundary_of(const TriangleMesh& mesh);
-  bool on_boundary(const SurfacePoint& found) const;
+  struct Part {
+    std::shared_ptr<const Extent> extent;
+    ClosestPointTree tree;
+
+    Part moved(const Points& vertices) const;
+    bool ends_at(const SurfacePoint& found) const;
+  };
+  using VertexPatches = std::vector<std::optional<int>>;
+
+  TargetSurface(TriangleMesh mesh, Part whole, std::map<int, Part> parts,
+                std::shared_ptr<const VertexPatches> vertex_patches);
+  static Part part_of(const TriangleMesh& mesh, std::vector<int> numbers);
+  static std::map<int, Part> parts_of(const TriangleMesh& mesh, const FacePatches& patches);
 
   TriangleMesh mesh_;
-  ClosestPointTree tree_;
+  Part whole_;
+  std::map<int, Part> parts_;  // by patch, where there are patches
+  std::shared_ptr<const VertexPatches> vertex_patches_;
   Points normals_;
   Eigen::VectorXd areas_;
-  std::shared_ptr<const Boundary> boundary_;
 };
 
 /// Distances of points (3×n, mesh units) from the surface, whatever the normals.
