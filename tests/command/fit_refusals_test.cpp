@@ -89,6 +89,18 @@ TEST_F(FitRefusals, RefusesAnchorsThatDoNotFixTheMap) {
   expect_refusal(pair_.fit("map.vdb"), 2, "anchors.json");
 }
 
+TEST_F(FitRefusals, NamesTheFileAndThePatchThatTheModelsDoNotHave) {
+  json anchors = read_json("anchors.json");
+  anchors["patches"] = {{{"name", "stand"}, {"b", {{"faces", {3, 70000}}}}, {"exclude", true}}};
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  const ProgramResult fit = pair_.fit("map.vdb");
+  expect_refusal(fit, 2, "anchors.json: patch \"stand\" on the target");
+  EXPECT_THAT(fit.err, HasSubstr("no face 70000"));
+  anchors["patches"][0]["b"]["faces"] = {3};
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  expect_refusal(pair_.fit("map.vdb", {"--paper"}), 2, "leave the patches out");
+}
+
 // The number behind `before` in a message.
 double number_after(const std::string& text, const std::string& before) {
   const std::size_t at = text.find(before);

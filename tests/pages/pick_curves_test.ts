@@ -179,7 +179,9 @@ test("what it saves lies on the models, passes through the clicked places, and c
 
 test("audit and fit take it, beside pairs", async () => {
   const { curves: picked } = await saved();
-  writeFileSync(join(directory, "both.json"), JSON.stringify({ units: "cm", pairs: given.filter((pair) => !clicked.includes(pair.name)), curves: picked.map(({ name, a, b, closed }) => ({ name, a, b, closed })) }));
+  // The page has nothing to edit patches with; what a file has of them it keeps.
+  const patches = [{ name: "sole", a: { faces: [0, 1, 2] }, exclude: true }];
+  writeFileSync(join(directory, "both.json"), JSON.stringify({ patches, units: "cm", pairs: given.filter((pair) => !clicked.includes(pair.name)), curves: picked.map(({ name, a, b, closed }) => ({ name, a, b, closed })) }));
   bespoke(directory, "pick", "shoe/source.obj", "shoe/target.obj", "--anchors", "both.json", "-o", "again.html");
   const again = await open_page(browser, join(directory, "again.html"));
   await again.page.getByRole("tab", { name: "Save and import" }).click();
@@ -189,6 +191,7 @@ test("audit and fit take it, beside pairs", async () => {
   await again.page.context().close();
   const read = JSON.parse(readFileSync(join(directory, "saved.json"), "utf8"));
   assert.deepEqual(read.curves, JSON.parse(readFileSync(join(directory, "both.json"), "utf8")).curves);
+  assert.deepEqual(read.patches, patches);
   bespoke(directory, "anchors", "audit", "saved.json", "--source", "shoe/source.obj", "--target", "shoe/target.obj");
   bespoke(directory, "fit", "shoe/source.obj", "shoe/target.obj", "--anchors", "saved.json", "-o", "curve.vdb", "--quiet");
 });

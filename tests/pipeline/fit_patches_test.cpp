@@ -109,13 +109,16 @@ TEST(FitPatches, PutBorderOntoBorderAndInsideInto) {
   EXPECT_LT(least_margin(scene, without.fit(), 0.02), -0.1);
 }
 
-TEST(FitPatches, OfFacesMeetTheirBordersWithinTheTolerance) {
+// A border of faces goes to and fro by about an edge, differently on both meshes.
+TEST(FitPatches, OfFacesMeetTheirBordersWithinAnEdge) {
   Scene scene;
   AnchorPatch& face = scene.anchors.patches[0];
   face.a = {Points(3, 0), faces_around(scene.source, scene.front, scene.radius, Vector3(1, 1, 1))};
   face.b = {Points(3, 0), faces_around(scene.target, scene.front_b, scene.radius_b, radii)};
   const FittedMapping fit = scene.fit();
-  EXPECT_LT(fit.summary.patches[0].largest_distance.value(), 2 * scene.options.fit_tolerance);
+  const Eigen::Vector3i first = scene.source.faces.col(0);
+  const double edge = (scene.source.vertices.col(first[0]) - scene.source.vertices.col(first[1])).norm();
+  EXPECT_LT(fit.summary.patches[0].largest_distance.value(), edge);
   EXPECT_EQ(fit.summary.patches[0].source_faces, face.a.faces.size());
   EXPECT_EQ(fit.summary.patches[0].target_faces, face.b.faces.size());
   const auto lines = stage_lines(fit.summary, scene.anchors);

@@ -11,6 +11,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
 #include "bespoke/page/view_scene.h"
+#include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
@@ -107,6 +108,16 @@ void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
   if (!text.empty()) context.warn(text);
 }
 
+/// What is wrong with patches shows only on the models; here the file can be named.
+void require_usable_patches(const FitArguments& arguments, const Anchors& anchors, const TriangleMesh& source,
+                            const TriangleMesh& target) {
+  try {
+    fit_patches(anchors, source, target);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(arguments.anchors + ": " + error.what());
+  }
+}
+
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
   if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
@@ -184,6 +195,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
         arguments.anchors +
         ": the fit needs 3 anchor pairs that are not collinear; there are 0; without --anchors "
         "models in similar pose are aligned by their surfaces");
+  require_usable_patches(arguments, anchors, source, target);
   warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
   warn_of_contradictions(context, anchors);
@@ -296,7 +308,8 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
       ->required();
   fit.add_option("TARGET", arguments.target, "Reference model that products shall fit")->required();
   fit.add_option("--anchors", arguments.anchors,
-                 "Pairs of corresponding points, JSON or CSV (default: models in similar pose are aligned by "
+                 "Pairs of corresponding points, JSON (also curves and patches) or CSV (default: models in "
+                 "similar pose are aligned by "
                  "their surfaces, or refused)")
       ->type_name("FILE");
   fit.add_option("-o,--output", arguments.output, "Asset to write")->required()->type_name("MAP.vdb");

@@ -45,7 +45,8 @@ void add_pick_command(CLI::App& app) {
       app.add_subcommand("pick", "Write a page to pick anchors on: click on one model, then on the other");
   pick->add_option("A", arguments->source, "Source model")->required()->type_name("MESH");
   pick->add_option("B", arguments->target, "Target model")->required()->type_name("MESH");
-  pick->add_option("--anchors", arguments->anchors, "Pairs and curves to begin with, JSON or CSV")
+  pick->add_option("--anchors", arguments->anchors,
+                   "Pairs and curves to begin with, JSON or CSV; patches are kept")
       ->type_name("FILE");
   pick->add_option("-o,--output", arguments->output,
                    "Page to write, .html: one file, which needs no server and no network")

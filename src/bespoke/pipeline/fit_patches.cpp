@@ -14,10 +14,14 @@ namespace {
 class PatchFinder {
  public:
   PatchFinder(const TriangleMesh& mesh, const FacePatches& patches)
-      : mesh_(mesh), tree_(mesh), of_vertex_(vertex_patches(mesh, patches)) {}
+      : mesh_(mesh), tree_(mesh), of_vertex_(vertex_patches(mesh, patches)) {
+    near_.max_distance = on_surface * diagonal(mesh.vertices);
+  }
 
   std::optional<int> operator()(const Vector3& x) const {
-    const int face = tree_.closest(x)->face;
+    const std::optional<SurfacePoint> foot = tree_.closest(x, near_);
+    if (!foot) return std::nullopt;
+    const int face = foot->face;
     const auto at = [&](int corner) {
       return of_vertex_[static_cast<std::size_t>(mesh_.faces(corner, face))];
     };
@@ -25,8 +29,11 @@ class PatchFinder {
   }
 
  private:
+  static constexpr double on_surface = 0.02;  // of the diagonal: farther ones are points of space
+
   const TriangleMesh& mesh_;
   ClosestPointTree tree_;
+  ClosestPointQuery near_;
   std::vector<std::optional<int>> of_vertex_;
 };
 
