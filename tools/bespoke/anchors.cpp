@@ -12,9 +12,9 @@
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/anchor_suggestions.h"
-#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "length_option.h"
 #include "output_files.h"
@@ -41,8 +41,8 @@ void add_model_options(CLI::App& app, ModelArguments& arguments, const std::stri
 
 Models read_models(const ModelArguments& arguments) {
   Models models;
-  if (!arguments.source.empty()) models.source = read_triangle_mesh(arguments.source);
-  if (!arguments.target.empty()) models.target = read_triangle_mesh(arguments.target);
+  if (!arguments.source.empty()) models.source = read_source(arguments.source);
+  if (!arguments.target.empty()) models.target = read_target(arguments.target).mesh;
   return models;
 }
 

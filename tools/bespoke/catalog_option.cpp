@@ -2,17 +2,20 @@
 
 #include "bespoke/catalog/catalog_file.h"
 #include "bespoke/catalog/find_map.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/sha256.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
 namespace {
 
-/// Of the mesh, or as it is given.
-std::string model_hash(const std::string& mesh, const std::string& hash) {
-  return mesh.empty() ? hash : content_hash(read_triangle_mesh(mesh));
+/// Of the model, or as it is given.
+std::string source_hash(const CatalogOption& option) {
+  return option.source.empty() ? option.source_hash : content_hash(read_source(option.source));
+}
+std::string target_hash(const CatalogOption& option) {
+  return option.target.empty() ? option.target_hash : content_hash(read_target(option.target));
 }
 
 }  // namespace
@@ -54,8 +57,7 @@ std::vector<JobFile> inputs(const CatalogOption& option) {
 std::filesystem::path find_map(const CatalogOption& option) {
   const std::filesystem::path index = catalog_path(option.directory);
   const Catalog catalog = read_catalog(index);
-  const CatalogEntry& entry = bespoke::find_map(catalog, {model_hash(option.source, option.source_hash),
-                                                          model_hash(option.target, option.target_hash)});
+  const CatalogEntry& entry = bespoke::find_map(catalog, {source_hash(option), target_hash(option)});
   const std::filesystem::path map = std::filesystem::path(option.directory) / entry.file;
   if (sha256_of_file(map) != entry.sha256)
     throw FormatError(map.string() + ": is not the file that " + index.string() +

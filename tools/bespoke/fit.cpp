@@ -8,6 +8,7 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
 #include "bespoke/page/view_scene.h"
@@ -79,10 +80,14 @@ std::string confidence_lines(const std::vector<double>& confidence) {
   return lines;
 }
 
-TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
-  TriangleMesh mesh = read_triangle_mesh(path);
+void require_model(const TriangleMesh& mesh, const std::string& role, const std::string& path, bool quiet) {
   require_surface(mesh, role + " " + path);
   if (!quiet) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
+}
+
+TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
+  TriangleMesh mesh = read_source(path);
+  require_model(mesh, role, path, quiet);
   return mesh;
 }
 
@@ -180,7 +185,9 @@ void run(const FitArguments& arguments, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;
   const TriangleMesh source = read_model("source", arguments.source, quiet);
-  const TriangleMesh target = read_model("target", arguments.target, quiet);
+  const TargetModel target_model = read_target(arguments.target);
+  const TriangleMesh& target = target_model.mesh;
+  require_model(target, "target", arguments.target, quiet);
   std::optional<TriangleMesh> fitted;
   if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
   Anchors anchors;
@@ -202,7 +209,8 @@ void run(const FitArguments& arguments, const RunContext& context) {
   rate_anchors(anchors, arguments, diagonal(source.vertices));
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
-  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
+  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
+                           target_model.cloud ? &*target_model.cloud : nullptr};
   const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())

@@ -8,10 +8,10 @@
 
 #include "batch_display.h"
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/grading/grade_table.h"
-#include "bespoke/product/mesh_io.h"
 #include "output_files.h"
 #include "planned_run.h"
 
@@ -96,7 +96,7 @@ BatchJob size_job(const GradeRequest& request, const GradeSize& size, const Meas
   job.run = [size, series = without_sizes(sheet), lines, directory, &maps](const Progress&) {
     const std::shared_ptr<const OpenedMap> map = maps.open(size.map, MapForm::grids, {});
     std::optional<SizeModel> model;
-    if (size.t == 1) model = {read_triangle_mesh(size.target), places_of(anchors_of(size), &AnchorPair::b)};
+    if (size.t == 1) model = {read_target(size.target).mesh, places_of(anchors_of(size), &AnchorPair::b)};
     const GradedSize graded{size.name, graded_measures(lines, *map, size.t, model ? &*model : nullptr)};
     write_tables(directory, size_csv(graded), size_markdown(series, graded));
     return JobFindings{};
@@ -128,7 +128,7 @@ BatchJob series_job(const GradeRequest& request, const std::vector<GradeSize>& s
 
 MeasuringSheet plan_measures(const GradeRequest& request, const fs::path& measures, GradeSizes& sizes) {
   const Measures sheet = read_measures(measures);
-  const TriangleMesh source = read_triangle_mesh(request.source);
+  const TriangleMesh source = read_source(request.source);
   require_valid(source, "source " + request.source);
   MeasuringSheet planned{measures, sheet.unit, length_decimals(diagonal(source.vertices)), {}};
   for (const GradeSize& size : sizes.sizes) {

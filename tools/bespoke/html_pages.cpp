@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "bespoke/catalog/map_index.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/page/carried_picture.h"
 #include "bespoke/parallel.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "output_files.h"
 #include "page_output.h"
@@ -199,8 +199,8 @@ void HtmlPages::write(const std::string& scene, const OpenedMap& map) const {
 }
 
 void HtmlPages::write_picture(const Row& row, const OpenedMap& map) {
-  const TriangleMesh source = read_triangle_mesh(row.shown.source);
-  const TriangleMesh target = read_triangle_mesh(row.shown.target);
+  const TriangleMesh source = read_source(row.shown.source);
+  const TriangleMesh target = read_target(row.shown.target).mesh;
   const std::vector<TriangleMesh> products = meshes_of(row.shown.products);
   OutputFiles files;
   files.write_text(

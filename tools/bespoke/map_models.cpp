@@ -4,7 +4,6 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "planned_run.h"
 
@@ -39,10 +38,11 @@ std::vector<JobFile> inputs_of(const MapModelArguments& arguments) {
 MapModels read_map_models(const MapModelArguments& arguments) {
   MapModels models;
   models.asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  models.source = read_triangle_mesh(arguments.source);
-  models.target = read_triangle_mesh(arguments.target);
-  require_model(arguments.source, models.source, models.asset.record.source, "source");
-  require_model(arguments.target, models.target, models.asset.record.target, "target");
+  models.source = read_source(arguments.source);
+  TargetModel target = read_target(arguments.target);
+  require_source(arguments.source, models.source, models.asset.record);
+  require_target(arguments.target, target, models.asset.record);
+  models.target = std::move(target.mesh);
   for (const std::string& path : arguments.products) {
     const Product product = read_product(path);
     models.products.push_back(
@@ -53,11 +53,16 @@ MapModels read_map_models(const MapModelArguments& arguments) {
   return models;
 }
 
-void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
-                   const char* role) {
-  require_valid(mesh, path);
-  if (content_hash(mesh) != record.hash)
-    throw InvalidInput(path + ": is not the " + role + " that the map was made of (other vertices or faces)");
+void require_source(const std::string& path, const TriangleMesh& source, const AssetRecord& record) {
+  require_valid(source, path);
+  if (content_hash(source) != record.source.hash)
+    throw InvalidInput(path + ": is not the source that the map was made of (other vertices or faces)");
+}
+
+void require_target(const std::string& path, const TargetModel& target, const AssetRecord& record) {
+  require_valid(target.mesh, path);
+  if (content_hash(target) != record.target.hash)
+    throw InvalidInput(path + ": is not the target that the map was made of (other vertices or faces)");
 }
 
 }  // namespace bespoke::command

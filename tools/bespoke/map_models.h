@@ -7,6 +7,7 @@
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/batch/batch_job.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/page/fit_findings.h"
 #include "bespoke/quality/mapping_quality.h"
 
@@ -39,7 +40,7 @@ struct MapModels {
 MapModels read_map_models(const MapModelArguments& arguments);
 
 /// Refuses a model that the map was not made of: nothing that it says of the map would hold.
-void require_model(const std::string& path, const TriangleMesh& mesh, const ModelRecord& record,
-                   const char* role);
+void require_source(const std::string& path, const TriangleMesh& source, const AssetRecord& record);
+void require_target(const std::string& path, const TargetModel& target, const AssetRecord& record);
 
 }  // namespace bespoke::command

@@ -7,7 +7,6 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/open_map.h"
-#include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
@@ -51,10 +50,10 @@ std::vector<JobFigure> figures(const MappingQuality& quality) {
 void run(const MeasureArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  const TriangleMesh source = read_triangle_mesh(arguments.source);
-  const TriangleMesh target = read_triangle_mesh(arguments.target);
-  require_model(arguments.source, source, asset.record.source, "source");
-  require_model(arguments.target, target, asset.record.target, "target");
+  const TriangleMesh source = read_source(arguments.source);
+  const TargetModel target = read_target(arguments.target);
+  require_source(arguments.source, source, asset.record);
+  require_target(arguments.target, target, asset.record);
   std::vector<NamedProduct> products;
   std::vector<std::string> names;
   for (const std::string& path : arguments.products) {
@@ -74,7 +73,7 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
   else
     elastic = std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
   const MappingQuality quality = mapping_quality(
-      {source, target, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
+      {source, target.mesh, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       context.progress);
   context.findings.figures = figures(quality);
   write_answer(arguments.output,

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/page/pick_scene.h"
-#include "bespoke/product/mesh_io.h"
 #include "commands.h"
 #include "output_files.h"
 #include "page_output.h"
@@ -25,8 +25,8 @@ void run(const PickArguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
   if (!arguments.anchors.empty()) inputs.push_back(arguments.anchors);
   require_safe_outputs(inputs, {arguments.output});
-  const PickModel source{arguments.source, read_triangle_mesh(arguments.source)};
-  const PickModel target{arguments.target, read_triangle_mesh(arguments.target)};
+  const PickModel source{arguments.source, read_source(arguments.source)};
+  const PickModel target{arguments.target, read_target(arguments.target).mesh};
   std::optional<Anchors> anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
   const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };

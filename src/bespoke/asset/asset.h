@@ -16,7 +16,7 @@ namespace bespoke {
 
 /// One of the two models that a map joins, without its geometry.
 struct ModelRecord {
-  std::string hash;  ///< content_hash of the mesh
+  std::string hash;  ///< content_hash of the mesh, or of the point cloud
   Box box;           ///< mesh units, own frame
 };
 

@@ -87,6 +87,7 @@ std::string to_string(const std::vector<PatchSummary>& patches) {
 
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageLine> lines;
+  if (summary.cloud) lines.push_back({"cloud", to_string(*summary.cloud)});
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});

@@ -8,6 +8,7 @@
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/bake/bake.h"
+#include "bespoke/cloud/point_cloud_surface.h"
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/fit_unanchored.h"
@@ -66,6 +67,7 @@ struct PatchSummary {
 
 /// What every stage of a fit found.
 struct FitSummary {
+  std::optional<PointCloudSummary> cloud;       ///< the target's, if it was one
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
@@ -89,12 +91,13 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact", "elastic",
-                     ///< "curves", "patches", "bake"
+  std::string name;  ///< "cloud", "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact",
+                     ///< "elastic", "curves", "patches", "bake"
   std::string line;
 };
 
-/// In their order; "alignment" without anchors only, "accuracy" only where it found something.
+/// In their order; "cloud" for a target that was one, "alignment" without anchors only, "accuracy" only where
+/// it found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

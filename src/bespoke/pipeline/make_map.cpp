@@ -99,7 +99,8 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
   record.stages_json = recorded_stages(fit.summary, input.anchors);
   record.anchors = anchor_records(input.anchors, fit);
   record.source = {content_hash(input.source), bounding_box(input.source.vertices)};
-  record.target = {content_hash(input.target), bounding_box(input.target.vertices)};
+  record.target = {input.target_cloud ? input.target_cloud->hash : content_hash(input.target),
+                   bounding_box(input.target.vertices)};
   return record;
 }
 
@@ -120,6 +121,7 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
   made.fit = input.fitted
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
+  if (input.target_cloud) made.fit.summary.cloud = *input.target_cloud;
   BakedSteps baked = bake_fitted(made.fit, input, options, progress);
   made.fit.summary.bake = std::move(baked.whole);
   if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);

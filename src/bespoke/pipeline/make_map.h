@@ -32,6 +32,8 @@ struct MakeMapInput {
   const Anchors& anchors;
   /// The source already fitted to the target, target frame, same connectivity: surface fitting is skipped.
   const TriangleMesh* fitted = nullptr;
+  /// What the target was made of, if it is the surface of a point cloud: the record names that.
+  const PointCloudSummary* target_cloud = nullptr;
 };
 
 struct MadeMap {

@@ -34,6 +34,17 @@ Json to_json(const MeshFindings& findings) {
           {"duplicate_vertices", findings.duplicate_vertices}};
 }
 
+Json to_json(const PointCloudSummary& summary) {
+  return {{"points", summary.points},
+          {"spacing", summary.spacing},
+          {"duplicate_points", summary.duplicates},
+          {"isolated_points", summary.isolated},
+          {"contradicting_normals", summary.contradicting},
+          {"vertices", summary.vertices},
+          {"faces", summary.faces},
+          {"distances", to_json(summary.distances)}};
+}
+
 Json to_json(const BakeSummary& summary) {
   Json levels = Json::array();
   for (const BakeLevelSummary& level : summary.levels)
@@ -224,6 +235,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     json.update(found);
     stages.push_back({std::move(json), seconds});
   };
+  if (summary.cloud) add("cloud", to_json(*summary.cloud), summary.cloud->seconds);
   if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);

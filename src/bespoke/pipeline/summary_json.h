@@ -20,6 +20,7 @@ Json to_json(const Matrix3& matrix);  ///< rows
 Json to_json(const Box& box);         ///< {"min", "max"}
 Json to_json(const Statistics& statistics);
 Json to_json(const MeshFindings& findings);
+Json to_json(const PointCloudSummary& summary);
 Json to_json(const BakeSummary& summary);
 Json to_json(const Certificate& certificate);
 Json to_json(const UnanchoredSummary& summary);

@@ -16,6 +16,7 @@ struct Product {
   std::vector<int> corners;        ///< vertex indices
   Eigen::Matrix2Xd texture;        ///< 2×(number of corners), (0, 0) where a face has none; or empty
   bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
+  Points normals;                  ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
 };
 
 /// OBJ, PLY (ascii and binary), STL, OFF or glTF (.gltf, .glb), by the ending of the name, every number as

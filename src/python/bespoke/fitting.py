@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _engine
 from .anchors import Anchor, _pairs
 from .maps import Length, Map, Progress
-from .meshes import Mesh, _arrays
+from .meshes import Mesh, _arrays, _source_arrays
 from .summaries import FitReport
 
 
@@ -81,8 +81,9 @@ def fit(
         "max_memory": max_memory,
     }
     engine, vertices, confidence, report = _engine.fit(
-        _arrays(source, "source"),
+        _source_arrays(source),
         _arrays(target, "target"),
+        target.cloud,
         _pairs(anchors),
         getattr(anchors, "unit", ""),
         None if fitted is None else _arrays(fitted, "fitted"),

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from .meshes import Mesh, _arrays
+from .meshes import Mesh, _arrays, _source_arrays
 from .summaries import ApplySummary, Certificate, Info, Quality
 
 Progress = Callable[[str, int, int], object]
@@ -134,8 +134,9 @@ class Map:
         return Quality._from(
             json.loads(
                 self._engine.measure(
-                    _arrays(source, "source"),
+                    _source_arrays(source),
                     _arrays(target, "target"),
+                    target.cloud,
                     [os.fspath(product) for product in products],
                     progress,
                 )

@@ -17,6 +17,7 @@ class Mesh:
 
     vertices: npt.NDArray[np.float64]  #: (n, 3), the model's unit
     faces: npt.NDArray[np.int32]  #: (m, 3), indices of vertices, counter-clockwise seen from outside
+    cloud: _engine.PointCloud | None = None  #: of a target: the points that it is the surface of
 
     @property
     def diagonal(self) -> float:
@@ -32,10 +33,21 @@ def _arrays(mesh: Mesh, what: str) -> tuple[npt.NDArray[np.float64], npt.NDArray
     return mesh.vertices, mesh.faces
 
 
+def _source_arrays(mesh: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+    arrays = _arrays(mesh, "source")
+    if mesh.cloud is not None:
+        raise _engine.InvalidInput("source: is the surface of a point cloud, which can be a target only")
+    return arrays
+
+
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Reads OBJ, PLY, STL, OFF or glTF, by the ending of the name; polygons become triangles.
 
-    Raises FileError, FormatError (naming file and line), InvalidInput for an unknown ending.
+    A PLY file of points with normals and no faces becomes the surface through them, which can be a target (`Mesh.cloud`
+    says what the points were like).
+
+    Raises FileError, FormatError (naming file and line), InvalidInput for an unknown ending, and for points with neither faces
+    nor normals.
     """
     return Mesh(*_engine.read_mesh(os.fspath(path)))
 

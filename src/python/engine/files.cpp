@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/product/mesh_io.h"
 #include "numpy_points.h"
@@ -14,13 +15,15 @@ namespace py = pybind11;
 namespace fs = std::filesystem;
 namespace {
 
+/// (vertices, faces, PointCloud or None)
 py::tuple read_mesh(const fs::path& path) {
-  TriangleMesh mesh;
+  TargetModel model;
   {
     const py::gil_scoped_release release;
-    mesh = read_triangle_mesh(path);
+    model = read_target(path);
   }
-  return to_arrays(mesh);
+  const py::tuple arrays = to_arrays(model.mesh);
+  return py::make_tuple(arrays[0], arrays[1], model.cloud);
 }
 
 void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArray& faces) {
@@ -48,6 +51,11 @@ py::tuple anchors_of_file(const fs::path& path) {
 }  // namespace
 
 void add_files(py::module_& engine) {
+  py::class_<PointCloudSummary>(engine, "PointCloud")
+      .def_readonly("points", &PointCloudSummary::points)
+      .def_readonly("spacing", &PointCloudSummary::spacing)
+      .def_readonly("hash", &PointCloudSummary::hash)
+      .def("__str__", [](const PointCloudSummary& summary) { return to_string(summary); });
   engine.def("read_mesh", &read_mesh, py::arg("path"));
   engine.def("write_mesh", &write_mesh, py::arg("path"), py::arg("vertices"), py::arg("faces"));
   engine.def("read_anchors", &anchors_of_file, py::arg("path"));

@@ -87,7 +87,8 @@ void require_in_range(const MapRequest& request) {
 }
 
 /// (map, fitted vertices n×3 in the target frame, confidence n, report as JSON)
-py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays, const py::iterable& pairs,
+py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
+              const std::optional<PointCloudSummary>& target_cloud, const py::iterable& pairs,
               const std::string& unit, const py::object& fitted_arrays, bool add_corners,
               const py::dict& options, const py::object& callback) {
   const auto mesh = [](const py::tuple& arrays, const std::string& role) {
@@ -105,7 +106,8 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays, co
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const Stopwatch watch;
-  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr};
+  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
+                           target_cloud ? &*target_cloud : nullptr};
   MadeMap made = released(callback, [&](const Progress& progress) {
     return make_map(input, make_options(request, diagonal(source.vertices)), progress);
   });
@@ -118,8 +120,9 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays, co
 }  // namespace
 
 void add_fit(py::module_& engine) {
-  engine.def("fit", &fit, py::arg("source"), py::arg("target"), py::arg("anchors"), py::arg("unit"),
-             py::arg("fitted"), py::arg("add_corners"), py::arg("options"), py::arg("progress"));
+  engine.def("fit", &fit, py::arg("source"), py::arg("target"), py::arg("target_cloud"), py::arg("anchors"),
+             py::arg("unit"), py::arg("fitted"), py::arg("add_corners"), py::arg("options"),
+             py::arg("progress"));
 }
 
 }  // namespace bespoke::python

@@ -123,17 +123,21 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
 }
 
 std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
+                    const std::optional<PointCloudSummary>& target_cloud,
                     const std::vector<fs::path>& products, const py::object& callback) {
-  const auto model = [&](const py::tuple& arrays, const ModelRecord& record, const std::string& role) {
+  const auto model = [](const py::tuple& arrays, const std::string& role) {
     TriangleMesh mesh = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
     require_valid(mesh, role);
-    if (content_hash(mesh) != record.hash)
-      throw InvalidInput(role + ": is not the one that the map was made of (other vertices or faces)");
     return mesh;
   };
+  const auto require = [](const std::string& hash, const ModelRecord& record, const std::string& role) {
+    if (hash != record.hash)
+      throw InvalidInput(role + ": is not the one that the map was made of (other vertices or faces)");
+  };
   const AssetRecord& record = map.asset().record;
-  const TriangleMesh from = model(source, record.source, "source"),
-                     to = model(target, record.target, "target");
+  const TriangleMesh from = model(source, "source"), to = model(target, "target");
+  require(content_hash(from), record.source, "source");
+  require(target_cloud ? target_cloud->hash : content_hash(to), record.target, "target");
   const auto [a, b] = anchor_points(record);
   return released(callback, [&](const Progress& progress) {
     std::vector<NamedProduct> named;
@@ -164,8 +168,8 @@ void add_map(py::module_& engine) {
            py::arg("any_models"), py::arg("progress"))
       .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
            py::arg("order"), py::arg("progress"))
-      .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("products"),
-           py::arg("progress"))
+      .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
+           py::arg("products"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });
 }
 

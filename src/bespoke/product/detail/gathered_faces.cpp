@@ -54,6 +54,8 @@ void GatheredFaces::add_points(const Points& points) {
 
 void GatheredFaces::add_texture(const Eigen::Matrix2Xd& texture) { texture_.push_back(texture); }
 
+void GatheredFaces::add_normals(const Points& normals) { normals_.push_back(normals); }
+
 void GatheredFaces::add_faces(const std::vector<std::uint32_t>& faces) {
   for (std::size_t at = 0; at < faces.size();) {
     const std::size_t count = faces[at++];
@@ -76,6 +78,7 @@ Product GatheredFaces::product(bool has_normals) {
   product.vertices = joined(points_, count);
   product.polygon_start = std::move(polygon_start_);
   product.corners = std::move(corners_);
+  if (!normals_.empty()) product.normals = joined(normals_, count);
   if (texture_.empty()) return product;
   const Eigen::Matrix2Xd of_points = joined(texture_, count);
   product.texture.resize(2, static_cast<Eigen::Index>(product.corners.size()));
@@ -107,7 +110,7 @@ Product joined_triangles(const Points& corners) {
   return product;
 }
 
-GatheredFaces gather_text(const InputFile& file, const TextFormat& format) {
+GatheredFaces gather_text(const InputFile& file, const TextFormat& format, GatheredNormals normals) {
   GatheredFaces gathered(file.path());
   TextCutter cutter = format.cutter();
   walk_blocks(
@@ -115,6 +118,8 @@ GatheredFaces gather_text(const InputFile& file, const TextFormat& format) {
       [&](const TextBlock& block) { return format.records(block); },
       [&](const TextBlock&, TextRecords&& records) {
         if (!records.points.empty()) gathered.add_points(values(records.points));
+        if (normals == GatheredNormals::of_points && !records.normals.empty())
+          gathered.add_normals(values(records.normals));
         if (!records.texture.empty())
           gathered.add_texture(Eigen::Map<const Eigen::Matrix2Xd>(
               records.texture.front().data(), 2, static_cast<Eigen::Index>(records.texture.size())));

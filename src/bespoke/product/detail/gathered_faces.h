@@ -19,6 +19,7 @@ class GatheredFaces {
   /// Each throws FormatError naming the vertex or the face at fault.
   void add_points(const Points& points);
   void add_texture(const Eigen::Matrix2Xd& texture);  ///< of points
+  void add_normals(const Points& normals);            ///< of points
   /// Of each face the number of its corners, and the corners.
   void add_faces(const std::vector<std::uint32_t>& faces);
 
@@ -27,14 +28,16 @@ class GatheredFaces {
 
  private:
   const std::filesystem::path& path_;
-  std::vector<Points> points_;
+  std::vector<Points> points_, normals_;
   std::vector<Eigen::Matrix2Xd> texture_;
   std::size_t point_count_ = 0;
   std::vector<int> polygon_start_{0}, corners_;
 };
 
-/// All of a text format's file.
-GatheredFaces gather_text(const InputFile& file, const TextFormat& format);
+/// All of a text format's file. The normals of a point cloud are asked for: those of a mesh are not needed.
+enum class GatheredNormals { none, of_points };
+GatheredFaces gather_text(const InputFile& file, const TextFormat& format,
+                          GatheredNormals normals = GatheredNormals::none);
 
 /// Triangles of formats without shared vertices, or that share them only where all else is equal too: three
 /// corners each, 3×3m. One vertex for all corners at exactly one place, in the order of their first use;

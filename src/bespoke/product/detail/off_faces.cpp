@@ -7,7 +7,10 @@ namespace bespoke {
 Product read_off_faces(const InputFile& file) {
   const OffHeader header = read_off_header(file);
   require_countable(header.vertices, file.path());
-  return gather_text(file, OffText(file.path(), header)).product(header.has_normals);
+  const bool is_cloud = header.has_normals && header.faces == 0;
+  return gather_text(file, OffText(file.path(), header),
+                     is_cloud ? GatheredNormals::of_points : GatheredNormals::none)
+      .product(header.has_normals);
 }
 
 }  // namespace bespoke

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "bespoke/product/detail/face_formats.h"
@@ -8,9 +9,17 @@
 namespace bespoke {
 namespace {
 
-/// A vertex block's positions and texture coordinates, or a face block's faces.
+/// Whether the file is a point cloud with normals; of a mesh these are not read.
+bool shows_directions(const PlyHeader& header) {
+  return header.normal &&
+         std::none_of(header.elements.begin(), header.elements.end(),
+                      [](const auto& element) { return element.name == "face" && element.count > 0; });
+}
+
+/// A vertex block's positions, normals and texture coordinates, or a face block's faces.
 struct PlyContent {
   Points points;
+  Points normals;
   Eigen::Matrix2Xd texture;
   std::vector<std::uint32_t> faces;
 };
@@ -22,6 +31,10 @@ PlyContent read_block(const PlyHeader& header, const PlyBlock& block, const std:
   const PlyPlaces places(header, block);
   content.points.resize(3, static_cast<Eigen::Index>(block.count));
   places.read(header.position, content.points.data());
+  if (shows_directions(header)) {
+    content.normals.resize(3, content.points.cols());
+    places.read(*header.normal, content.normals.data());
+  }
   if (!header.texture) return content;
   content.texture.resize(2, static_cast<Eigen::Index>(block.count));
   places.read(*header.texture, content.texture.data());
@@ -36,6 +49,7 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
       [&](const PlyBlock& block) { return read_block(header, block, file.path()); },
       [&](const PlyBlock&, PlyContent&& content) {
         if (content.points.cols() > 0) gathered.add_points(content.points);
+        if (content.normals.cols() > 0) gathered.add_normals(content.normals);
         if (content.texture.cols() > 0) gathered.add_texture(content.texture);
         gathered.add_faces(content.faces);
       },
@@ -48,9 +62,11 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
 Product read_ply_faces(const InputFile& file) {
   const PlyHeader header = read_ply_header(file);
   require_countable(header.elements[header.vertex].count, file.path());
-  GatheredFaces gathered = header.encoding == PlyHeader::Encoding::ascii
-                               ? gather_text(file, PlyText(file.path(), header))
-                               : gather_binary_ply(file, header);
+  GatheredFaces gathered =
+      header.encoding == PlyHeader::Encoding::ascii
+          ? gather_text(file, PlyText(file.path(), header),
+                        shows_directions(header) ? GatheredNormals::of_points : GatheredNormals::none)
+          : gather_binary_ply(file, header);
   return gathered.product(header.normal.has_value());
 }
 

@@ -1,0 +1,34 @@
+#include "bespoke/cloud/target_model.h"
+
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/product/product_io.h"
+
+namespace bespoke {
+
+TargetModel read_target(const std::filesystem::path& path) {
+  Product product = read_product(path);
+  if (!product.corners.empty()) return {{product.vertices, triangulated(product)}, std::nullopt};
+  if (product.normals.cols() == 0)
+    throw InvalidInput(path.string() +
+                       " has no faces, and its points have no normals; a point cloud as target is a PLY file "
+                       "whose vertices have the properties nx, ny and nz beside x, y and z");
+  PointCloudSurface made = point_cloud_surface({product.vertices, product.normals}, path.string());
+  return {std::move(made.mesh), std::move(made.summary)};
+}
+
+TriangleMesh read_source(const std::filesystem::path& path) {
+  const Product product = read_product(path);
+  if (product.normals.cols() > 0)
+    throw InvalidInput(path.string() +
+                       ": is a point cloud, which can be a target only: a map is carried by the faces of its "
+                       "source; mesh it, or fit the other model onto it");
+  return {product.vertices, triangulated(product)};
+}
+
+std::string content_hash(const TargetModel& target) {
+  return target.cloud ? target.cloud->hash : content_hash(target.mesh);
+}
+
+}  // namespace bespoke

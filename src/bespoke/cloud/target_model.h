@@ -1,0 +1,29 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "bespoke/cloud/point_cloud_surface.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// A model that maps lead to: a mesh, or the surface through a point cloud.
+struct TargetModel {
+  TriangleMesh mesh;
+  std::optional<PointCloudSummary> cloud;  ///< what the mesh was made of, unless it was read
+};
+
+/// Reads a mesh as read_triangle_mesh; or a PLY file of points with normals and no faces, whose surface it
+/// makes. Throws as these, and InvalidInput where there are points but no normals.
+TargetModel read_target(const std::filesystem::path& path);
+
+/// Reads a mesh as read_triangle_mesh. Throws InvalidInput for a point cloud with normals: clouds are targets
+/// only.
+TriangleMesh read_source(const std::filesystem::path& path);
+
+/// Of the cloud, or else of the mesh: names the file's content in an asset.
+std::string content_hash(const TargetModel& target);
+
+}  // namespace bespoke
