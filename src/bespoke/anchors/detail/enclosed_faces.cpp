@@ -22,8 +22,9 @@ constexpr double farthest = 0.02;
 /// Of the diagonal: points of the line are laid on the surface this near to one another where neighbouring
 /// ones lie on faces without a common edge, that is at corners.
 constexpr double nearest = 1e-6;
-/// More are not looked at to get from one point of the line to the next: there are some 20 around a corner.
-constexpr std::size_t most_faces_between = 500;
+/// Of the diagonal: how far from the line a way from one point of it to the next may lead, around a corner or
+/// over the rim of a groove, an eyelid for instance, that hides the surface between them.
+constexpr double detour = 0.05;
 /// Of the area of both sides: where the smaller has more, nobody sees which one is meant.
 constexpr double clearly_smaller = 0.45;
 
@@ -98,16 +99,21 @@ class SurfaceWalk {
     go(middle, to);
   }
 
+  bool is_near(int face, const Vector3& x) const {
+    const Points corners = mesh_.vertices(Eigen::all, mesh_.faces.col(face));
+    return (corners.colwise() - x).colwise().norm().minCoeff() <= detour * size_;
+  }
+
   /// The shortest way over edges: around a corner, or through a groove that the line spans.
   void go_around(const Place& from, const Place& to) {
     std::map<int, std::size_t> edge_into{{from.face, edges_.edges.size()}};
     std::map<int, int> came_from;
     std::vector<int> reached{from.face};
-    for (std::size_t next = 0; next < reached.size() && reached.size() < most_faces_between; ++next)
+    for (std::size_t next = 0; next < reached.size(); ++next)
       for (int k = 0; k < 3; ++k) {
         const std::size_t edge = edge_of(reached[next], k);
         for (const int face : faces_of_edge_[edge]) {
-          if (!edge_into.try_emplace(face, edge).second) continue;
+          if (!is_near(face, to.x) || !edge_into.try_emplace(face, edge).second) continue;
           came_from[face] = reached[next];
           reached.push_back(face);
         }
