@@ -8,6 +8,7 @@ find_dependency(Eigen3 3.3 CONFIG)
 find_dependency(nlohmann_json CONFIG)
 find_dependency(OpenSSL COMPONENTS Crypto)
 find_dependency(ZLIB)
+find_dependency(EXPAT)
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_CXX_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
 # FindOpenVDB turns BUILD_SHARED_LIBS on for whoever calls it.
 set(bespoke_shared_libs "${BUILD_SHARED_LIBS}")

@@ -33,7 +33,8 @@ TEST(Command, SaysItsVersion) {
   EXPECT_EQ(version.out, BESPOKE_VERSION "\n");
   const auto versions = nlohmann::json::parse(bespoke({"--version", "--json"}).out);
   EXPECT_EQ(versions["bespoke"], BESPOKE_VERSION);
-  for (const char* library : {"openvdb", "tbb", "eigen", "openssl", "zlib", "nlohmann_json", "cli11"})
+  for (const char* library :
+       {"openvdb", "tbb", "eigen", "openssl", "zlib", "expat", "nlohmann_json", "cli11"})
     EXPECT_THAT(versions[library].get<std::string>(), testing::ContainsRegex("[0-9]+\\.[0-9]+")) << library;
 }
 

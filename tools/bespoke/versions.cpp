@@ -1,5 +1,6 @@
 #include "versions.h"
 
+#include <expat.h>
 #include <openssl/opensslv.h>
 #include <openvdb/version.h>
 #include <tbb/tbb.h>
@@ -26,6 +27,7 @@ std::string versions_json() {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"openssl", OPENSSL_VERSION_TEXT},
       {"zlib", ZLIB_VERSION},
+      {"expat", dotted(XML_MAJOR_VERSION, XML_MINOR_VERSION, XML_MICRO_VERSION)},
       {"nlohmann_json",
        dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH)},
       {"cli11", CLI11_VERSION},

@@ -5,6 +5,7 @@
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/named.h"
+#include "bespoke/product/detail/threemf_model.h"
 #include "bespoke/words.h"
 
 namespace bespoke {
@@ -23,16 +24,23 @@ std::optional<double> metres_per_unit(const std::string& unit) { return value_of
 
 std::string unit_of_format(const std::filesystem::path& path) {
   const std::string ending = lower_ending(path);
+  if (ending == ".3mf") return unit_of_3mf(InputFile(path));
   return ending == ".gltf" || ending == ".glb" ? "m" : "";
 }
 
 void require_unit_of_format(const std::filesystem::path& model, const std::string& unit) {
-  if (unit.empty() || unit_of_format(model).empty()) return;
+  if (unit.empty()) return;
+  const std::string own = unit_of_format(model);
+  if (own.empty()) return;
   const std::optional<double> metres = metres_per_unit(unit);
-  if (metres == 1) return;
-  std::string message = model.string() + ": is in metres, as every glTF file, but the anchors are in " + unit;
+  const double own_metres = *metres_per_unit(own);
+  if (metres == own_metres) return;
+  std::string message = model.string() + (own == "m" ? ": is in metres" : ": is in " + own) +
+                        (lower_ending(model) == ".3mf" ? ", as its file says" : ", as every glTF file") +
+                        ", but the anchors are in " + unit;
   if (metres)
-    message += "; multiply their coordinates by " + in_digits(*metres, 4) + " and say \"units\": \"m\"";
+    message += "; multiply their coordinates by " + in_digits(*metres / own_metres, 4) +
+               " and say \"units\": \"" + own + "\"";
   throw InvalidInput(message);
 }
 

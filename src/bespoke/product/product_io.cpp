@@ -30,7 +30,8 @@ constexpr std::array face_formats{FaceFormat{".obj", read_obj_faces, write_obj_f
                                   FaceFormat{".stl", read_stl_faces, write_stl_faces},
                                   FaceFormat{".off", read_off_faces, write_off_faces},
                                   FaceFormat{".gltf", read_gltf_faces},
-                                  FaceFormat{".glb", read_gltf_faces}};
+                                  FaceFormat{".glb", read_gltf_faces},
+                                  FaceFormat{".3mf", read_3mf_faces}};
 
 const FaceFormat* find_format(const std::filesystem::path& path) {
   const auto at = std::find_if(

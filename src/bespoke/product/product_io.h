@@ -19,15 +19,15 @@ struct Product {
   Points normals;                  ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
 };
 
-/// OBJ, PLY (ascii and binary), STL, OFF or glTF (.gltf, .glb), by the ending of the name, every number as
-/// the double that it says. Vertices keep their order and are never merged. STL, which shares no vertices,
+/// OBJ, PLY (ascii and binary), STL, OFF, glTF (.gltf, .glb) or 3MF, by the ending of the name, every number
+/// as the double that it says. Vertices keep their order and are never merged. STL, which shares no vertices,
 /// and glTF, which divides surfaces along the seams of their texture, are the exceptions: corners at exactly
 /// the same position become one vertex in order of first use, and a triangle whose corners coincide is left
 /// out. Of a glTF file all triangles are read where its nodes show them, without morph targets, in its bind
-/// pose. A product may have no faces (a point set). Texture coordinates are read from OBJ and PLY. Throws
-/// FileError when the file cannot be opened, InvalidInput for an unknown ending, FormatError naming the file
-/// and the line (binary: the element) of a bad index, number or face, and for coordinates beyond the range of
-/// floats, in which maps are stored.
+/// pose; of a 3MF file where its build shows them. A product may have no faces (a point set). Texture
+/// coordinates are read from OBJ and PLY. Throws FileError when the file cannot be opened, InvalidInput for
+/// an unknown ending, FormatError naming the file and the line (binary: the element) of a bad index, number
+/// or face, and for coordinates beyond the range of floats, in which maps are stored.
 Product read_product(const std::filesystem::path& path);
 
 /// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as

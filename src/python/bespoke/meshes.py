@@ -41,7 +41,7 @@ def _source_arrays(mesh: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Reads OBJ, PLY, STL, OFF or glTF, by the ending of the name; polygons become triangles.
+    """Reads OBJ, PLY, STL, OFF, glTF or 3MF, by the ending of the name; polygons become triangles.
 
     A PLY file of points with normals and no faces becomes the surface through them, which can be a target (`Mesh.cloud`
     says what the points were like).
