@@ -30,12 +30,19 @@ ProgramRun run(const std::string& command) {
   return result;
 }
 
-class AssetClients : public testing::Test {
+// With one hash for all and with one a block: other programs ignore what follows the grids.
+class AssetClients : public testing::TestWithParam<TrailerForm> {
  protected:
   AssetClients() {
     Asset asset = with_preview(test::small_asset(), test::sphere({0, 0, 0}, 1, 3));
     asset.exact_map = "bytes that other programs do not read";
-    write_asset(path_, asset);
+    write(asset);
+  }
+  void write(const Asset& asset) {
+    if (GetParam() == TrailerForm::block_hashes)
+      test::write_with_block_hashes(path_, asset);
+    else
+      write_asset(path_, asset);
   }
   // Where the project is checked these programs are part of the set-up; elsewhere they may be missing.
   static bool is_missing(const std::string& probe) {
@@ -45,7 +52,10 @@ class AssetClients : public testing::Test {
   std::filesystem::path path_ = directory_ / "map.vdb";
 };
 
-TEST_F(AssetClients, VdbPrintShowsAllGridsAndMetadata) {
+INSTANTIATE_TEST_SUITE_P(BothTrailers, AssetClients,
+                         testing::Values(TrailerForm::one_hash, TrailerForm::block_hashes));
+
+TEST_P(AssetClients, VdbPrintShowsAllGridsAndMetadata) {
   if (is_missing("which vdb_print")) GTEST_SKIP() << "vdb_print is not installed";
   const ProgramRun print = run("vdb_print -l -m " + path_.string());
   EXPECT_EQ(print.status, 0) << print.output;
@@ -55,7 +65,7 @@ TEST_F(AssetClients, VdbPrintShowsAllGridsAndMetadata) {
     EXPECT_THAT(print.output, HasSubstr(text));
 }
 
-TEST_F(AssetClients, PyopenvdbReadsAllGridsAndMetadata) {
+TEST_P(AssetClients, PyopenvdbReadsAllGridsAndMetadata) {
   const std::string python = "/usr/bin/python3";
   if (is_missing(python + " -c 'import pyopenvdb'")) GTEST_SKIP() << "pyopenvdb is not installed";
   test::write_text(directory_ / "read.py", R"(
@@ -84,14 +94,14 @@ print('value', repr(u.getConstAccessor().getValue((3, 4, 2))))
   EXPECT_THAT(read.output, HasSubstr("value ("));
 }
 
-TEST_F(AssetClients, PyopenvdbReadsHalfPrecision) {
+TEST_P(AssetClients, PyopenvdbReadsHalfPrecision) {
   const std::string python = "/usr/bin/python3";
   if (is_missing(python + " -c 'import pyopenvdb'")) GTEST_SKIP() << "pyopenvdb is not installed";
   Asset asset = test::small_asset();
   asset.steps.front().pyramid.precision = ValuePrecision::half;
   for (PyramidLevel& level : asset.steps.front().pyramid.levels)
     for (float& value : level.values) value = rounded_to_half(value);
-  write_asset(path_, with_preview(asset, test::sphere({0, 0, 0}, 1, 3)));
+  write(with_preview(asset, test::sphere({0, 0, 0}, 1, 3)));
   test::write_text(directory_ / "read.py", R"(
 import sys
 import pyopenvdb as vdb
@@ -106,7 +116,7 @@ print('%.9g' % by_name['u_0'].getConstAccessor().getValue((3, 4, 2))[0])
   EXPECT_EQ(std::stof(read.output), asset.steps.front().pyramid.levels[0].values[3 * ((3 * 8 + 4) * 8 + 2)]);
 }
 
-TEST_F(AssetClients, NanovdbConvertsIt) {
+TEST_P(AssetClients, NanovdbConvertsIt) {
   // Not required even where the project is checked: Ubuntu 22.04 has no package of it.
   if (run("which nanovdb_convert").status != 0) GTEST_SKIP() << "nanovdb_convert is not installed";
   const ProgramRun convert =

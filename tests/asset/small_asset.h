@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "bespoke/asset/asset.h"
+#include "bespoke/asset/asset_io.h"
 #include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/detail/trailer.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 #include "support/shapes.h"
@@ -86,6 +88,13 @@ inline Asset tiny_asset() {
   grids[1].background = 3;
   asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
   return asset;
+}
+
+/// As write_asset writes large ones.
+inline void write_with_block_hashes(const std::filesystem::path& path, const Asset& asset) {
+  write_asset(path, asset);
+  const std::string bytes = read_text(path);
+  write_text(path, seal(unseal(bytes), TrailerForm::block_hashes));
 }
 
 }  // namespace bespoke::test

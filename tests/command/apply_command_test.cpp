@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bespoke/asset/asset_io.h"
 #include "command/example_pair.h"
 #include "product/gltf_scene.h"
 
@@ -50,6 +51,34 @@ TEST_F(ApplyCommand, KeepsFacesAndCountsTheBand) {
 
 TEST_F(ApplyCommand, AtTimeZeroIsTheIdentity) {
   EXPECT_EQ(largest_distance(applied({"--t", "0"}), product()), 0);
+}
+
+// A map is large from 64 MiB on, here for what it holds besides its grids.
+TEST_F(ApplyCommand, ReadsOfALargeMapWhatTheProductAsksFor) {
+  Asset asset = read_asset(pair_.file("map.vdb"));
+  asset.exact_map.assign(std::size_t{1} << 26, 'e');
+  write_asset(pair_.file("large.vdb"), asset);
+  struct Variant {
+    std::vector<std::string> options;
+    bool is_in_part;
+  };
+  for (auto& [options, is_in_part] :
+       std::vector<Variant>{{{"--frames", "2"}, true},
+                            {{"--refine", "1%"}, true},
+                            {{"--t", "1"}, true},
+                            {{"--inverse"}, false},
+                            {{"--untrusted"}, false},
+                            {{"--order", "moving-point", "--t", "0.5"}, false}}) {
+    const std::string output = pair_.file(options.front() == "--frames" ? "out_002.obj" : "out.obj");
+    const std::string name = options.front();
+    options.insert(options.end(), {"-o", pair_.file("out.obj")});
+    ASSERT_EQ(pair_.apply("map.vdb", options).exit_code, 0) << name;
+    const std::string expected = read_text(output);
+    const ProgramResult result = pair_.apply("large.vdb", options);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(read_text(output), expected) << name;
+    EXPECT_EQ(result.out.find(" of 67.") != std::string::npos, is_in_part) << name << result.out;
+  }
 }
 
 TEST_F(ApplyCommand, FramesAreTheSameAsSingleTimes) {

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "bespoke/apply/apply_points.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/asset/asset_part.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/lattice/brick_lookup.h"
 #include "bespoke/parallel.h"
@@ -158,6 +161,20 @@ void OpenMap(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(read_asset(std::getenv("BESPOKE_MAP")));
 }
 
+// What a ring asks for: a twentieth of the source's extent about the middle of its box. Of a file that
+// is not read in parts, nothing.
+void OpenPart(benchmark::State& state) {
+  const Box source = asset().record.source.box;
+  const Vector3 half = source.sizes() / 40;
+  const Box ring(source.center() - half, source.center() + half);
+  for (auto _ : state) {
+    std::optional<AssetPart> part = read_asset_part(std::getenv("BESPOKE_MAP"), ring);
+    if (!part) return state.SkipWithError("the file is too small to be read in parts");
+    state.counters["MB"] = 1e-6 * static_cast<double>(part->bytes_read);
+    benchmark::DoNotOptimize(loaded_chain(std::move(part->steps)));
+  }
+}
+
 void configure(benchmark::internal::Benchmark* benchmark) {
   benchmark->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 }
@@ -179,6 +196,7 @@ BENCHMARK(OpenVdbBoxSampler)->Apply(one_thread);
 BENCHMARK(NanoVdbCachedSampler)->Apply(one_thread);
 BENCHMARK(MakeAtlas)->Arg(1)->Arg(2)->Apply(configure);
 BENCHMARK(OpenMap)->Apply(configure);
+BENCHMARK(OpenPart)->Apply(configure);
 
 }  // namespace
 }  // namespace bespoke

@@ -6,7 +6,6 @@
 
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
-#include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
@@ -16,6 +15,7 @@
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
+#include "product_map.h"
 #include "time_option.h"
 
 namespace bespoke::command {
@@ -183,8 +183,9 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
   const fs::path map_file =
       arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
-  const std::shared_ptr<const OpenedMap> map =
-      context.maps.open(map_file, map_form(arguments), {.untrusted = arguments.untrusted});
+  ProductMap map(map_file, arguments.products,
+                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point},
+                 context);
   // A batch knows which jobs share a map only where they name it.
   if (arguments.catalog.is_used()) context.maps.close(map_file);
 
@@ -193,7 +194,10 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
     progress.step("apply", i, arguments.products.size());
     const std::string& name = arguments.products[i];
-    ProductSummary summary = apply_one(arguments, name, plan[i], *map, progress);
+    ProductSummary summary;
+    map.use(name, [&](const OpenedMap& opened) {
+      summary = apply_one(arguments, name, plan[i], opened, progress);
+    });
     files.add(plan[i]);
     files.add(summary.companions);
     std::vector<fs::path>& further = context.findings.further_outputs;
@@ -207,6 +211,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   files.keep();
 
   context.findings.figures = figures(applied);
+  if (!arguments.run.quiet && !map.reading().empty()) std::printf("%s\n", map.reading().c_str());
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
     for (const std::string& warning : applied[i].summary.warnings)

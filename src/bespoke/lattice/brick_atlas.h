@@ -8,6 +8,7 @@
 
 #include "bespoke/lattice/brick_table.h"
 #include "bespoke/lattice/pyramid.h"
+#include "bespoke/lattice/pyramid_index.h"
 
 namespace bespoke {
 
@@ -50,5 +51,11 @@ struct BrickAtlas {
 /// it (6e-8). Nothing where the atlas would take more than `largest_share` times the bytes of the pyramid's
 /// values, where the pyramid spans more than 2³⁰ of its smallest octants, or where a sum may exceed a float.
 std::optional<BrickAtlas> make_brick_atlas(const Pyramid& pyramid, double largest_share = 3);
+
+/// The same where values of a part were read: there the bricks of the whole's atlas, and where one asks for
+/// other values NaN. Nothing where the whole has no atlas (its sums are those of the part, though). `index`
+/// is the part's.
+std::optional<BrickAtlas> make_brick_atlas(const PyramidPart& part, const PyramidIndex& index,
+                                           double largest_share = 3);
 
 }  // namespace bespoke

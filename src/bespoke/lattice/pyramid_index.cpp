@@ -1,5 +1,7 @@
 #include "bespoke/lattice/pyramid_index.h"
 
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "bespoke/parallel.h"
@@ -19,13 +21,31 @@ std::vector<LeafCoordinates> with_lower_neighbours(const std::vector<LeafCoordin
   return unique_leaves(std::move(entries));
 }
 
-PyramidEntry make_entry(const LeafCoordinates& at, const PyramidLevel& level, const LeafTable& leaves,
-                        const LeafTable& finer_entries) {
+/// Where the values of a level's leaves stand.
+class LeafValues {
+ public:
+  LeafValues(const PyramidLevel& read, const std::vector<LeafCoordinates>& all)
+      : read_(read), read_table_(read.leaves) {
+    if (read.leaves.size() < all.size()) whole_table_.emplace(all);
+  }
+
+  const float* operator()(const LeafCoordinates& leaf) const {
+    if (const int found = read_table_.find(leaf); found != no_leaf)
+      return read_.values_of(static_cast<std::size_t>(found));
+    return whole_table_ && whole_table_->find(leaf) != no_leaf ? unread_leaf() : absent_leaf();
+  }
+
+ private:
+  const PyramidLevel& read_;
+  LeafTable read_table_;
+  std::optional<LeafTable> whole_table_;  // where some leaves were not read
+};
+
+PyramidEntry make_entry(const LeafCoordinates& at, const LeafValues& values, const LeafTable& finer_entries) {
   PyramidEntry entry;
   entry.leaf = at;
   for (int n = 0; n < 8; ++n) {
-    const int leaf = leaves.find(moved(at, corner_step(n)));
-    entry.blocks[n] = leaf == no_leaf ? absent_leaf() : level.values_of(static_cast<std::size_t>(leaf));
+    entry.blocks[n] = values(moved(at, corner_step(n)));
     entry.children[n] = finer_entries.find(child_of(at, n));
   }
   return entry;
@@ -35,21 +55,32 @@ PyramidEntry make_entry(const LeafCoordinates& at, const PyramidLevel& level, co
 
 const float* absent_leaf() { return zeros.data(); }
 
+const float* unread_leaf() {
+  static const std::vector<float> values(leaf_floats, std::numeric_limits<float>::quiet_NaN());
+  return values.data();
+}
+
+// From the finest level up: `roots` has the entries of the level below until the last is added.
 PyramidIndex::PyramidIndex(const Pyramid& pyramid) : levels(pyramid.levels.size()) {
-  LeafTable finer_entries;
-  for (std::size_t level = pyramid.levels.size(); level-- > 0;) {
-    const PyramidLevel& stored = pyramid.levels[level];
-    const LeafTable leaves(stored.leaves);
-    const std::vector<LeafCoordinates> coordinates = with_lower_neighbours(stored.leaves);
-    std::vector<PyramidEntry>& entries = levels[level];
-    entries.resize(coordinates.size());
-    parallel_for(entries.size(), 1024, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        entries[i] = make_entry(coordinates[i], stored, leaves, finer_entries);
-    });
-    finer_entries = LeafTable(coordinates);
-  }
-  roots = std::move(finer_entries);
+  for (std::size_t level = levels.size(); level-- > 0;)
+    add_level(level, pyramid.levels[level], pyramid.levels[level].leaves);
+}
+
+PyramidIndex::PyramidIndex(const PyramidPart& part) : levels(part.leaves.size()) {
+  for (std::size_t level = levels.size(); level-- > 0;)
+    add_level(level, part.read.levels[level], part.leaves[level]);
+}
+
+void PyramidIndex::add_level(std::size_t level, const PyramidLevel& read,
+                             const std::vector<LeafCoordinates>& all) {
+  const LeafValues values(read, all);
+  const std::vector<LeafCoordinates> coordinates = with_lower_neighbours(all);
+  std::vector<PyramidEntry>& entries = levels[level];
+  entries.resize(coordinates.size());
+  parallel_for(entries.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) entries[i] = make_entry(coordinates[i], values, roots);
+  });
+  roots = LeafTable(coordinates);
 }
 
 }  // namespace bespoke

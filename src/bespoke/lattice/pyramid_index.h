@@ -6,6 +6,7 @@
 
 #include "bespoke/lattice/leaf_table.h"
 #include "bespoke/lattice/pyramid.h"
+#include "bespoke/lattice/pyramid_part.h"
 
 namespace bespoke {
 
@@ -22,13 +23,21 @@ struct PyramidEntry {
 /// The values that stand for a leaf that is not there: zeros.
 const float* absent_leaf();
 
+/// The values that stand for a leaf whose own were not read: NaN.
+const float* unread_leaf();
+
 /// Neighbours and children of the leaves of a pyramid, found once. Refers to the pyramid's values: the
 /// pyramid must live longer and stay as it is. Every entry but those of level 0 is the child of one entry.
 struct PyramidIndex {
   explicit PyramidIndex(const Pyramid& pyramid);
+  /// The same entries as of the whole.
+  explicit PyramidIndex(const PyramidPart& part);
 
   std::vector<std::vector<PyramidEntry>> levels;  ///< entries in lexicographic order
   LeafTable roots;                                ///< finds the entries of level 0
+
+ private:
+  void add_level(std::size_t level, const PyramidLevel& read, const std::vector<LeafCoordinates>& all);
 };
 
 }  // namespace bespoke

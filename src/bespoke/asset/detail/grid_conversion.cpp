@@ -11,6 +11,7 @@
 #include <streambuf>
 #include <utility>
 
+#include "bespoke/asset/detail/vdb_grid.h"
 #include "bespoke/asset/detail/vdb_leaves.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -70,18 +71,6 @@ openvdb::Metadata::Ptr to_vdb(const MetadataValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return openvdb::StringMetadata(*text).copy();
   const Vector3& v = std::get<Vector3>(value);
   return openvdb::Vec3DMetadata(openvdb::Vec3d(v.x(), v.y(), v.z())).copy();
-}
-
-MetadataValue from_vdb(const std::string& key, const openvdb::Metadata& metadata) {
-  if (const auto* flag = dynamic_cast<const openvdb::BoolMetadata*>(&metadata)) return flag->value();
-  if (const auto* integer = dynamic_cast<const openvdb::Int64Metadata*>(&metadata)) return integer->value();
-  if (const auto* real = dynamic_cast<const openvdb::DoubleMetadata*>(&metadata)) return real->value();
-  if (const auto* text = dynamic_cast<const openvdb::StringMetadata*>(&metadata)) return text->value();
-  if (const auto* vector = dynamic_cast<const openvdb::Vec3DMetadata*>(&metadata)) {
-    const openvdb::Vec3d v = vector->value();
-    return Vector3(v.x(), v.y(), v.z());
-  }
-  throw FormatError("metadata " + key + " has the unexpected type " + metadata.typeName());
 }
 
 void insert(openvdb::MetaMap& map, const Metadata& metadata) {
@@ -186,6 +175,28 @@ void read_lattice(const openvdb::GridBase& grid, StoredGrid& stored) {
   require(matrix == uniform, grid, "its transform is not a uniform scale and a translation");
 }
 
+/// 8-4-4-4-12 digits of the hash of everything else, so that equal content has an equal name.
+void name_by_content(std::string& bytes) {
+  std::fill_n(bytes.begin() + uuid_offset, uuid_length, '0');
+  std::string uuid = sha256(bytes.data(), bytes.size()).substr(0, 32);
+  for (const std::size_t position : {8, 13, 18, 23}) uuid.insert(position, "-");
+  bytes.replace(uuid_offset, uuid_length, uuid);
+}
+
+}  // namespace
+
+MetadataValue from_vdb(const std::string& key, const openvdb::Metadata& metadata) {
+  if (const auto* flag = dynamic_cast<const openvdb::BoolMetadata*>(&metadata)) return flag->value();
+  if (const auto* integer = dynamic_cast<const openvdb::Int64Metadata*>(&metadata)) return integer->value();
+  if (const auto* real = dynamic_cast<const openvdb::DoubleMetadata*>(&metadata)) return real->value();
+  if (const auto* text = dynamic_cast<const openvdb::StringMetadata*>(&metadata)) return text->value();
+  if (const auto* vector = dynamic_cast<const openvdb::Vec3DMetadata*>(&metadata)) {
+    const openvdb::Vec3d v = vector->value();
+    return Vector3(v.x(), v.y(), v.z());
+  }
+  throw FormatError("metadata " + key + " has the unexpected type " + metadata.typeName());
+}
+
 StoredGrid from_vdb(const openvdb::GridBase& grid) {
   StoredGrid stored;
   stored.name = grid.getName();
@@ -211,15 +222,12 @@ StoredGrid from_vdb(const openvdb::GridBase& grid) {
   return stored;
 }
 
-/// 8-4-4-4-12 digits of the hash of everything else, so that equal content has an equal name.
-void name_by_content(std::string& bytes) {
-  std::fill_n(bytes.begin() + uuid_offset, uuid_length, '0');
-  std::string uuid = sha256(bytes.data(), bytes.size()).substr(0, 32);
-  for (const std::size_t position : {8, 13, 18, 23}) uuid.insert(position, "-");
-  bytes.replace(uuid_offset, uuid_length, uuid);
+Metadata from_vdb(const openvdb::MetaMap& map) {
+  Metadata metadata;
+  for (auto entry = map.beginMeta(); entry != map.endMeta(); ++entry)
+    metadata[entry->first] = from_vdb(entry->first, *entry->second);
+  return metadata;
 }
-
-}  // namespace
 
 void initialize_vdb() { openvdb::initialize(); }
 
@@ -247,9 +255,7 @@ StoredFile stored_file_from_vdb(std::string_view bytes) {
     if (stream.tellg() != static_cast<std::streamoff>(bytes.size()))
       throw FormatError("the last grid does not end where the trailer says");
     StoredFile file;
-    const auto metadata = archive.getMetadata();
-    for (auto entry = metadata->beginMeta(); entry != metadata->endMeta(); ++entry)
-      file.metadata[entry->first] = from_vdb(entry->first, *entry->second);
+    file.metadata = from_vdb(*archive.getMetadata());
     const auto grids = archive.getGrids();
     for (const auto& grid : *grids) {
       if (!grid) throw FormatError("a grid is missing");

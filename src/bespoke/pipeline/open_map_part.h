@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "bespoke/pipeline/open_map.h"
+
+namespace bespoke {
+
+/// A map of which a part was read.
+struct OpenedPart {
+  OpenedMap map;
+  std::uint64_t bytes_read = 0;
+  std::uint64_t file_bytes = 0;
+};
+
+/// open_map with MapForm::grids, for points in `box` (source frame, mesh units): of those the same bits;
+/// asked for what was not read the map throws OutsidePart. Nothing for a file that must be read as a whole.
+/// Throws as read_asset_part.
+std::optional<OpenedPart> open_map_part(const std::filesystem::path& path, const Box& box);
+
+}  // namespace bespoke

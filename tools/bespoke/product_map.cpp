@@ -1,0 +1,103 @@
+#include "product_map.h"
+
+#include <cstdio>
+#include <optional>
+#include <system_error>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/lattice/part_map.h"
+#include "bespoke/pipeline/open_map_part.h"
+#include "bespoke/product/product_io.h"
+#include "page_output.h"
+
+namespace bespoke::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+// To know where its points are, a product is read once more, as faces in memory. Larger ones go through as
+// they stream, and would have most of the map read anyway.
+constexpr std::uintmax_t map_of_products = 8;
+
+// Bytes. Smaller maps are read as a whole in less time than it takes to find out more.
+constexpr std::uintmax_t least_map = std::uintmax_t{1} << 26;
+
+std::uintmax_t size_of(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
+  return error ? 0 : size;
+}
+
+/// The run is what was typed, and no job of a batch: these have commands of their own, and share maps.
+bool is_alone(const RunContext& context) { return context.command == typed_command(); }
+
+/// The box of all vertices, in the source frame; nothing where it is not known at a small part of the map's
+/// cost.
+std::optional<Box> box_of(const std::vector<std::string>& products, std::uintmax_t map_size) {
+  std::uintmax_t size = 0;
+  for (const std::string& product : products) {
+    if (!can_read_product(product)) return std::nullopt;
+    size += size_of(product);
+  }
+  if (size > map_size / map_of_products) return std::nullopt;
+  Box box;
+  try {
+    for (const std::string& product : products) {
+      const Points vertices = read_product(product).vertices;
+      for (Eigen::Index i = 0; i < vertices.cols(); ++i) box.extend(Vector3(vertices.col(i)));
+    }
+  } catch (const FormatError&) {
+    return std::nullopt;  // it may be carried all the same, or is refused then
+  }
+  if (box.isEmpty()) return std::nullopt;
+  return box;
+}
+
+}  // namespace
+
+ProductMap::ProductMap(fs::path file, const std::vector<std::string>& products,
+                       const ProductMapOptions& options, const RunContext& context)
+    : file_(std::move(file)), options_(options), context_(context) {
+  const bool is_partly_enough =
+      options.form == MapForm::grids && !options.untrusted && !options.moves_points && is_alone(context);
+  const std::uintmax_t map_size = size_of(file_);
+  if (is_partly_enough && map_size >= least_map) {
+    if (const std::optional<Box> box = box_of(products, map_size)) {
+      if (std::optional<OpenedPart> part = open_map_part(file_, *box)) {
+        map_ = std::make_shared<const OpenedMap>(std::move(part->map));
+        bytes_read_ = part->bytes_read;
+        file_bytes_ = part->file_bytes;
+        return;
+      }
+    }
+  }
+  open_whole();
+}
+
+void ProductMap::open_whole() {
+  bytes_read_ = file_bytes_ = 0;
+  map_ = context_.maps.open(file_, options_.form, {.untrusted = options_.untrusted});
+}
+
+void ProductMap::use(const std::string& product, const std::function<void(const OpenedMap&)>& apply) {
+  try {
+    apply(*map_);
+  } catch (const OutsidePart&) {
+    context_.warn(product +
+                  ": asks for places of the map away from its own vertices, so all of the map is read");
+    open_whole();
+    apply(*map_);
+  }
+}
+
+std::string ProductMap::reading() const {
+  constexpr double megabyte = 1e6;
+  if (file_bytes_ == 0) return {};
+  char text[80];
+  std::snprintf(text, sizeof text, ": %.1f of %.1f MB read", static_cast<double>(bytes_read_) / megabyte,
+                static_cast<double>(file_bytes_) / megabyte);
+  return file_.string() + text;
+}
+
+}  // namespace bespoke::command
