@@ -315,8 +315,8 @@ TEST_F(AssetIo, RejectsWhatIsNoAsset) {
 
 TEST_F(AssetIo, RejectsAnotherTrailerVersion) {
   std::string bytes = written(test::tiny_asset());
-  bytes[bytes.size() - trailer_size + 8] = 2;
-  EXPECT_THAT([&] { read_bytes(bytes); }, ThrowsMessage<FormatError>(HasSubstr("trailer version 2")));
+  bytes[bytes.size() - trailer_size + 8] = 3;
+  EXPECT_THAT([&] { read_bytes(bytes); }, ThrowsMessage<FormatError>(HasSubstr("trailer version 3")));
 }
 
 // Each spoils the content and seals it anew, so that only the reader's own checks stand in its way.

@@ -51,7 +51,6 @@ std::string record_of(const Metadata& metadata) {
 
 }  // namespace
 
-/// u_0, u_1, … of the first step, s1_u_0, s1_u_1, … of the second.
 std::string level_name(std::size_t step, std::size_t level) {
   return step_prefix(step) + "u_" + std::to_string(level);
 }
