@@ -1,7 +1,9 @@
 """The test vectors of the file format against the command, the reader of samples/viewers, the formula: format_laws.py BESPOKE"""
 
 import gzip
+import hashlib
 import importlib.util
+import struct
 import subprocess
 import sys
 import tempfile
@@ -11,6 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 VECTORS = ROOT / "samples" / "format"
 ACCURACY = 1e-6  # the images have six digits behind the point
 LARGEST = 20_000  # bytes of a stored map
+BLOCK = 4096  # bytes, so that these small maps have several
 IMAGES = {"images.obj": ("map", 1), "halfway.obj": ("map", 0.5), "chain_images.obj": ("chain", 1)}
 
 
@@ -58,6 +61,25 @@ def every_changed_byte_of_the_trailer_is_refused(bespoke, maps, scratch):
     return broken
 
 
+def with_block_hashes(content):
+    """The same map under a trailer of version 2, as the page says it."""
+    lengths = content[-48:-32]
+    parts = content[: sum(struct.unpack("<QQ", lengths))]
+    blocks = [parts[begin : begin + BLOCK] for begin in range(0, len(parts), BLOCK)]
+    table = b"".join(hashlib.sha256(block).digest() for block in blocks)
+    head = b"BESPOKE\n" + struct.pack("<II", 2, BLOCK) + lengths
+    return parts + table + head + hashlib.sha256(table + head).digest()
+
+
+def maps_with_block_hashes_are_read(bespoke, maps, scratch):
+    in_blocks = scratch / "in_blocks"
+    in_blocks.mkdir()
+    for name in ("map", "chain"):
+        (in_blocks / f"{name}.vdb").write_bytes(with_block_hashes((maps / f"{name}.vdb").read_bytes()))
+    broken = command_gives_the_images(bespoke, in_blocks, scratch)
+    return broken + every_changed_byte_of_the_trailer_is_refused(bespoke, in_blocks, scratch)
+
+
 def reader_gives_the_images(maps, scratch):
     reader, broken = ROOT / "samples" / "viewers" / "read_asset.py", []
     for name in ("images.obj", "chain_images.obj"):
@@ -101,6 +123,7 @@ def main():
             "the command gives the images": command_gives_the_images(bespoke, scratch, scratch),
             "the command proves the maps": command_proves_the_maps(bespoke, scratch),
             "a changed byte is refused": every_changed_byte_of_the_trailer_is_refused(bespoke, scratch, scratch),
+            "maps with a hash a block are read": maps_with_block_hashes_are_read(bespoke, scratch, scratch),
         }
         if importlib.util.find_spec("numpy") and importlib.util.find_spec("pyopenvdb"):
             new = scratch / "new"

@@ -21,6 +21,7 @@ PyramidPart read_pyramid(VdbPart& vdb, std::size_t first, std::size_t step, Pyra
   for (std::size_t level = 0; level < records.size(); ++level) {
     const LevelRecord& record = records[level];
     const std::string name = level_name(step, level);
+    require_storable(record.voxel_size, "grid " + name);
     StoredGridPart stored = vdb.read(first + level, leaves_near({part.read.origin, record.voxel_size}, box));
     require_level(stored.grid, name, part.read, record.voxel_size);
     require_leaf_count(stored.all_leaves.size(), name, record);
