@@ -228,8 +228,8 @@ TEST_F(BadAssets, DamagedOnTheWay) {
   // The trailer's fields: 8 bytes of magic, version, four of zero, two lengths, the digest.
   const std::size_t trailer = sound_.size() - trailer_size;
   changed = sound_;
-  changed[trailer + 8] = 2;
-  expect_refused(changed, "trailer version 2; this program reads version 1");
+  changed[trailer + 8] = 3;
+  expect_refused(changed, "trailer version 3; this program reads versions 1 and 2");
   changed = sound_;
   changed[trailer + 12] = 1;
   expect_refused(changed, "trailer is damaged");
