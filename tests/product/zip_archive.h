@@ -24,9 +24,8 @@ inline std::string deflated(const std::string& text) {
   stream.next_out = reinterpret_cast<Bytef*>(result.data());
   stream.avail_out = static_cast<uInt>(result.size());
   deflate(&stream, Z_FINISH);
-  result.resize(result.size() - stream.avail_out);
   deflateEnd(&stream);
-  return result;
+  return result.substr(0, stream.total_out);
 }
 
 struct ZipStyle {
