@@ -138,7 +138,7 @@ TEST_F(BadModels, NotFilesAtAll) {
   expect_refusal(fit(pair_.file("folder.obj")), 4, "folder.obj: not a regular file");
   expect_refusal(fit(pair_.file("none.obj")), 4, "none.obj: No such file");
   expect_refusal(fit(pair_.file("anchors.json")), 2,
-                 "the name must end in .obj, .ply, .stl, .off, .gltf or .glb");
+                 "the name must end in .obj, .ply, .stl, .off, .gltf, .glb or .3mf");
 }
 
 }  // namespace
