@@ -8,26 +8,19 @@
 #include "bespoke/error.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "support/fitting_scene.h"
+#include "support/potato.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
+using shapes::bend;
+using shapes::potato;
+
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Scene = test::FittingScene;
-
-TriangleMesh potato(int levels) {
-  TriangleMesh mesh = shapes::icosphere(levels);
-  for (auto&& x : mesh.vertices.colwise())
-    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
-  return mesh;
-}
-
-Vector3 bend(const Vector3& x) {
-  return {x[0] + 0.15 * x[1] * x[1], 1.1 * x[1] + 0.1 * x[0] * x[2], 0.95 * x[2]};
-}
 
 /// A vertex that lands farther off than this has passed a neighbour's place.
 double mean_edge_length(const TriangleMesh& mesh) {

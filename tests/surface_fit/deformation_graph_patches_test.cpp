@@ -10,28 +10,19 @@
 #include "bespoke/surface_fit/detail/deformation_graph_fit.h"
 #include "support/error_message.h"
 #include "support/fitting_scene.h"
-#include "support/shapes.h"
+#include "support/potato.h"
 
 namespace bespoke {
 namespace {
 
+using shapes::bend;
+using shapes::potato;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const Vector3 top = Vector3(1, 2, 6).normalized();  // where the bump sits
 constexpr double foot = 0.35;                       // radians from its middle to where it begins
 constexpr double rounding = 1e-12;                  // of models of size 2: what is fitted lies on the target
-
-TriangleMesh potato(int levels) {
-  TriangleMesh mesh = shapes::icosphere(levels);
-  for (auto&& x : mesh.vertices.colwise())
-    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
-  return mesh;
-}
-
-Vector3 bend(const Vector3& x) {
-  return {x[0] + 0.15 * x[1] * x[1], 1.1 * x[1] + 0.1 * x[0] * x[2], 0.95 * x[2]};
-}
 
 double angle_from_top(const Vector3& x) { return std::acos(std::clamp(x.normalized().dot(top), -1.0, 1.0)); }
 

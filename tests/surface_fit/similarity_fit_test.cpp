@@ -2,19 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "support/potato.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-/// A sphere with bumps that no rotation maps onto itself.
-TriangleMesh potato(int levels) {
-  TriangleMesh mesh = shapes::icosphere(levels);
-  for (auto&& x : mesh.vertices.colwise())
-    x *= 1 + 0.2 * x[0] * x[1] + 0.15 * x[2] * x[2] * x[2] + 0.1 * std::sin(3 * x[0]);
-  return mesh;
-}
+using shapes::potato;
 
 TEST(FitSimilarity, FindsTheSimilarityOfACopyWithOtherConnectivity) {
   const Similarity truth{1.2, test::random_rotation(3), Vector3(1, 2, 3)};

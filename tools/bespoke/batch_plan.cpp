@@ -153,7 +153,7 @@ BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned, const s
   job.run = [run = std::move(planned.run), &maps = maps_, command](const Progress& progress) {
     JobFindings findings;
     run({progress, maps, findings, [&](const std::string& warning) { findings.warnings.push_back(warning); },
-         [](const std::string&) {}, command});
+         [](const std::string&) {}, command, true});
     return findings;
   };
   return job;

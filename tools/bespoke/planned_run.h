@@ -23,6 +23,7 @@ struct RunContext {
   std::function<void(const std::string&)> print;
   /// What does this run alone, for a person to type.
   std::string command;
+  bool is_job = false;  ///< of a batch, which shares maps between its jobs
 };
 
 /// A subcommand's arguments, checked as far as they can be without reading a file.

@@ -9,7 +9,6 @@
 #include "bespoke/lattice/part_map.h"
 #include "bespoke/pipeline/open_map_part.h"
 #include "bespoke/product/product_io.h"
-#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -20,17 +19,11 @@ namespace fs = std::filesystem;
 // they stream, and would have most of the map read anyway.
 constexpr std::uintmax_t map_of_products = 8;
 
-// Bytes. Smaller maps are read as a whole in less time than it takes to find out more.
-constexpr std::uintmax_t least_map = std::uintmax_t{1} << 26;
-
 std::uintmax_t size_of(const fs::path& file) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(file, error);
   return error ? 0 : size;
 }
-
-/// The run is what was typed, and no job of a batch: these have commands of their own, and share maps.
-bool is_alone(const RunContext& context) { return context.command == typed_command(); }
 
 /// The box of all vertices, in the source frame; nothing where it is not known at a small part of the map's
 /// cost.
@@ -60,10 +53,9 @@ ProductMap::ProductMap(fs::path file, const std::vector<std::string>& products,
                        const ProductMapOptions& options, const RunContext& context)
     : file_(std::move(file)), options_(options), context_(context) {
   const bool is_partly_enough =
-      options.form == MapForm::grids && !options.untrusted && !options.moves_points && is_alone(context);
-  const std::uintmax_t map_size = size_of(file_);
-  if (is_partly_enough && map_size >= least_map) {
-    if (const std::optional<Box> box = box_of(products, map_size)) {
+      options.form == MapForm::grids && !options.untrusted && !options.moves_points && !context.is_job;
+  if (is_partly_enough && can_open_part(file_)) {
+    if (const std::optional<Box> box = box_of(products, size_of(file_))) {
       if (std::optional<OpenedPart> part = open_map_part(file_, *box)) {
         map_ = std::make_shared<const OpenedMap>(std::move(part->map));
         bytes_read_ = part->bytes_read;

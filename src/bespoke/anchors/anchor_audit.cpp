@@ -6,6 +6,7 @@
 
 #include "bespoke/anchors/detail/biharmonic_warp.h"
 #include "bespoke/error.h"
+#include "bespoke/median.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -14,12 +15,6 @@ namespace {
 constexpr std::size_t min_pairs = 8;
 constexpr double typical_factor = 4;
 constexpr double least_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
-}
 
 }  // namespace
 

@@ -156,25 +156,6 @@ Json patch_json(const AnchorPatch& patch) {
   return json;
 }
 
-std::string json_text(const Anchors& anchors) {
-  Json pairs = Json::array();
-  for (const AnchorPair& pair : anchors.pairs) {
-    Json json = Json::object();
-    if (!pair.name.empty()) json["name"] = pair.name;
-    json["a"] = {pair.a.x(), pair.a.y(), pair.a.z()};
-    json["b"] = {pair.b.x(), pair.b.y(), pair.b.z()};
-    if (std::isfinite(pair.weight)) json["weight"] = pair.weight;
-    if (pair.sigma) json["sigma"] = *pair.sigma;
-    pairs.push_back(std::move(json));
-  }
-  Json document = Json::object();
-  if (!anchors.unit.empty()) document["units"] = anchors.unit;
-  document["pairs"] = std::move(pairs);
-  for (const AnchorCurve& curve : anchors.curves) document["curves"].push_back(curve_json(curve));
-  for (const AnchorPatch& patch : anchors.patches) document["patches"].push_back(patch_json(patch));
-  return document.dump(1) + "\n";
-}
-
 std::string csv_text(const Anchors& anchors) {
   std::ostringstream text;
   text.precision(17);
@@ -235,12 +216,31 @@ Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const
                 paths);
 }
 
+std::string anchors_json(const Anchors& anchors) {
+  Json pairs = Json::array();
+  for (const AnchorPair& pair : anchors.pairs) {
+    Json json = Json::object();
+    if (!pair.name.empty()) json["name"] = pair.name;
+    json["a"] = {pair.a.x(), pair.a.y(), pair.a.z()};
+    json["b"] = {pair.b.x(), pair.b.y(), pair.b.z()};
+    if (std::isfinite(pair.weight)) json["weight"] = pair.weight;
+    if (pair.sigma) json["sigma"] = *pair.sigma;
+    pairs.push_back(std::move(json));
+  }
+  Json document = Json::object();
+  if (!anchors.unit.empty()) document["units"] = anchors.unit;
+  document["pairs"] = std::move(pairs);
+  for (const AnchorCurve& curve : anchors.curves) document["curves"].push_back(curve_json(curve));
+  for (const AnchorPatch& patch : anchors.patches) document["patches"].push_back(patch_json(patch));
+  return document.dump(1) + "\n";
+}
+
 void write_anchor_files(const std::vector<std::filesystem::path>& paths, const Anchors& anchors,
                         const AnchorFileOptions& options) {
   const AnchorFormat format = anchor_format_of(paths.at(0));
   require_files(paths, format);
   require_models(format, options);
-  if (format == AnchorFormat::json) return write_text(paths[0], json_text(anchors));
+  if (format == AnchorFormat::json) return write_text(paths[0], anchors_json(anchors));
   if (format == AnchorFormat::csv) return write_text(paths[0], csv_text(anchors));
   if (format == AnchorFormat::indices) return write_text(paths[0], indices_text(anchors, options));
   write_text(paths[0], points_text(side_of(anchors, &AnchorPair::a), format, options.source, options.models));

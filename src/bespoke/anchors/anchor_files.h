@@ -56,6 +56,9 @@ struct AnchorFileOptions {
 Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths,
                           const AnchorFileOptions& options = {});
 
+/// The text of a file of AnchorFormat::json.
+std::string anchors_json(const Anchors& anchors);
+
 /// Writes one file, or two with a side each, as read_anchor_files reads it; each atomically. What a format
 /// has no place for (names, accuracies, units) is left out. `wrap` and `indices` write the place of the mesh
 /// that is nearest to a point. Throws as reading does.

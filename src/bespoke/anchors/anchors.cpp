@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -29,13 +28,6 @@ std::string read_text(const std::filesystem::path& path) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
-}
-
-void require_distinct_names(const Anchors& anchors, const std::string& file) {
-  std::set<std::string> seen;
-  for (const AnchorPair& pair : anchors.pairs)
-    if (!pair.name.empty() && !seen.insert(pair.name).second)
-      throw FormatError(file + ": two pairs are named \"" + pair.name + "\"; names must differ or be empty");
 }
 
 // ---- CSV
@@ -148,7 +140,7 @@ Anchors read_anchors(const std::filesystem::path& path) {
   const std::string text = read_text(path);
   Anchors anchors =
       lower_ending(path) == ".csv" ? parse_csv(text, path.string()) : parse_anchor_json(text, path.string());
-  require_distinct_names(anchors, path.string());
+  require_distinct_names(anchors.pairs, "pairs", path.string());
   return anchors;
 }
 

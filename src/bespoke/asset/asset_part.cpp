@@ -57,6 +57,14 @@ AssetPart part_from(BlockFile& file, const Box& box) {
 
 }  // namespace
 
+bool has_block_hashes(const std::filesystem::path& path) {
+  try {
+    return BlockFile::open(path).has_value();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::optional<AssetPart> read_asset_part(const std::filesystem::path& path, const Box& box) {
   if (!(!box.isEmpty() && box.min().allFinite() && box.max().allFinite()))
     throw InvalidInput("the box whose part of a map is to be read is empty or not finite");

@@ -27,6 +27,9 @@ struct AssetPart {
   std::uint64_t file_bytes = 0;
 };
 
+/// Whether a part of the file can be read: its trailer has hashes of blocks. False for what is no asset.
+bool has_block_hashes(const std::filesystem::path& path);
+
 /// The part of the map for points in `box` (source frame, mesh units) and for where its steps take them.
 /// Nothing for a file whose trailer has one hash for all, which must be read as a whole. A block of the file
 /// is verified when it is first read, before OpenVDB sees a byte of it; what lies in other blocks is not

@@ -12,6 +12,7 @@
 #include "bespoke/cloud/detail/surface_net.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/leaf_table.h"
+#include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/equal_positions.h"
 #include "bespoke/parallel.h"
@@ -65,12 +66,6 @@ PreparedCloud sorted_cloud(const OrientedPoints& cloud) {
     sorted.elements.push_back({cloud.points.col(first), normal.stableNormalized(), 0});
   }
   return sorted;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Leaves out the isolated points and gives every other one its reach: as far as its neighbours, or the

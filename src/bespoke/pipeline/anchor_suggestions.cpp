@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/two_way_points.h"
@@ -42,12 +43,6 @@ Anchors turned_round(Anchors anchors) {
   }
   for (AnchorPatch& patch : anchors.patches) std::swap(patch.a, patch.b);
   return anchors;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// For every column of `x` the median of `values` over the columns nearest to it.

@@ -7,6 +7,8 @@
 
 namespace bespoke {
 
+bool can_open_part(const std::filesystem::path& path) { return has_block_hashes(path); }
+
 std::optional<OpenedPart> open_map_part(const std::filesystem::path& path, const Box& box) {
   std::optional<AssetPart> part = read_asset_part(path, box);
   if (!part) return std::nullopt;

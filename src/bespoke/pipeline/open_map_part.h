@@ -15,6 +15,9 @@ struct OpenedPart {
   std::uint64_t file_bytes = 0;
 };
 
+/// Whether the file lets parts of it be read. False for what is no map, which open_map refuses by name.
+bool can_open_part(const std::filesystem::path& path);
+
 /// open_map with MapForm::grids, for points in `box` (source frame, mesh units): of those the same bits;
 /// asked for what was not read the map throws OutsidePart. Nothing for a file that must be read as a whole.
 /// Throws as read_asset_part.

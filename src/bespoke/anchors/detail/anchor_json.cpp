@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -35,8 +34,9 @@ Vector3 json_point(const Json& pair, const char* key, const std::string& where) 
   return point;
 }
 
-/// Empty without one.
+/// Of a pair, a curve or a patch; empty without one.
 std::string json_name(const Json& value, const std::string& position) {
+  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   const auto name = value.find("name");
   if (name == value.end()) return "";
   if (!name->is_string())
@@ -45,11 +45,22 @@ std::string json_name(const Json& value, const std::string& position) {
   return name->get<std::string>();
 }
 
+std::string named_place(const std::string& position, const std::string& name) {
+  return name.empty() ? position : position + " (\"" + name + "\")";
+}
+
+/// False without it.
+bool json_flag(const Json& value, const char* key, const std::string& where) {
+  const auto flag = value.find(key);
+  if (flag == value.end()) return false;
+  if (!flag->is_boolean()) throw FormatError(where + ": \"" + key + "\" must be true or false");
+  return flag->get<bool>();
+}
+
 AnchorPair json_pair(const Json& value, const std::string& position) {
-  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   AnchorPair pair;
   pair.name = json_name(value, position);
-  const std::string where = pair.name.empty() ? position : position + " (\"" + pair.name + "\")";
+  const std::string where = named_place(position, pair.name);
   pair.a = json_point(value, "a", where);
   pair.b = json_point(value, "b", where);
   if (const auto weight = value.find("weight"); weight != value.end()) {
@@ -105,16 +116,12 @@ std::vector<std::pair<int, int>> json_fixed(const Json& list, const AnchorCurve&
 }
 
 AnchorCurve json_curve(const Json& value, const std::string& position) {
-  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   AnchorCurve curve;
   curve.name = json_name(value, position);
-  const std::string where = curve.name.empty() ? position : position + " (\"" + curve.name + "\")";
+  const std::string where = named_place(position, curve.name);
   curve.a = json_polyline(value, "a", where);
   curve.b = json_polyline(value, "b", where);
-  if (const auto closed = value.find("closed"); closed != value.end()) {
-    if (!closed->is_boolean()) throw FormatError(where + ": \"closed\" must be true or false");
-    curve.closed = closed->get<bool>();
-  }
+  curve.closed = json_flag(value, "closed", where);
   if (const auto fixed = value.find("fixed"); fixed != value.end())
     curve.fixed = json_fixed(*fixed, curve, where);
   return curve;
@@ -164,16 +171,12 @@ PatchSide json_side(const Json& patch, const char* key, const std::string& posit
 }
 
 AnchorPatch json_patch(const Json& value, const std::string& position) {
-  if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   AnchorPatch patch;
   patch.name = json_name(value, position);
-  const std::string where = patch.name.empty() ? position : position + " (\"" + patch.name + "\")";
+  const std::string where = named_place(position, patch.name);
   patch.a = json_side(value, "a", where);
   patch.b = json_side(value, "b", where);
-  if (const auto exclude = value.find("exclude"); exclude != value.end()) {
-    if (!exclude->is_boolean()) throw FormatError(where + ": \"exclude\" must be true or false");
-    patch.exclude = exclude->get<bool>();
-  }
+  patch.exclude = json_flag(value, "exclude", where);
   if (patch.a.is_empty() && patch.b.is_empty())
     throw FormatError(where + ": has neither \"a\" nor \"b\"; give the part of the source, of the target, " +
                       (patch.exclude ? "or of both" : "and say with \"exclude\": true if it has no other"));
@@ -181,14 +184,6 @@ AnchorPatch json_patch(const Json& value, const std::string& position) {
     throw FormatError(where + ": \"" + (patch.a.is_empty() ? "a" : "b") +
                       "\" is missing; only a patch with \"exclude\": true may lie on one model alone");
   return patch;
-}
-
-void require_distinct_names(const std::vector<AnchorPatch>& patches, const std::string& file) {
-  std::set<std::string> seen;
-  for (const AnchorPatch& patch : patches)
-    if (!patch.name.empty() && !seen.insert(patch.name).second)
-      throw FormatError(file + ": two patches are named \"" + patch.name +
-                        "\"; names must differ or be empty");
 }
 
 // ---- the whole
@@ -246,7 +241,7 @@ Anchors parse_anchor_json(const std::string& text, const std::string& file) {
   const Json& patches = json_list(document, "patches", file);
   for (std::size_t index = 0; index < patches.size(); ++index)
     anchors.patches.push_back(json_patch(patches[index], file + ": patch " + std::to_string(index)));
-  require_distinct_names(anchors.patches, file);
+  require_distinct_names(anchors.patches, "patches", file);
   return anchors;
 }
 

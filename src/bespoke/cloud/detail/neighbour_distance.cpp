@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "bespoke/median.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/point_grid.h"
 
@@ -34,8 +36,7 @@ double usual_distance(const Points& points, std::size_t k) {
       found[sample] = root_of_kth(squared, k);
     }
   });
-  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(samples / 2), found.end());
-  return found[samples / 2];
+  return median(std::move(found));
 }
 
 }  // namespace

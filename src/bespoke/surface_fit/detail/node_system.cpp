@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bespoke/median.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rigid/nearest_rotation.h"
 
@@ -20,12 +21,6 @@ void couple(const std::vector<int>& ids, std::vector<std::vector<int>>& rows) {
 void sort_and_unite(std::vector<int>& list) {
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace
