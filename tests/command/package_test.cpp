@@ -8,10 +8,6 @@ namespace {
 
 using testing::HasSubstr;
 
-bool is_installed(const std::string& program) {
-  return run_program({"/bin/sh", "-c", "command -v " + program}).exit_code == 0;
-}
-
 // The package is unpacked, not installed, so that the test needs no rights and shows that it may lie
 // anywhere.
 TEST(DebianPackage, HoldsACommandThatWorksWhereverItLies) {

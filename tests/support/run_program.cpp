@@ -60,4 +60,8 @@ ProgramResult run_program(const std::vector<std::string>& arguments) {
   return RunningProgram(arguments).wait();
 }
 
+bool is_installed(const std::string& program) {
+  return run_program({"/bin/sh", "-c", "command -v " + program}).exit_code == 0;
+}
+
 }  // namespace bespoke::test

@@ -35,6 +35,10 @@ class RunningProgram {
   bool ended_ = false;
 };
 
+/// Throws std::runtime_error where there is no such program.
 ProgramResult run_program(const std::vector<std::string>& arguments);
+
+/// Whether PATH has such a program.
+bool is_installed(const std::string& program);
 
 }  // namespace bespoke::test

@@ -17,7 +17,7 @@ const std::string laws = BESPOKE_SOURCE_DIR "/tests/viewers";
 // What vdb_print and the NanoVDB tools say of an asset is tested with the asset.
 TEST(VdbView, ShowsAMap) {
   for (const char* program : {"vdb_view", "xvfb-run", "script"})
-    if (run_program({"which", program}).exit_code != 0) GTEST_SKIP() << program << " is not installed";
+    if (!is_installed(program)) GTEST_SKIP() << program << " is not installed";
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
   const ProgramResult run =
@@ -26,7 +26,7 @@ TEST(VdbView, ShowsAMap) {
 }
 
 TEST(Blender, LawsOfTheAddOnHold) {
-  if (run_program({"blender", "--version"}).exit_code != 0) GTEST_SKIP() << "blender is not installed";
+  if (!is_installed("blender")) GTEST_SKIP() << "blender is not installed";
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
   const std::string directory = std::filesystem::path(pair.file("map.vdb")).parent_path();
@@ -41,8 +41,7 @@ TEST(Blender, LawsOfTheAddOnHold) {
 class ParaView : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (run_program({"pvbatch", "--version"}).exit_code != 0)
-      GTEST_SKIP() << "pvbatch (paraview) is not installed";
+    if (!is_installed("pvbatch")) GTEST_SKIP() << "pvbatch (paraview) is not installed";
     if (run_program({"/usr/bin/python3", "-c", "import numpy, paraview, pyopenvdb"}).exit_code != 0)
       GTEST_SKIP() << "ParaView's Python lacks pyopenvdb, NumPy or paraview itself (python3-paraview)";
     ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
@@ -82,7 +81,7 @@ BespokeMap(FileName=sys.argv[2]).UpdatePipeline()
 }
 
 TEST_F(ParaView, DrawsThePictureOfTheManualAndItsStateLoads) {
-  if (run_program({"which", "xvfb-run"}).exit_code != 0) GTEST_SKIP() << "xvfb-run (xvfb) is not installed";
+  if (!is_installed("xvfb-run")) GTEST_SKIP() << "xvfb-run (xvfb) is not installed";
   const std::vector<std::string> display{"xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset",
                                          "pvbatch"};
   std::vector<std::string> draw = display;
