@@ -44,6 +44,12 @@ TEST(JudgePlacement, SeesThatHalfOfTheTargetIsLeftOut) {
   EXPECT_GT(figures.distortion, 0.1);
 }
 
+TEST(PlacementFigures, PreferLessDistortionAmongThoseThatMeetTheTarget) {
+  const PlacementFigures calm{1.01e-4, 0.10, 1}, crumpled{1.00e-4, 0.11, 1}, aside{2e-3, 0.09, 0.95};
+  EXPECT_LT(calm.misfit(), crumpled.misfit());
+  EXPECT_LT(crumpled.misfit(), aside.misfit());
+}
+
 TEST(JudgePlacement, RejectsAnotherNumberOfVertices) {
   EXPECT_THROW(judge_placement(shapes::cube(), Points::Zero(3, 2), shapes::cube()), InvalidInput);
 }

@@ -5,51 +5,25 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/shapes.h"
+#include "support/bent_tube.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double elbow = 2, bend_degrees = 110;
+using shapes::elbow;
 
-/// A tube of radius 0.2 along x from 0 to 4, open at both ends.
-TriangleMesh tube() {
-  constexpr int around = 12, along = 80;
-  TriangleMesh mesh;
-  mesh.vertices.resize(3, around * (along + 1));
-  mesh.faces.resize(3, 2 * around * along);
-  for (int ring = 0; ring <= along; ++ring)
-    for (int k = 0; k < around; ++k) {
-      const double angle = 2 * std::numbers::pi * k / around;
-      mesh.vertices.col(ring * around + k) << 4.0 * ring / along, 0.2 * std::cos(angle),
-          0.2 * std::sin(angle);
-    }
-  for (int ring = 0; ring < along; ++ring)
-    for (int k = 0; k < around; ++k) {
-      const int a = ring * around + k, b = ring * around + (k + 1) % around;
-      mesh.faces.col(2 * (ring * around + k)) << a, b, a + around;
-      mesh.faces.col(2 * (ring * around + k) + 1) << b, b + around, a + around;
-    }
-  return mesh;
-}
+constexpr double bend_degrees = 110;
 
-/// What lies beyond the elbow turns about it.
-Vector3 bent(const Vector3& x) {
-  if (x[0] <= elbow) return x;
-  const Vector3 joint(elbow, 0, 0);
-  return joint +
-         Eigen::AngleAxisd(bend_degrees * std::numbers::pi / 180, Vector3::UnitZ()) * Vector3(x - joint);
-}
+Vector3 bent(const Vector3& x) { return shapes::bent(x, bend_degrees); }
 
 struct BentTube {
-  TriangleMesh rest = tube();
-  Points sources, targets;
-  Eigen::VectorXd sigmas;
+  TriangleMesh rest = shapes::tube();
+  Points sources = rest.vertices(Eigen::all, shapes::tube_marks());
+  Points targets = sources;
+  Eigen::VectorXd sigmas = Eigen::VectorXd::Zero(8);
 
-  BentTube() : sources(3, 8), targets(3, 8), sigmas(Eigen::VectorXd::Zero(8)) {
-    const int rings[] = {0, 25, 55, 80};
-    for (int k = 0; k < 8; ++k) sources.col(k) = rest.vertices.col(rings[k / 2] * 12 + 6 * (k % 2));
-    for (int k = 0; k < 8; ++k) targets.col(k) = bent(sources.col(k));
+  BentTube() {
+    for (auto&& x : targets.colwise()) x = bent(x);
   }
   AnchorPose pose() const {
     return pose_by_anchors({rest, sources, targets, sigmas, diagonal(rest.vertices)});

@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "support/bent_tube.h"
 #include "support/fitting_scene.h"
 #include "support/potato.h"
 #include "support/random_points.h"
@@ -74,6 +75,27 @@ TEST(FitSurfaceDeformationGraph, FollowsASmoothBendWithoutFlipsAndMeetsExactAnch
   EXPECT_LE(fit.summary.after.p95, 0.0002 * diagonal(scene.source.vertices));
   EXPECT_EQ(fit.summary.unmatched_vertices, 0u);
   for (const double confidence : fit.confidence) EXPECT_GT(confidence, 0.5);
+}
+
+TEST(FitSurfaceDeformationGraph, ALimbThatKeepsItsShapeGoesWhereItsAnchorsBendIt) {
+  const auto fit_bent = [](double growth) {
+    Scene scene{shapes::tube(), shapes::tube()};
+    scene.anchor_sources = scene.source.vertices(Eigen::all, shapes::tube_marks());
+    scene.anchor_targets = scene.anchor_sources;
+    scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
+    for (Points* points : {&scene.target.vertices, &scene.anchor_targets})
+      for (auto&& x : points->colwise()) {
+        x.tail<2>() *= 1 + growth * x[0];
+        x = shapes::bent(x, 35);
+      }
+    return scene.fit().summary;
+  };
+  const SurfaceFitSummary same = fit_bent(0);
+  EXPECT_TRUE(same.posed_by_anchors);
+  EXPECT_GT(same.rigidity, 1);
+  const SurfaceFitSummary other = fit_bent(0.2);
+  EXPECT_FALSE(other.posed_by_anchors);
+  EXPECT_EQ(other.rigidity, 1);
 }
 
 TEST(FitSurfaceDeformationGraph, AccuraciesOfZeroChangeNoBit) {

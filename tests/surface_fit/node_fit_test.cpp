@@ -11,6 +11,14 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+NodeFit fit_nodes(const NodeFitInput& input) {
+  const NodeFitSettings settings;
+  const Progress progress;
+  NodeFitting fitting(input, settings, progress);
+  fitting.fit_coarse();
+  return fitting.fit_fine();
+}
+
 TEST(FitNodes, FollowsASmoothBendOfAFeaturedSurface) {
   TriangleMesh source = shapes::icosphere(4);
   for (auto&& x : source.vertices.colwise()) x *= 1 + 0.2 * std::sin(4 * x[0]) * std::cos(3 * x[2]);
@@ -24,10 +32,37 @@ TEST(FitNodes, FollowsASmoothBendOfAFeaturedSurface) {
   }
   const TargetSurface surface(target);
   const Eigen::VectorXd weights = Eigen::VectorXd::Constant(6, infinity);
-  const NodeFit fit =
-      fit_nodes({source, surface, anchors, anchor_targets, weights, diagonal(source.vertices)}, {}, {});
+  const NodeFit fit = fit_nodes(
+      {source, source.vertices, surface, anchors, anchor_targets, weights, diagonal(source.vertices)});
   EXPECT_LT((fit.vertices - target.vertices).colwise().norm().mean(), 0.01);
   EXPECT_LT((fit.anchor_sources - anchor_targets).colwise().norm().maxCoeff(), 0.01);
+}
+
+TEST(FitNodes, TellsBodiesThatKeepTheirShapeFromOthers) {
+  TriangleMesh source = shapes::icosphere(4);
+  for (auto&& x : source.vertices.colwise()) x *= 1 + 0.2 * std::sin(4 * x[0]) * std::cos(3 * x[2]);
+  const std::vector<int> marked{0, 7, 20, 33, 60, 90};
+  const Points anchors = source.vertices(Eigen::all, marked);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(6, infinity);
+  const auto rigidity = [&](const auto& change) {
+    TriangleMesh target = source;
+    for (auto&& x : target.vertices.colwise()) x = change(Vector3(x));
+    const Points goals = target.vertices(Eigen::all, marked);
+    const TargetSurface surface(target);
+    return fit_nodes({source, source.vertices, surface, anchors, goals, weights, diagonal(source.vertices)})
+        .rigidity;
+  };
+  const auto twist = [](double radians_per_length) {
+    return [=](const Vector3& x) {
+      return Vector3(Eigen::AngleAxisd(radians_per_length * x[0], Vector3::UnitX()) * x);
+    };
+  };
+  const NodeFitSettings settings;
+  EXPECT_EQ(rigidity([](const Vector3& x) { return x; }), settings.shape.most_rigid);
+  const double little = rigidity(twist(0.05)), more = rigidity(twist(0.15));
+  EXPECT_GT(little, more);
+  EXPECT_GT(more, 1);
+  EXPECT_EQ(rigidity([](const Vector3& x) { return Vector3(x[0], x[1] * (1.3 + 0.3 * x[0]), x[2]); }), 1);
 }
 
 TEST(FitNodes, WeighsSoftAnchorsLess) {
@@ -38,9 +73,9 @@ TEST(FitNodes, WeighsSoftAnchorsLess) {
   targets.col(0) *= 1.3;
   double last = 0;
   for (const double weight : {0.01, 1.0, 100.0, infinity}) {
-    const NodeFit fit = fit_nodes(
-        {sphere, surface, anchors, targets, Eigen::VectorXd::Constant(4, weight), diagonal(sphere.vertices)},
-        {}, {});
+    const Eigen::VectorXd weights = Eigen::VectorXd::Constant(4, weight);
+    const NodeFit fit =
+        fit_nodes({sphere, sphere.vertices, surface, anchors, targets, weights, diagonal(sphere.vertices)});
     const double pulled = fit.anchor_sources.col(0).norm() - 1;
     EXPECT_GT(pulled, last);
     last = pulled;

@@ -14,7 +14,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class NodeSystemTest : public testing::Test {
  protected:
   NodeSystem system(const std::vector<NodeAnchor>& anchors) const {
-    return {{sphere_, vertex_areas(sphere_).sum(), diagonal(sphere_.vertices)},
+    return {{sphere_, sphere_.vertices, vertex_areas(sphere_).sum(), diagonal(sphere_.vertices)},
             make_deformation_nodes(sphere_, 0.3),
             anchors,
             settings_};
@@ -67,6 +67,51 @@ TEST_F(NodeSystemTest, BendsLessTheMoreItSmooths) {
     last = reached;
   }
   EXPECT_LE(last, 0.2 + 1e-9);
+}
+
+TEST_F(NodeSystemTest, ASimilarityIsNextToNoStrainAndAStretchAlongOneAxisIs) {
+  NodeSystem nodes = system({});
+  EXPECT_NEAR(nodes.median_strain(), 0, 1e-12);
+  const auto strain = [&](const Matrix3& change) {
+    nodes.start_from((change * sphere_.vertices).colwise() + Vector3(4, 5, 6));
+    return nodes.median_strain();
+  };
+  const Matrix3 turn = Eigen::AngleAxisd(0.1, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  double last = 3 * strain(1.1 * turn);
+  for (const double factor : {1.1, 1.3, 1.7}) {
+    const double stretched = strain(Vector3(factor, 1, 1).asDiagonal());
+    EXPECT_GT(stretched, last) << factor;
+    last = stretched;
+  }
+}
+
+TEST_F(NodeSystemTest, StrainsLessTheMoreRigidItIs) {
+  const std::vector<NodeAnchor> anchors{anchor(0, Vector3(0.3, 0, 0)), anchor(1, Vector3::Zero()),
+                                        anchor(2, Vector3(0, 0.2, 0)), anchor(3, Vector3::Zero())};
+  double last = std::numeric_limits<double>::infinity();
+  for (const double rigidity : {1.0, 3.0, 10.0}) {
+    NodeSystem nodes = system(anchors);
+    for (int iteration = 0; iteration < 5; ++iteration)
+      nodes.solve({sphere_.vertices, {}, {}, 1, 1, {}, rigidity});
+    EXPECT_LT(nodes.median_strain(), last) << rigidity;
+    last = nodes.median_strain();
+  }
+}
+
+TEST_F(NodeSystemTest, KeepsTheShapeNotThePoseThatItStartsFrom) {
+  // Two copies of a squeezed sphere: nothing pulls, and the one that knows its shape goes back to it.
+  TriangleMesh squeezed = sphere_;
+  squeezed.vertices.row(0) *= 0.8;
+  const auto extent_after = [&](const Points& shape) {
+    NodeSystem nodes({squeezed, shape, vertex_areas(squeezed).sum(), diagonal(squeezed.vertices)},
+                     make_deformation_nodes(squeezed, 0.3), {}, settings_);
+    Points moved;
+    for (int iteration = 0; iteration < 50; ++iteration)
+      moved = nodes.solve({squeezed.vertices, {}, {}, 0.1, 1, {}, 10});
+    return moved.row(0).maxCoeff() - moved.row(0).minCoeff();
+  };
+  EXPECT_NEAR(extent_after(squeezed.vertices), 1.6, 0.01);
+  EXPECT_GT(extent_after(sphere_.vertices), 1.8);
 }
 
 }  // namespace

@@ -11,8 +11,13 @@ struct PlacementFigures {
   double distortion = 0;  ///< root mean square deviation from local similarities over some patches, fraction
   double covered = 0;     ///< share of the target's area within 1 % of its diagonal of the source
 
-  /// Lower is better: as in an alignment's misfit, a likelihood whose variances are not known.
-  double misfit() const { return distance * distortion; }
+  /// Lower is better: as in an alignment's misfit, a likelihood whose variances are not known. Surfaces that
+  /// meet are equally near, whatever is left between their facets, so that of two right placements the one
+  /// that distorts less is taken.
+  double misfit() const { return (distance + settled) * distortion; }
+
+  /// Fraction of the target's diagonal.
+  static constexpr double settled = 1e-3;
 };
 
 /// `placed`: 3×n, where the source's vertices lie on the target, mesh units. Throws InvalidInput for unusable

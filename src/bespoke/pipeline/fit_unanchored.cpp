@@ -130,6 +130,7 @@ UnanchoredFit fit_unanchored(const TriangleMesh& source, const TriangleMesh& tar
   const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
   fit.start = source_from_target * alignment.deformed;
   SurfaceFitOptions rules = options;
+  rules.tell_rigidity = false;
   if (rules.boundaries == BoundaryRule::automatic)
     rules.boundaries = alignment.summary.same_boundaries ? BoundaryRule::matched : BoundaryRule::free;
 

@@ -92,6 +92,11 @@ std::string to_string(const SurfaceFitSummary& summary) {
                   summary.anchor_turn_degrees);
     line += turn;
   }
+  if (summary.posed_by_anchors || summary.rigidity > 1) {
+    char rigidity[80];
+    std::snprintf(rigidity, sizeof rigidity, ", rigidity %.2g", summary.rigidity);
+    line += rigidity;
+  }
   if (summary.matched_boundaries > 0)
     line += ", open boundaries taken for the same cut: " + std::to_string(summary.matched_boundaries);
   if (!summary.cavity_vertices.empty())

@@ -56,6 +56,9 @@ struct SurfaceFitOptions {
   /// > 1, deformation-graph only: where a length on the surface would grow or shrink by a larger factor
   /// against the coarse deformation, the vertices follow their neighbours instead of being drawn.
   double max_stretch = 10;
+  /// deformation-graph only: little strain says that the models are nearly one (SurfaceFitSummary::rigidity).
+  /// Not so where no anchor holds the surface, for it slides to where it strains least.
+  bool tell_rigidity = true;
 };
 
 enum class StopReason {
@@ -81,7 +84,9 @@ struct SurfaceFitSummary {
   /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn.
   double anchor_turn_degrees = 0;
   bool posed_by_anchors = false;  ///< the anchors alone bent the source before anything else
-  int matched_boundaries = 0;     ///< open boundaries of the source taken for the target's cut
+  /// How much more than other pairs the models keep their shape, 1 to 10; similarities of parts count by it.
+  double rigidity = 1;
+  int matched_boundaries = 0;  ///< open boundaries of the source taken for the target's cut
   /// By index: in cavities that the target lacks (detail/cavities.h), so they follow their neighbours.
   std::vector<int> cavity_vertices;
   /// By index: without counterpart since a patch excludes it, or what lies nearest to it on the target.

@@ -186,31 +186,47 @@ void measure_distances(const SurfaceFitInput& input, const TargetSurface& target
   fit.summary.after = distances(target, fit.vertices(Eigen::all, measured));
 }
 
-/// Bends the surface by the anchors alone, and carries the anchors along, where that turns a part far.
-void bend_by_anchors(Scene& scene, Points& anchors, const PoseSettings& settings,
-                     SurfaceFitSummary& summary) {
+/// The surface as the anchors alone bend it; its anchors are carried along.
+AnchorPose anchor_pose(const Scene& scene, const Points& anchors, const PoseSettings& settings) {
   const Eigen::VectorXd sigmas =
       (settings.sigma_of_weight_one * scene.diagonal * scene.anchors.weights.cwiseSqrt().cwiseInverse())
           .cwiseMax(scene.anchors.sigmas);
-  const AnchorPose pose =
-      pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
-  summary.anchor_turn_degrees = pose.rotation_spread * 180 / std::numbers::pi;
-  summary.posed_by_anchors =
-      summary.anchor_turn_degrees > settings.least_turn && pose.strain <= settings.most_strain;
-  if (!summary.posed_by_anchors) return;
-  scene.surface.vertices = pose.vertices;
-  anchors = pose.anchor_sources;
+  return pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
+}
+
+/// The nodes' fit, from the aligned source or from one that the anchors have bent: that where they turn a
+/// part far, or some way and the models keep their shape.
+NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOptions& options,
+                  const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
+                  const Progress& progress) {
+  const AnchorPose pose = anchor_pose(scene, anchors, settings.pose);
+  const double degrees = pose.rotation_spread * 180 / std::numbers::pi;
+  const bool may_bend = pose.strain <= settings.pose.most_strain;
+  summary.anchor_turn_degrees = degrees;
+  summary.posed_by_anchors = may_bend && degrees > settings.pose.least_turn;
+  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
+    return NodeFitting(
+        {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
+         scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
+        settings.nodes, progress);
+  };
+  if (!summary.posed_by_anchors) {
+    NodeFitting straight = fitting(scene.surface, anchors);
+    const double rigidity = straight.fit_coarse();
+    summary.posed_by_anchors = may_bend && degrees > settings.pose.least_rigid_turn && rigidity > 1;
+    if (!summary.posed_by_anchors) return straight.fit_fine();
+  }
+  const TriangleMesh bent{pose.vertices, scene.surface.faces};
+  NodeFitting posed = fitting(bent, pose.anchor_sources);
+  posed.fit_coarse();
+  return posed.fit_fine();
 }
 
 /// Pose, nodes, layers of space, mending. Returns what the summary says of them.
-SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitOptions& options,
+SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
                          const DeformationGraphSettings& settings, const Progress& progress) {
   SurfaceFitSummary summary;
-  bend_by_anchors(scene, aligned_anchors, settings.pose, summary);
-  const NodeFit nodes =
-      fit_nodes({scene.surface, scene.target, aligned_anchors, scene.anchors.targets, scene.anchors.weights,
-                 scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
-                settings.nodes, progress);
+  const NodeFit nodes = fit_nodes(scene, aligned_anchors, options, settings, summary, progress);
   scene.surface.vertices = nodes.vertices;
   scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
@@ -227,6 +243,7 @@ SurfaceFitSummary deform(Scene& scene, Points aligned_anchors, const SurfaceFitO
   summary.mended_vertices = mended.mended_vertices;
   summary.stretched_vertices = std::move(mended.stretched_vertices);
   summary.iterations = nodes.iterations + details.layers;
+  summary.rigidity = nodes.rigidity;
   summary.matched_boundaries = nodes.matched_boundaries;
   summary.stop_reason = details.last_step <= options.epsilon * scene.diagonal ? StopReason::converged
                                                                               : StopReason::iteration_cap;
@@ -254,7 +271,8 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   if (!(options.max_stretch > 1))
     throw InvalidInput("a largest stretch of " + std::to_string(options.max_stretch) +
                        "; it must be above 1");
-  const DeformationGraphSettings settings;
+  DeformationGraphSettings settings;
+  if (!options.tell_rigidity) settings.nodes.shape.most_rigid = 1;
   PatchedMesh source = refined_source(input, settings.edges_per_area);
   const PatchedMesh attracting = without_excluded(input.target, input.target_patches);
   const TargetSurface target(attracting.mesh, attracting.patches);

@@ -249,12 +249,12 @@ DeformationNodes make_deformation_nodes(const TriangleMesh& mesh, double spacing
   const Sampling sampling = sample(mesh, spacing, settings);
   DeformationNodes nodes;
   nodes.spacing = spacing;
+  nodes.vertices = sampling.node_vertices;
   const auto count = static_cast<Eigen::Index>(sampling.node_vertices.size());
-  nodes.rest.resize(3, count);
+  nodes.rest = mesh.vertices(Eigen::all, sampling.node_vertices);
   nodes.neighbours.resize(static_cast<std::size_t>(count));
   for (Eigen::Index k = 0; k < count; ++k) {
     const int vertex = sampling.node_vertices[static_cast<std::size_t>(k)];
-    nodes.rest.col(k) = mesh.vertices.col(vertex);
     for (const auto& [distance, other] : sampling.near[static_cast<std::size_t>(vertex)])
       if (other != k && distance < settings.neighbour_reach * spacing)
         link(nodes.neighbours, static_cast<int>(k), other);

@@ -31,6 +31,7 @@ struct DeformationNodes {
   static constexpr int per_vertex = NodeSettings::per_vertex;
 
   double spacing = 0;                        ///< mesh units, along the surface
+  std::vector<int> vertices;                 ///< k: where each node stands
   Points rest;                               ///< 3×k, mesh units
   Eigen::VectorXd areas;                     ///< k: area of the vertices nearest to each node; sum 1
   std::vector<std::vector<int>> neighbours;  ///< k; linked across components as well

@@ -1,15 +1,14 @@
 #include "bespoke/surface_fit/detail/node_fit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "bespoke/statistics.h"
-#include "bespoke/surface_fit/detail/anchor_limits.h"
-#include "bespoke/surface_fit/detail/boundary_match.h"
 #include "bespoke/surface_fit/detail/cavities.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
-#include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/plane_pairs.h"
 
 namespace bespoke {
@@ -56,62 +55,91 @@ double median_distance(const std::vector<PlanePair>& planes, const Points& verti
   return summarize(std::move(distances)).median;
 }
 
-/// Limits for the next solve; empty where every anchor is exact or weighted.
-std::vector<double> next_limits(const NodeFitInput& input, const std::vector<NodeAnchor>& anchors,
-                                const NodeGoals& goals, AnchorLimits& limits) {
-  if (input.anchor_sigmas.size() == 0 || !(input.anchor_sigmas.maxCoeff() > 0)) return {};
-  const Eigen::VectorXd residuals =
-      (carried(input, anchors, goals.vertices) - input.anchor_targets).colwise().norm();
-  return limits.next({residuals, median_distance(goals.planes, goals.vertices), goals.smoothing});
+/// Of the rest surface, without what is excluded.
+Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& input,
+                               const NodeFitSettings& settings) {
+  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
+  for (Eigen::Index i = 0; i < areas.size(); ++i)
+    if (rest.is_excluded(i)) areas[i] = 0;
+  return areas;
 }
 
 }  // namespace
 
-NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress) {
-  const TargetSurface rest(input.rest, input.patches);
-  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
-  const Eigen::VectorXd target_areas = informative_areas(input.target, input.diagonal, settings.areas);
-  const std::vector<NodeAnchor> anchors = node_anchors(input, rest);
-  BoundaryMatcher boundaries({rest, input.anchor_sources, input.target, input.boundaries},
-                             settings.boundaries);
-  const NodeSurface node_surface{input.rest, areas.sum(), input.diagonal};
-  for (Eigen::Index i = 0; i < areas.size(); ++i)
-    if (rest.is_excluded(i)) areas[i] = 0;
-  AnchorLimits limits(input.anchor_sigmas, node_surface.area, input.diagonal, settings.anchors);
+NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress)
+    : input_(input),
+      settings_(settings),
+      progress_(progress),
+      rest_(input.rest, input.patches),
+      areas_(speaking_areas(rest_, input, settings)),
+      target_areas_(informative_areas(input.target, input.diagonal, settings.areas)),
+      anchors_(node_anchors(input, rest_)),
+      boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
+      surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
+      limits_(input.anchor_sigmas, surface_.area, input.diagonal, settings.anchors) {
+  fit_.vertices = input.rest.vertices;
+}
 
-  NodeFit fit;
-  fit.vertices = input.rest.vertices;
-  for (const NodeLevel& level : settings.levels) {
-    if (&level == &settings.levels[1]) {
-      fit.coarse_vertices = fit.vertices;
-      fit.hidden = vertices_in_lacking_cavities(rest.moved(fit.vertices), input.target, input.diagonal,
-                                                settings.cavities);
-      for (std::size_t i = 0; i < fit.hidden.size(); ++i)
-        if (fit.hidden[i]) areas[static_cast<Eigen::Index>(i)] = 0;
-    }
-    const double spacing = node_spacing(node_surface.area, level.nodes, settings.nodes);
-    NodeSystem system(node_surface, make_deformation_nodes(input.rest, spacing, settings.nodes), anchors,
-                      settings);
-    system.start_from(fit.vertices);
-    for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit.iterations) {
-      progress.step("surface-fit", static_cast<std::size_t>(fit.iterations),
-                    static_cast<std::size_t>(total_iterations(settings)));
-      std::vector<PlanePair> planes;
-      // Before the anchors are met, closest points mislead.
-      if (fit.iterations > 0 || anchors.empty())
-        planes = find_plane_pairs(
-            {rest.moved(fit.vertices), input.target, areas, target_areas, input.diagonal}, level, settings);
-      if (fit.iterations == settings.boundary_start) boundaries.decide(fit.vertices);
-      const std::vector<BoundaryMatch> cuts = boundaries.match(fit.vertices);
-      NodeGoals goals{fit.vertices, planes, cuts, smoothing_length(settings, fit.iterations, input.diagonal),
-                      settings.anchor_growth * (iteration + 1)};
-      goals.anchor_limits = next_limits(input, anchors, goals, limits);
-      fit.vertices = system.solve(goals);
-    }
+double NodeFitting::fit_coarse() {
+  const NodeLevel& level = settings_.levels.front();
+  const std::unique_ptr<NodeSystem> few = system(level);
+  iterate(*few, level);
+  fit_.coarse_vertices = fit_.vertices;
+  many_ = system(settings_.levels.back());
+  const double strain = many_->median_strain();
+  fit_.rigidity = std::clamp(settings_.shape.usual_strain / strain, 1.0, settings_.shape.most_rigid);
+  return fit_.rigidity;
+}
+
+NodeFit NodeFitting::fit_fine() {
+  fit_.hidden = vertices_in_lacking_cavities(rest_.moved(fit_.vertices), input_.target, input_.diagonal,
+                                             settings_.cavities);
+  for (std::size_t i = 0; i < fit_.hidden.size(); ++i)
+    if (fit_.hidden[i]) areas_[static_cast<Eigen::Index>(i)] = 0;
+  iterate(*many_, settings_.levels.back());
+  fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);
+  fit_.matched_boundaries = boundaries_.matched_boundaries();
+  return std::move(fit_);
+}
+
+std::unique_ptr<NodeSystem> NodeFitting::system(const NodeLevel& level) const {
+  const double spacing = node_spacing(surface_.area, level.nodes, settings_.nodes);
+  auto nodes = std::make_unique<NodeSystem>(
+      surface_, make_deformation_nodes(input_.rest, spacing, settings_.nodes), anchors_, settings_);
+  nodes->start_from(fit_.vertices);
+  return nodes;
+}
+
+void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
+  for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit_.iterations) {
+    progress_.step("surface-fit", static_cast<std::size_t>(fit_.iterations),
+                   static_cast<std::size_t>(total_iterations(settings_)));
+    std::vector<PlanePair> planes;
+    // Before the anchors are met, closest points mislead.
+    if (fit_.iterations > 0 || anchors_.empty())
+      planes = find_plane_pairs(
+          {rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal}, level,
+          settings_);
+    if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
+    const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);
+    NodeGoals goals{fit_.vertices,
+                    planes,
+                    cuts,
+                    smoothing_length(settings_, fit_.iterations, input_.diagonal),
+                    settings_.anchor_growth * (iteration + 1),
+                    {},
+                    fit_.rigidity};
+    goals.anchor_limits = next_limits(goals);
+    fit_.vertices = system.solve(goals);
   }
-  fit.anchor_sources = carried(input, anchors, fit.vertices);
-  fit.matched_boundaries = boundaries.matched_boundaries();
-  return fit;
+}
+
+/// Limits for the next solve; empty where every anchor is exact or weighted.
+std::vector<double> NodeFitting::next_limits(const NodeGoals& goals) {
+  if (input_.anchor_sigmas.size() == 0 || !(input_.anchor_sigmas.maxCoeff() > 0)) return {};
+  const Eigen::VectorXd residuals =
+      (carried(input_, anchors_, goals.vertices) - input_.anchor_targets).colwise().norm();
+  return limits_.next({residuals, median_distance(goals.planes, goals.vertices), goals.smoothing});
 }
 
 }  // namespace bespoke

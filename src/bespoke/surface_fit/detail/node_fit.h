@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "bespoke/progress.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/anchor_limits.h"
+#include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
@@ -11,7 +15,8 @@ namespace bespoke {
 
 /// What the deformation of a surface by nodes works on. Lengths in mesh units.
 struct NodeFitInput {
-  const TriangleMesh& rest;  ///< the source, aligned with the target
+  const TriangleMesh& rest;  ///< the source, aligned with the target, and perhaps bent by its anchors
+  const Points& shape;       ///< 3×n: the same before it was bent, whose shape is kept
   const TargetSurface& target;
   const Points& anchor_sources;  ///< 3×k, aligned like `rest`, on it or near it
   const Points& anchor_targets;  ///< 3×k
@@ -32,6 +37,7 @@ struct NodeFit {
   std::vector<char> hidden;  ///< n: in a cavity that the target lacks (cavities.h), without any pair
   int iterations = 0;
   int matched_boundaries = 0;
+  double rigidity = 1;  ///< g of the pair, as NodeFitting::fit_coarse tells it
 };
 
 /// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
@@ -40,8 +46,36 @@ struct NodeFit {
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
 /// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
 /// from the target that bends least. After the first level vertices in cavities that the target lacks have
-/// no more pairs. Where the target has nothing to offer, the last two extrapolate. Throws
-/// SolverError.
-NodeFit fit_nodes(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
+/// no more pairs, and the similarities count by the pair's rigidity. Where the target has nothing to offer,
+/// the last two extrapolate.
+class NodeFitting {
+ public:
+  /// The input's references, the settings and the progress must outlive it.
+  NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
+
+  /// The first level. Returns the rigidity g ≥ 1 of the pair (NodeGoals), 1 where bodies differ as they
+  /// mostly do. Throws SolverError.
+  double fit_coarse();
+
+  /// The second, after the first. Throws SolverError.
+  NodeFit fit_fine();
+
+ private:
+  std::unique_ptr<NodeSystem> system(const NodeLevel& level) const;
+  void iterate(NodeSystem& system, const NodeLevel& level);
+  std::vector<double> next_limits(const NodeGoals& goals);
+
+  const NodeFitInput input_;
+  const NodeFitSettings& settings_;
+  const Progress& progress_;
+  TargetSurface rest_;
+  Eigen::VectorXd areas_, target_areas_;
+  std::vector<NodeAnchor> anchors_;
+  BoundaryMatcher boundaries_;
+  NodeSurface surface_;
+  AnchorLimits limits_;
+  NodeFit fit_;
+  std::unique_ptr<NodeSystem> many_;  // of the second level, from the end of the first on
+};
 
 }  // namespace bespoke

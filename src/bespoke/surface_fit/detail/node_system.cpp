@@ -30,6 +30,7 @@ NodeSystem::NodeSystem(const NodeSurface& surface, DeformationNodes nodes,
     : surface_(surface),
       settings_(settings),
       nodes_(std::move(nodes)),
+      shape_(surface.shape(Eigen::all, nodes_.vertices)),
       anchors_([&] {
         std::vector<Anchor> combined;
         for (const NodeAnchor& anchor : anchors)
@@ -85,8 +86,9 @@ Points NodeSystem::solve(const NodeGoals& goals) {
   add_planes(goals);
   add_boundary(goals.boundary);
   add_anchors(goals);
-  add_bending(std::pow(goals.smoothing / nodes_.spacing, 4));
-  add_local_similarity(std::pow(settings_.shape_share * goals.smoothing / nodes_.spacing, 2));
+  const double smoothing = goals.smoothing / nodes_.spacing;
+  add_bending(std::pow(smoothing, 4) / std::pow(goals.rigidity, 2));
+  add_local_similarity(std::pow(goals.rigidity * settings_.shape.share * smoothing, 2));
   displacements_ = system_.solve();
   return moved_vertices();
 }
@@ -165,29 +167,42 @@ void NodeSystem::add_bending(double weight) {
   }
 }
 
-/// The least-squares similarity from the node's edges at rest to those now, without its translation.
-Matrix3 NodeSystem::local_similarity(int node) const {
+Vector3 NodeSystem::edge_now(int node, int other) const {
+  return nodes_.rest.col(other) - nodes_.rest.col(node) + displacements_.col(other) -
+         displacements_.col(node);
+}
+
+Vector3 NodeSystem::shape_edge(int node, int other) const { return shape_.col(other) - shape_.col(node); }
+
+NodeSystem::LocalSimilarity NodeSystem::local_similarity(int node) const {
   Matrix3 covariance = Matrix3::Zero();
   double spread = 0;
   for (const int other : nodes_.neighbours[node]) {
-    const Vector3 edge = nodes_.rest.col(other) - nodes_.rest.col(node);
-    const Vector3 now = edge + displacements_.col(other) - displacements_.col(node);
-    covariance += now * edge.transpose();
-    spread += edge.squaredNorm();
+    covariance += edge_now(node, other) * shape_edge(node, other).transpose();
+    spread += shape_edge(node, other).squaredNorm();
   }
-  if (!(spread > 0)) return Matrix3::Zero();
+  if (!(spread > 0)) return {};
   const Matrix3 rotation = nearest_rotation(covariance).rotation;
-  return ((rotation.transpose() * covariance).trace() / spread) * rotation;
+  return {rotation, (rotation.transpose() * covariance).trace() / spread};
 }
 
 void NodeSystem::add_local_similarity(double weight) {
+  std::vector<LocalSimilarity> similarities;
+  std::vector<double> scales;
   for (int node = 0; node < nodes_.size(); ++node) {
-    const Matrix3 similarity = local_similarity(node);
+    similarities.push_back(local_similarity(node));
+    scales.push_back(similarities.back().scale);
+  }
+  const double usual = median(scales);
+  for (int node = 0; node < nodes_.size(); ++node) {
+    const auto& [rotation, found] = similarities[node];
+    const double scale =
+        usual > 0 && found > 0 ? usual * std::pow(found / usual, settings_.shape.scale_freedom) : found;
     const double share = weight * nodes_.areas[node] / double(nodes_.neighbours[node].size());
     const Matrix3 form = share * Matrix3::Identity();
     for (const int other : nodes_.neighbours[node]) {
-      const Vector3 edge = nodes_.rest.col(other) - nodes_.rest.col(node);
-      const Vector3 pull = share * (similarity * edge - edge);
+      const Vector3 rest = nodes_.rest.col(other) - nodes_.rest.col(node);
+      const Vector3 pull = share * (scale * (rotation * shape_edge(node, other)) - rest);
       system_.add(node, node, form);
       system_.add(other, other, form);
       system_.add(std::max(node, other), std::min(node, other), -form);
@@ -195,6 +210,21 @@ void NodeSystem::add_local_similarity(double weight) {
       system_.add_right_side(node, -pull);
     }
   }
+}
+
+double NodeSystem::median_strain() const {
+  std::vector<double> strains;
+  for (int node = 0; node < nodes_.size(); ++node) {
+    const auto [rotation, scale] = local_similarity(node);
+    double misfit = 0, total = 0;
+    for (const int other : nodes_.neighbours[node]) {
+      const Vector3 now = edge_now(node, other);
+      misfit += (now - scale * (rotation * shape_edge(node, other))).squaredNorm();
+      total += now.squaredNorm();
+    }
+    if (total > 0) strains.push_back(std::sqrt(misfit / total));
+  }
+  return strains.empty() ? 0 : median(strains);
 }
 
 }  // namespace bespoke

@@ -25,13 +25,16 @@ struct NodeGoals {
   double exact_anchor_weight = 0;  ///< of all exact anchors together; the surface has 1
   /// k: the most that each anchor of infinite weight may pull (anchor_limits.h); empty: no limit.
   std::vector<double> anchor_limits = {};
+  double rigidity = 1;  ///< g, ≥ 1: how much more than other pairs this one keeps its shape
 };
 
 /// The surface that the nodes deform.
 struct NodeSurface {
   const TriangleMesh& rest;  ///< must outlive the system
-  double area = 0;           ///< mesh units squared
-  double diagonal = 0;       ///< mesh units
+  /// 3×n, aligned like `rest`: the shape to keep, which is that of `rest` unless a pose has bent it.
+  const Points& shape;
+  double area = 0;      ///< mesh units squared
+  double diagonal = 0;  ///< mesh units
 };
 
 /// The normal equations of the displacements of the nodes of one level. Not thread-safe.
@@ -48,10 +51,16 @@ class NodeSystem {
   /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
   ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / scale)²)     robust point to plane
   ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
-  ///   + ℓ⁴ Σ_nodes (second differences along the surface as it lies now)²
-  ///   + (share ℓ)² Σ_nodes (deviation of the edges from those turned and scaled as around the node now)².
+  ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)²
+  ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, turned and scaled as around
+  ///   the
+  ///     node now; the scale half-way to the median one).
   /// Returns where the vertices go, 3×n. Throws SolverError.
   Points solve(const NodeGoals& goals);
+
+  /// Half of the nodes have edges that differ less from the turned and scaled ones of the shape: root mean
+  /// square over the node, of the edges' length.
+  double median_strain() const;
 
  private:
   /// An anchor's foot as a combination of nodes.
@@ -59,6 +68,11 @@ class NodeSystem {
     std::vector<NodeWeight> foot;
     Vector3 displacement;
     double weight;
+  };
+  /// The least-squares similarity about a node, without its translation.
+  struct LocalSimilarity {
+    Matrix3 rotation = Matrix3::Zero();
+    double scale = 0;
   };
 
   std::vector<std::vector<int>> adjacency() const;
@@ -69,12 +83,15 @@ class NodeSystem {
   void add_anchors(const NodeGoals& goals);
   void add_bending(double weight);
   void add_local_similarity(double weight);
-  Matrix3 local_similarity(int node) const;
+  Vector3 edge_now(int node, int other) const;
+  Vector3 shape_edge(int node, int other) const;
+  LocalSimilarity local_similarity(int node) const;
   Points moved_vertices() const;
 
   NodeSurface surface_;
   const NodeFitSettings& settings_;
   DeformationNodes nodes_;
+  Points shape_;  // 3×k, of the nodes
   std::vector<Anchor> anchors_;
   BlockSystem system_;
   Points displacements_;
