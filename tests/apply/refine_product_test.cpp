@@ -71,7 +71,7 @@ TEST(RefineProduct, MeetsTheChordErrorAndLeavesNoGaps) {
     const RefinedProduct refined = refine_product(fan(), bend, length);
     EXPECT_LE(refined.chord.length, length);
     EXPECT_GT(refined.chord.length, length / 5);  // a round divides it by four
-    EXPECT_EQ(refined.product.vertices.cols(), 5 + static_cast<Eigen::Index>(refined.splits));
+    EXPECT_EQ(refined.product.vertices.cols(), 5 + static_cast<Eigen::Index>(refined.splits.vertices.size()));
     EXPECT_EQ(refined.product.vertices.leftCols(5), fan().vertices);
     EXPECT_NEAR(area(refined.product), 9, 1e-12);
     EXPECT_NEAR(boundary(refined.product), 12, 1e-12);
@@ -140,7 +140,7 @@ TEST(RefineProduct, GivesPolygonsFurtherCorners) {
 TEST(RefineProduct, LeavesWhatStaysStraight) {
   const RefinedProduct refined = refine_product(
       fan(), [](const Points& x) -> Points { return 2 * x; }, 1e-9);
-  EXPECT_EQ(refined.splits, 0u);
+  EXPECT_TRUE(refined.splits.vertices.empty());
   EXPECT_EQ(refined.product.corners, fan().corners);
 }
 

@@ -94,6 +94,34 @@ def test_carries_files_as_points(pair, around, tmp_path):
         np.testing.assert_allclose([[float(x) for x in row[:3]] for row in rows], pair.map(around, t), atol=1e-6)
 
 
+def test_splits_edges_and_keeps_what_the_file_says(pair, around, tmp_path):
+    product, output = tmp_path / "product.obj", tmp_path / "split.obj"
+    corners = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in around[:3].tolist())
+    product.write_text(corners + "g sleeve\nusemtl wool\nf 1 2 3\n")
+    report = pair.map.apply(product, output, refine="0.01%").json["products"][0]
+    lines = output.read_text().splitlines()
+    splits = report["chord_error"]["splits"]
+    assert splits > 0
+    assert sum(line.startswith("v ") for line in lines) == 3 + splits
+    assert lines[3:5] == ["g sleeve", "usemtl wool"]
+    assert report["chord_error"]["length"] <= 1e-4 * np.linalg.norm(np.ptp(pair.source.vertices, axis=0))
+    with pytest.raises(bespoke.InvalidInput, match="keep their shape"):
+        pair.map.apply(product, output, refine="0.1%", rigid=["sleeve"])
+
+
+def test_parts_keep_their_shape(pair, around, tmp_path):
+    product, output = tmp_path / "product.obj", tmp_path / "rigid.obj"
+    corners = around[:4]
+    product.write_text("".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in corners.tolist()) + "g lens\nf 1 2 3 4\n")
+
+    def edges(points):
+        return np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1)
+
+    pair.map.apply(product, output, rigid=["lens"])
+    moved = np.array([line.split()[1:] for line in output.read_text().splitlines()[:4]], dtype=float)
+    np.testing.assert_allclose(edges(moved), edges(corners), atol=1e-5)
+
+
 def test_measures_the_pair_and_no_other(pair):
     quality = pair.map.measure(pair.source, pair.target)
     assert quality.flipped_faces == 0

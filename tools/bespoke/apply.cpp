@@ -62,15 +62,21 @@ bool keeps_kind(const fs::path& product, const fs::path& output) {
   return lower_ending(product) == lower_ending(output);
 }
 
+/// Whether the file is carried as it is, with its edges split where that is asked for.
+bool is_carried(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
+  return keeps_kind(product, output) && (!arguments.refine || can_split_product(product));
+}
+
 void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
-  if (keeps_kind(product, output) && !arguments.refine) {
+  const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
+  if (is_carried(arguments, product, output) && !(has_parts && arguments.refine)) {
     if (!has_product_ending(output))
       throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
     return;
   }
   if (has_product_ending(output) && !can_write_product(output))
     throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
-  if (!arguments.rigid.empty() || !arguments.similar.empty())
+  if (has_parts)
     throw CLI::ValidationError("apply",
                                "parts that keep their shape are known only in a file that keeps its kind and "
                                "its edges");
@@ -141,20 +147,19 @@ MotionOptions motion_options(const ApplyArguments& arguments, const OpenedMap& m
   return {path, order};
 }
 
-/// Carries the file as it is, or, to become another kind of file or to be refined, its faces.
+/// Carries the file as it is or, to become another kind of file, its faces.
 ProductSummary apply_one(const ApplyArguments& arguments, const std::string& name,
                          const std::vector<fs::path>& outputs, const OpenedMap& map,
                          const Progress& progress) {
   const MotionOptions motion = motion_options(arguments, map);
   const bool measure_chords = !arguments.report.empty() && can_read_product(name);
-  if (arguments.refine || !keeps_kind(name, outputs.front())) {
-    std::optional<double> refine;
-    if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);
+  std::optional<double> refine;
+  if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);
+  if (!is_carried(arguments, name, outputs.front()))
     return convert_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
                            {motion, refine, measure_chords});
-  }
   return apply_to_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
-                          {motion, parts(arguments), measure_chords, progress});
+                          {motion, parts(arguments), refine, measure_chords, progress});
 }
 
 std::vector<JobFigure> figures(const std::vector<AppliedProduct>& applied) {
@@ -236,8 +241,8 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
   add_length_option(
       apply, "--refine", arguments.refine,
       "Split straight edges where the map bends them until the middle of an edge's image is no farther "
-      "than this from the image of its middle; keeps faces and texture coordinates only (default: none "
-      "is split)");
+      "than this from the image of its middle; an OBJ file keeps all that it says, others their faces "
+      "(default: none is split)");
 }
 
 /// The arguments, with products in their place: where the map is found, the first stands in that of the map.

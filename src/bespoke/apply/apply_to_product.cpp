@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "bespoke/apply/motion_jacobian.h"
+#include "bespoke/apply/refine_product.h"
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/stopwatch.h"
@@ -31,6 +32,14 @@ class Written {
   std::vector<std::filesystem::path> paths_;
 };
 
+RefinedProduct refined(const std::filesystem::path& input, const ImageOfPoints& image, double length) {
+  try {
+    return refine_product(read_product(input), image, length);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(input.string() + ": " + error.what());
+  }
+}
+
 void measure_chords(const std::filesystem::path& input, const ImageOfPoints& image, ProductSummary& summary) {
   try {
     summary.chord = worst_chord(read_product(input), image);
@@ -48,8 +57,18 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
   if (outputs.size() != times.size() || times.empty())
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
                        " times; the numbers must be equal, and not zero");
+  if (options.refine && !options.parts.empty())
+    throw InvalidInput("parts that keep their shape are known only in a product that keeps its edges");
   const Stopwatch watch;
   ProductSummary summary;
+  const ImageOfPoints last_image = image_at(elastic, target_from_source, times.back(), options.motion);
+  std::optional<FaceSplits> splits;
+  if (options.refine) {
+    RefinedProduct found = refined(input, last_image, *options.refine);
+    summary.chord = found.chord;
+    summary.splits = found.splits.vertices.size();
+    if (summary.splits > 0) splits = std::move(found.splits);
+  }
   Written written;
   for (std::size_t begin = 0; begin < times.size(); begin += frames_at_a_time) {
     const std::size_t end = std::min(times.size(), begin + frames_at_a_time);
@@ -71,7 +90,8 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
       return motion_jacobian(elastic, target_from_source, x, own_times, options.motion);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
-    CarrySummary carried = carry_product(input, own_outputs, point_motion, {options.parts, options.progress});
+    CarrySummary carried = carry_product(input, own_outputs, point_motion,
+                                         {options.parts, options.progress, splits ? &*splits : nullptr});
     written.add(own_outputs);
     written.add(carried.companions);
     summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
@@ -80,8 +100,7 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     summary.points.points = points;
     summary.points.in_band = in_band;
   }
-  if (options.measure_chords)
-    measure_chords(input, image_at(elastic, target_from_source, times.back(), options.motion), summary);
+  if (options.measure_chords && !options.refine) measure_chords(input, last_image, summary);
   written.keep();
   summary.points.affine_only = summary.points.points - summary.points.in_band;
   summary.points.seconds = watch.seconds();

@@ -24,6 +24,9 @@ struct ProductSummary {
 struct ApplyToProductOptions {
   MotionOptions motion;
   std::vector<RigidPart> parts;  ///< that keep their shape
+  /// Split edges until the chord error of the last time is at most this, mesh units (refine_product), where
+  /// the file's kind can (can_split_product). The summary then has the chord error.
+  std::optional<double> refine;
   /// The summary has the chord error of the last time. The faces are read for it once more, by read_product;
   /// a warning says where they cannot be.
   bool measure_chords = false;

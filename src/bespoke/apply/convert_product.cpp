@@ -26,7 +26,7 @@ ProductSummary convert_product(const std::filesystem::path& input,
       RefinedProduct refined = refine_product(std::move(product), image, *options.refine);
       product = std::move(refined.product);
       summary.chord = refined.chord;
-      summary.splits = refined.splits;
+      summary.splits = refined.splits.vertices.size();
     } else if (options.measure_chords) {
       summary.chord = worst_chord(product, image);
     }

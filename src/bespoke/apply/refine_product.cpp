@@ -1,7 +1,7 @@
 #include "bespoke/apply/refine_product.h"
 
 #include <algorithm>
-#include <array>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <string>
@@ -18,10 +18,9 @@ namespace {
 // A round divides a chord error by about four.
 constexpr int most_rounds = 20;
 
-/// A corner of a polygon.
+/// A corner of a polygon: its vertex, and its number as FaceSplits counts them.
 struct Corner {
-  int vertex = 0;
-  Eigen::Vector2d texture = Eigen::Vector2d::Zero();
+  int vertex = 0, number = 0;
 };
 using Polygon = std::vector<Corner>;
 
@@ -32,13 +31,13 @@ class Middles {
 
   void add(int a, int b) { edges_.emplace_back(a, b); }
   std::size_t size() const { return edges_.size(); }
-  const std::pair<int, int>& operator[](std::size_t i) const { return edges_[i]; }
+  const std::vector<std::pair<int, int>>& edges() const { return edges_; }
 
-  std::optional<Corner> between(const Corner& a, const Corner& b) const {
-    const std::pair edge(std::min(a.vertex, b.vertex), std::max(a.vertex, b.vertex));
+  std::optional<int> between(int a, int b) const {
+    const std::pair edge(std::min(a, b), std::max(a, b));
     const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
     if (found == edges_.end() || *found != edge) return std::nullopt;
-    return Corner{first_ + static_cast<int>(found - edges_.begin()), 0.5 * (a.texture + b.texture)};
+    return first_ + static_cast<int>(found - edges_.begin());
   }
 
  private:
@@ -63,23 +62,55 @@ std::optional<std::size_t> longest_edge(const Polygon& triangle, const Points& v
   return longest;
 }
 
+/// A product whose edges are split in rounds.
+class SplitProduct {
+ public:
+  explicit SplitProduct(Product product)
+      : faces_(std::move(product)), texture_(std::move(faces_.texture)), numbers_(faces_.corners.size()) {
+    faces_.texture.resize(2, 0);
+    std::iota(numbers_.begin(), numbers_.end(), 0);
+    splits_.first_part.resize(faces_.polygon_start.size());
+    std::iota(splits_.first_part.begin(), splits_.first_part.end(), 0);
+    first_new_ = static_cast<int>(numbers_.size());
+  }
+
+  /// As they are now, without texture.
+  const Product& faces() const { return faces_; }
+
+  void split(const Middles& middles);
+
+  RefinedProduct finish();
+
+ private:
+  std::optional<Corner> middle(const Middles& middles, const Corner& a, const Corner& b);
+  std::vector<Polygon> triangle_parts(const Polygon& triangle, const Middles& middles);
+  Polygon with_middles(const Polygon& polygon, const Middles& middles);
+
+  Product faces_;
+  Eigen::Matrix2Xd texture_;  // of the corners before any split
+  std::vector<int> numbers_;  // of the corners of faces_
+  int first_new_;
+  FaceSplits splits_;
+};
+
+std::optional<Corner> SplitProduct::middle(const Middles& middles, const Corner& a, const Corner& b) {
+  const std::optional<int> vertex = middles.between(a.vertex, b.vertex);
+  if (!vertex) return std::nullopt;
+  splits_.corners.push_back({a.number, b.number, *vertex});
+  return Corner{*vertex, first_new_ + static_cast<int>(splits_.corners.size()) - 1};
+}
+
 /// A triangle, cut at the middles of its edges, of which the longest is split where any is: no new edge is
 /// longer than that one.
-void append_triangles(const Polygon& triangle, const Points& vertices, const Middles& middles,
-                      std::vector<Polygon>& parts) {
-  const auto longest = longest_edge(triangle, vertices, [&](std::size_t k) {
-    return middles.between(triangle[k], triangle[(k + 1) % 3]).has_value();
+std::vector<Polygon> SplitProduct::triangle_parts(const Polygon& triangle, const Middles& middles) {
+  const auto longest = longest_edge(triangle, faces_.vertices, [&](std::size_t k) {
+    return middles.between(triangle[k].vertex, triangle[(k + 1) % 3].vertex).has_value();
   });
-  if (!longest) {
-    parts.push_back(triangle);
-    return;
-  }
+  if (!longest) return {triangle};
   const Corner &a = triangle[*longest], &b = triangle[(*longest + 1) % 3], &c = triangle[(*longest + 2) % 3];
-  const auto ab = middles.between(a, b), bc = middles.between(b, c), ca = middles.between(c, a);
-  if (bc && ca) {
-    parts.insert(parts.end(), {{a, *ab, *ca}, {*ab, b, *bc}, {*ca, *bc, c}, {*ab, *bc, *ca}});
-    return;
-  }
+  const auto ab = middle(middles, a, b), bc = middle(middles, b, c), ca = middle(middles, c, a);
+  if (bc && ca) return {{a, *ab, *ca}, {*ab, b, *bc}, {*ca, *bc, c}, {*ab, *bc, *ca}};
+  std::vector<Polygon> parts;
   if (bc)
     parts.insert(parts.end(), {{*ab, b, *bc}, {*ab, *bc, c}});
   else
@@ -88,52 +119,70 @@ void append_triangles(const Polygon& triangle, const Points& vertices, const Mid
     parts.insert(parts.end(), {{a, *ab, *ca}, {*ca, *ab, c}});
   else
     parts.push_back({a, *ab, c});
+  return parts;
 }
 
-void append_polygon(const Polygon& polygon, const Middles& middles, std::vector<Polygon>& parts) {
+Polygon SplitProduct::with_middles(const Polygon& polygon, const Middles& middles) {
   Polygon result;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     result.push_back(polygon[i]);
-    if (const auto middle = middles.between(polygon[i], polygon[(i + 1) % polygon.size()]))
-      result.push_back(*middle);
+    if (const auto between = middle(middles, polygon[i], polygon[(i + 1) % polygon.size()]))
+      result.push_back(*between);
   }
-  parts.push_back(std::move(result));
+  return result;
 }
 
-void split(Product& product, const Middles& middles) {
-  const Product old = std::move(product);
-  const bool has_texture = old.texture.cols() > 0;
-  const Eigen::Index before = old.vertices.cols();
-  product = {};
-  product.has_normals = old.has_normals;
-  product.vertices.resize(3, before + static_cast<Eigen::Index>(middles.size()));
-  product.vertices.leftCols(before) = old.vertices;
-  for (std::size_t i = 0; i < middles.size(); ++i)
-    product.vertices.col(before + static_cast<Eigen::Index>(i)) =
-        0.5 * (old.vertices.col(middles[i].first) + old.vertices.col(middles[i].second));
-  std::vector<Eigen::Vector2d> texture;
-  product.polygon_start.push_back(0);
-  for (std::size_t p = 0; p + 1 < old.polygon_start.size(); ++p) {
-    Polygon polygon;
-    for (int k = old.polygon_start[p]; k < old.polygon_start[p + 1]; ++k)
-      polygon.push_back({old.corners[static_cast<std::size_t>(k)],
-                         has_texture ? Eigen::Vector2d(old.texture.col(k)) : Eigen::Vector2d::Zero()});
-    std::vector<Polygon> parts;
-    if (polygon.size() == 3)
-      append_triangles(polygon, old.vertices, middles, parts);
-    else
-      append_polygon(polygon, middles, parts);
-    for (const Polygon& part : parts) {
-      for (const Corner& corner : part) {
-        product.corners.push_back(corner.vertex);
-        if (has_texture) texture.push_back(corner.texture);
-      }
-      product.polygon_start.push_back(static_cast<int>(product.corners.size()));
-    }
+void SplitProduct::split(const Middles& middles) {
+  Product next;
+  next.has_normals = faces_.has_normals;
+  const Eigen::Index before = faces_.vertices.cols();
+  next.vertices.resize(3, before + static_cast<Eigen::Index>(middles.size()));
+  next.vertices.leftCols(before) = faces_.vertices;
+  for (std::size_t i = 0; i < middles.size(); ++i) {
+    const auto [a, b] = middles.edges()[i];
+    next.vertices.col(before + static_cast<Eigen::Index>(i)) =
+        0.5 * (faces_.vertices.col(a) + faces_.vertices.col(b));
   }
-  if (has_texture)
-    product.texture = Eigen::Map<const Eigen::Matrix2Xd>(texture.front().data(), 2,
-                                                         static_cast<Eigen::Index>(texture.size()));
+  splits_.vertices.insert(splits_.vertices.end(), middles.edges().begin(), middles.edges().end());
+  next.polygon_start.push_back(0);
+  std::vector<int> numbers, first_part{0};
+  std::size_t original = 0;
+  for (std::size_t p = 0; p + 1 < faces_.polygon_start.size(); ++p) {
+    Polygon polygon;
+    for (auto k = static_cast<std::size_t>(faces_.polygon_start[p]);
+         k < static_cast<std::size_t>(faces_.polygon_start[p + 1]); ++k)
+      polygon.push_back({faces_.corners[k], numbers_[k]});
+    for (const Polygon& part : polygon.size() == 3 ? triangle_parts(polygon, middles)
+                                                   : std::vector<Polygon>{with_middles(polygon, middles)}) {
+      for (const Corner& corner : part) {
+        next.corners.push_back(corner.vertex);
+        numbers.push_back(corner.number);
+      }
+      next.polygon_start.push_back(static_cast<int>(next.corners.size()));
+    }
+    if (static_cast<int>(p) + 1 < splits_.first_part[original + 1]) continue;
+    first_part.push_back(static_cast<int>(next.polygon_start.size()) - 1);
+    ++original;
+  }
+  faces_ = std::move(next);
+  numbers_ = std::move(numbers);
+  splits_.first_part = std::move(first_part);
+}
+
+RefinedProduct SplitProduct::finish() {
+  RefinedProduct refined;
+  if (texture_.cols() > 0) {
+    texture_.conservativeResize(2, first_new_ + static_cast<Eigen::Index>(splits_.corners.size()));
+    for (std::size_t i = 0; i < splits_.corners.size(); ++i)
+      texture_.col(first_new_ + static_cast<Eigen::Index>(i)) =
+          0.5 * (texture_.col(splits_.corners[i].before) + texture_.col(splits_.corners[i].behind));
+    faces_.texture = texture_(Eigen::all, numbers_);
+  }
+  splits_.part_start = faces_.polygon_start;
+  splits_.part_corners = std::move(numbers_);
+  refined.product = std::move(faces_);
+  refined.splits = std::move(splits_);
+  return refined;
 }
 
 /// The edges that miss the length, and of every triangle that has one its longest edge. What edges at the
@@ -189,13 +238,12 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
   if (!(length > 0))
     throw InvalidInput("a product cannot be refined to a chord error of " + in_short(length) +
                        "; it must be positive");
-  RefinedProduct refined;
-  refined.product = std::move(product);
+  SplitProduct splitting(std::move(product));
   for (int round = 0;; ++round) {
-    const Points& vertices = refined.product.vertices;
-    const Eigen::Matrix2Xi edges = product_edges(refined.product);
+    const Points& vertices = splitting.faces().vertices;
+    const Eigen::Matrix2Xi edges = product_edges(splitting.faces());
     const Eigen::VectorXd errors = chord_errors(vertices, image(vertices), edges, image);
-    const Middles middles = chosen_edges(refined.product, edges, errors, length);
+    const Middles middles = chosen_edges(splitting.faces(), edges, errors, length);
     if (middles.size() == 0) break;
     if (round == most_rounds)
       throw InvalidInput("a chord error of " + in_short(length) + " is not met after " +
@@ -207,9 +255,9 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
       throw InvalidInput("a chord error of " + in_short(length) + " would take more than " +
                          std::to_string(most_vertices) + " vertices; the largest is " +
                          in_short(errors.maxCoeff()) + ", ask for less");
-    refined.splits += middles.size();
-    split(refined.product, middles);
+    splitting.split(middles);
   }
+  RefinedProduct refined = splitting.finish();
   refined.chord = worst_chord(refined.product, image);
   return refined;
 }

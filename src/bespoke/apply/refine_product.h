@@ -1,13 +1,14 @@
 #pragma once
 
 #include "bespoke/apply/chord_error.h"
+#include "bespoke/product/face_splits.h"
 
 namespace bespoke {
 
 struct RefinedProduct {
-  Product product;         ///< the vertices of the input first, in their order
-  std::size_t splits = 0;  ///< edges that were split, each a new vertex
-  ChordError chord;        ///< of the refined product
+  Product product;    ///< the vertices of the input first, in their order
+  FaceSplits splits;  ///< what became of the input's faces
+  ChordError chord;   ///< of the refined product
 };
 
 /// Splits, in rounds, every edge whose chord error exceeds `length` (> 0, mesh units) at its middle, until

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
 
 #include "bespoke/error.h"
@@ -18,9 +19,11 @@ struct Format {
   CarrySummary (*carry)(const InputFile&, std::vector<OutputFile>&, const PointMotion&, const Progress&);
   std::vector<PartPoints> (*find_parts)(const InputFile&, const std::vector<RigidPart>&,
                                         const Progress&) = nullptr;  ///< where the format knows parts
+  /// Writes the file with edges split, where that is known.
+  void (*split)(const InputFile&, const FaceSplits&, OutputFile&) = nullptr;
 };
 
-constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts},
+constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj},
                              Format{".ply", carry_ply, find_ply_parts},
                              Format{".stl", carry_stl},
                              Format{".off", carry_off},
@@ -40,6 +43,11 @@ const Format* find_format(const fs::path& path) {
 
 bool has_product_ending(const fs::path& path) { return find_format(path) != nullptr; }
 
+bool can_split_product(const fs::path& path) {
+  const Format* const format = find_format(path);
+  return format && format->split;
+}
+
 std::string product_endings() {
   std::vector<std::string> known;
   for (const Format& format : formats) known.emplace_back(format.ending);
@@ -56,7 +64,14 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   for (const fs::path& output : outputs)
     if (find_format(output) != format)
       throw InvalidInput(output.string() + ": must have the ending of " + input.string());
-  const InputFile file(input);
+  auto source = std::make_unique<InputFile>(input);
+  if (options.splits) {
+    if (!format->split) throw InvalidInput(input.string() + ": edges of such a file cannot be split");
+    source = InputFile::of_written(outputs.front().parent_path(), input, [&](OutputFile& split) {
+      format->split(*source, *options.splits, split);
+    });
+  }
+  const InputFile& file = *source;
   MotionWithParts own{motion, {}};
   if (!options.parts.empty()) {
     if (!format->find_parts)

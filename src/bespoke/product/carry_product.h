@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/product/face_splits.h"
 #include "bespoke/product/point_motion.h"
 #include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
@@ -22,6 +23,9 @@ struct CarrySummary {
 struct CarryOptions {
   std::vector<RigidPart> parts;  ///< that keep their shape
   Progress progress;
+  /// Edges that are split first, of the faces as read_product reads them. What the file says of the ends is
+  /// said of the middle too, as their mean. Only where can_split_product.
+  const FaceSplits* splits = nullptr;
 };
 
 /// Carries a product: writes the file `input` once for every frame of the motion, with positions, normals
@@ -47,6 +51,9 @@ CarrySummary carry_product(const std::filesystem::path& input,
 
 /// Whether the ending of the name is that of a kind of product.
 bool has_product_ending(const std::filesystem::path& path);
+
+/// Whether edges can be split in a product with the ending of this name.
+bool can_split_product(const std::filesystem::path& path);
 
 /// The endings that are known, for messages: ".obj, .ply, … or .xyz".
 std::string product_endings();

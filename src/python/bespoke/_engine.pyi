@@ -32,7 +32,16 @@ class Map:
         self, second: Map, tolerance: _Length, half: bool, any_models: bool, progress: _Progress
     ) -> Map: ...
     def apply(
-        self, product: str, outputs: list[str], times: list[float], path: str, order: str, progress: _Progress
+        self,
+        product: str,
+        outputs: list[str],
+        times: list[float],
+        path: str,
+        order: str,
+        rigid: list[str],
+        similar: list[str],
+        refine: _Length,
+        progress: _Progress,
     ) -> str: ...
     def measure(
         self,

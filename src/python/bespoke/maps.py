@@ -67,10 +67,16 @@ class Map:
         *,
         path: str = "",
         order: str = "",
+        rigid: Sequence[str] = (),
+        similar: Sequence[str] = (),
+        refine: Length | None = None,
         progress: Progress | None = None,
     ) -> ApplySummary:
         """Carries a product's file: positions and directions move, everything else is copied through.
 
+        Parts named in `rigid` and `similar` keep their shape: groups, objects and materials of OBJ, nodes of glTF,
+        components of PLY. `refine` splits edges of an OBJ product until their middles lie no farther than this from
+        where the map takes them.
         With several times, `output` names as many files, and they cost one look-up. All files are written or none.
         """
         times = [float(t)] if isinstance(t, (int, float)) else [float(time) for time in t]
@@ -79,7 +85,15 @@ class Map:
             raise _engine.InvalidInput(f"{len(times)} times and {len(outputs)} outputs: give one output a time")
         report = json.loads(
             self._engine.apply(
-                os.fspath(product), [os.fspath(name) for name in outputs], times, path, order, progress
+                os.fspath(product),
+                [os.fspath(name) for name in outputs],
+                times,
+                path,
+                order,
+                list(rigid),
+                list(similar),
+                refine,
+                progress,
             )
         )
         found = report["products"][0]

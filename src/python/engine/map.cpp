@@ -113,11 +113,17 @@ std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsse
 /// The report of `bespoke apply`, JSON.
 std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vector<fs::path>& outputs,
                        const std::vector<double>& times, const std::string& path, const std::string& order,
-                       const py::object& callback) {
-  const MotionOptions options = motion(map, path, order);
+                       const std::vector<std::string>& rigid, const std::vector<std::string>& similar,
+                       const py::object& refine, const py::object& callback) {
+  ApplyToProductOptions options;
+  options.motion = motion(map, path, order);
+  for (const std::string& name : rigid) options.parts.push_back({name, PartMotion::rigid});
+  for (const std::string& name : similar) options.parts.push_back({name, PartMotion::similar});
+  if (const auto length = to_length(refine, "refine"))
+    options.refine = length->in_mesh_units(map.asset().record.source.box.diagonal().norm());
   const ProductSummary summary = released(callback, [&](const Progress& progress) {
-    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times,
-                            {options, {}, false, progress});
+    options.progress = progress;
+    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times, options);
   });
   return apply_report({{product.filename().string(), summary}}, times, summary.points.seconds);
 }
@@ -167,7 +173,7 @@ void add_map(py::module_& engine) {
       .def("composed", &composed, py::arg("second"), py::arg("tolerance"), py::arg("half"),
            py::arg("any_models"), py::arg("progress"))
       .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
-           py::arg("order"), py::arg("progress"))
+           py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("progress"))
       .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
            py::arg("products"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });

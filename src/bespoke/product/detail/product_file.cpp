@@ -21,6 +21,18 @@ namespace fs = std::filesystem;
   throw FileError(std::string(what) + " " + path.string() + ": " + why);
 }
 
+/// Gone with its descriptor.
+int open_unnamed(const fs::path& directory) {
+  const int descriptor = ::open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (descriptor >= 0) return descriptor;
+  // A file system that knows no files without a name.
+  std::string name = (directory / ".bespoke-XXXXXX").string();
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named < 0) fail("cannot write into", directory, std::strerror(errno));
+  ::unlink(name.c_str());
+  return named;
+}
+
 void write_from(const std::vector<fs::path>& paths, std::vector<OutputFile>& open,
                 const std::function<void(std::vector<OutputFile>&)>& write) {
   if (open.size() == paths.size()) {
@@ -38,7 +50,9 @@ void write_from(const std::vector<fs::path>& paths, std::vector<OutputFile>& ope
 }  // namespace
 
 InputFile::InputFile(fs::path path)
-    : path_(std::move(path)), descriptor_(::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+    : InputFile(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK), path) {}
+
+InputFile::InputFile(int descriptor, fs::path name) : path_(std::move(name)), descriptor_(descriptor) {
   if (descriptor_ < 0) fail("cannot read", path_, std::strerror(errno));
   struct stat status;
   const int result = ::fstat(descriptor_, &status);
@@ -66,6 +80,13 @@ void InputFile::read(std::uint64_t offset, char* to, std::size_t size) const {
     offset += static_cast<std::uint64_t>(count);
     size -= static_cast<std::size_t>(count);
   }
+}
+
+std::unique_ptr<InputFile> InputFile::of_written(const fs::path& directory, fs::path name,
+                                                 const std::function<void(OutputFile&)>& write) {
+  OutputFile output(open_unnamed(directory.empty() ? "." : directory), name);
+  write(output);
+  return std::unique_ptr<InputFile>(new InputFile(std::exchange(output.descriptor_, -1), std::move(name)));
 }
 
 OutputFile::OutputFile(const fs::path& path, fs::path name)

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace bespoke {
@@ -23,7 +25,15 @@ class InputFile {
   /// Throws FileError, also when the file has become shorter.
   void read(std::uint64_t offset, char* to, std::size_t size) const;
 
+  /// What `write` writes, as a file without a name in this directory, which messages call `name`. Throws
+  /// FileError, and what `write` throws.
+  static std::unique_ptr<InputFile> of_written(const std::filesystem::path& directory,
+                                               std::filesystem::path name,
+                                               const std::function<void(class OutputFile&)>& write);
+
  private:
+  InputFile(int descriptor, std::filesystem::path name);
+
   std::filesystem::path path_;
   int descriptor_;
   std::uint64_t size_ = 0;
@@ -42,6 +52,9 @@ class OutputFile {
   void write(std::string_view bytes);
 
  private:
+  friend class InputFile;
+  OutputFile(int descriptor, std::filesystem::path name) : name_(std::move(name)), descriptor_(descriptor) {}
+
   std::filesystem::path name_;
   int descriptor_;
 };

@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bespoke/error.h"
+#include "bespoke/product/detail/obj_check.h"
+#include "bespoke/product/detail/obj_statements.h"
+#include "bespoke/product/detail/obj_text.h"
+#include "bespoke/product/detail/product_formats.h"
+#include "bespoke/product/detail/text_records.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::array<const char*, obj_kinds> keywords{"v", "vt", "vn"};
+constexpr int least_decimals = 6;  // of new numbers that are no position
+
+/// The mean of two; of normals as long as they are in the mean.
+std::vector<ObjVertexData::Number> middle_numbers(std::size_t kind,
+                                                  const std::vector<ObjVertexData::Number>& a,
+                                                  const std::vector<ObjVertexData::Number>& b) {
+  std::vector<ObjVertexData::Number> middle;
+  double length_a = 0, length_b = 0, length = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+    middle.push_back({0.5 * (a[k].value + b[k].value), std::max(a[k].decimals, b[k].decimals)});
+    length_a += a[k].value * a[k].value;
+    length_b += b[k].value * b[k].value;
+    length += middle[k].value * middle[k].value;
+  }
+  if (kind == obj_normal && length > 0)
+    for (ObjVertexData::Number& number : middle)
+      number.value *= 0.5 * (std::sqrt(length_a) + std::sqrt(length_b)) / std::sqrt(length);
+  return middle;
+}
+
+/// Gives the corners that splits have made their vertex data, new ones where there are none yet: an edge that
+/// faces share gets one middle, and so do texture coordinates and normals that they share along it.
+class CornerMaker {
+ public:
+  CornerMaker(ObjText& obj, const FaceSplits& splits)
+      : obj_(obj),
+        splits_(splits),
+        faces_corners_(obj.faces.size()),
+        middles_(splits.vertices.size(), no_obj_data),
+        pairs_normals_(obj.data[obj_normal].of_file() == obj.data[obj_position].of_file() &&
+                       std::all_of(obj.faces.begin(), obj.faces.end(),
+                                   [](const ObjElementCorner& corner) {
+                                     return corner.data[obj_normal] == no_obj_data;
+                                   }) &&
+                       std::all_of(obj.elements.begin(), obj.elements.end(), [](const ObjElement& element) {
+                         return element.before[obj_normal] == element.before[obj_position];
+                       })) {}
+
+  void run() {
+    obj_.faces.resize(faces_corners_ + splits_.corners.size());
+    std::size_t polygon = 0;
+    for (ObjElement& element : obj_.elements) {
+      element.made_before = made();
+      if (element.is_face) make(polygon++, element);
+      element.made_until = made();
+    }
+  }
+
+ private:
+  ObjKinds made() const {
+    ObjKinds made;
+    for (std::size_t kind = 0; kind < obj_kinds; ++kind) made[kind] = obj_.data[kind].added();
+    return made;
+  }
+
+  void make(std::size_t polygon, const ObjElement& element) {
+    const auto begin = splits_.part_corners.begin();
+    std::vector<int> corners(begin + splits_.part_start[first_part(polygon)],
+                             begin + splits_.part_start[first_part(polygon + 1)]);
+    std::sort(corners.begin(), corners.end());  // what a corner lies between has smaller numbers
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+    for (const int number : corners) {
+      const auto corner = static_cast<std::size_t>(number);
+      if (corner < faces_corners_) continue;
+      const FaceSplits::Corner& split = splits_.corners[corner - faces_corners_];
+      ObjKinds& data = obj_.faces[corner].data;
+      data[obj_position] = middle_of_edge(split.vertex - obj_.data[obj_position].of_file(), element);
+      for (std::size_t kind = obj_texture; kind < obj_kinds; ++kind)
+        data[kind] = middle_of(kind, obj_.faces[static_cast<std::size_t>(split.before)].data[kind],
+                               obj_.faces[static_cast<std::size_t>(split.behind)].data[kind], element);
+    }
+  }
+
+  std::size_t first_part(std::size_t polygon) const {
+    return static_cast<std::size_t>(splits_.first_part[polygon]);
+  }
+
+  int middle_of_edge(int edge, const ObjElement& element) {
+    int& middle = middles_[static_cast<std::size_t>(edge)];
+    if (middle != no_obj_data) return middle;
+    const auto datum = [&](int vertex) {
+      const int made = vertex - obj_.data[obj_position].of_file();
+      return made < 0 ? vertex : middles_[static_cast<std::size_t>(made)];
+    };
+    const auto [a, b] = splits_.vertices[static_cast<std::size_t>(edge)];
+    middle = add(obj_position, datum(a), datum(b), element);
+    if (pairs_normals_) add(obj_normal, datum(a), datum(b), element);
+    return middle;
+  }
+
+  int middle_of(std::size_t kind, int a, int b, const ObjElement& element) {
+    if (a == no_obj_data || b == no_obj_data) return no_obj_data;
+    if (a == b) return a;
+    const auto [found, is_new] = shared_[kind].try_emplace({std::min(a, b), std::max(a, b)}, no_obj_data);
+    if (is_new) found->second = add(kind, a, b, element);
+    return found->second;
+  }
+
+  int add(std::size_t kind, int a, int b, const ObjElement& element) {
+    ObjVertexData& data = obj_.data[kind];
+    return data.add(middle_numbers(kind, data.numbers(a), data.numbers(b)), element.before[kind]);
+  }
+
+  ObjText& obj_;
+  const FaceSplits& splits_;
+  std::size_t faces_corners_;  // of the file
+  std::vector<int> middles_;   // of the splits' edges
+  std::array<std::map<std::pair<int, int>, int>, obj_kinds> shared_;
+  bool pairs_normals_;  // no corner names any, and as many as positions stand in front of every element
+};
+
+/// Writes the faces that are split, and the others anew where their numbers change.
+class Writer {
+ public:
+  Writer(std::string_view text, const ObjText& obj, const FaceSplits& splits, const ObjContent& found)
+      : text_(text),
+        obj_(obj),
+        splits_(splits),
+        position_decimals_(position_decimals(found.box, found.position_decimals)),
+        normal_decimals_(std::max(least_decimals, found.normal_decimals.decimals())) {}
+
+  std::string run() const {
+    std::vector<TextEdit> edits;
+    std::size_t polygon = 0;
+    for (const ObjElement& element : obj_.elements) {
+      if (element.is_face && is_split(polygon, element))
+        edits.push_back({element.text, with_parts(polygon, element)});
+      else
+        renumber(element, edits);
+      if (element.is_face) ++polygon;
+    }
+    return edited(text_, {}, std::move(edits));
+  }
+
+ private:
+  int part_start(std::size_t polygon) const {
+    return splits_.part_start[static_cast<std::size_t>(splits_.first_part[polygon])];
+  }
+
+  bool is_split(std::size_t polygon, const ObjElement& element) const {
+    return part_start(polygon + 1) - part_start(polygon) > static_cast<int>(element.last - element.first);
+  }
+
+  /// The new vertex data that stand in front of a face, and its parts.
+  std::string with_parts(std::size_t polygon, const ObjElement& element) const {
+    const std::string line_break = line_break_behind(element);
+    std::string text;
+    for (std::size_t kind = 0; kind < obj_kinds; ++kind)
+      for (int i = element.made_before[kind]; i < element.made_until[kind]; ++i) {
+        text += keywords[kind];
+        const std::vector<ObjVertexData::Number>& numbers =
+            obj_.data[kind].numbers(obj_.data[kind].of_file() + i);
+        for (std::size_t k = 0; k < numbers.size(); ++k) {
+          text += ' ';
+          append_number(text, numbers[k].value, decimals(kind, k, numbers[k]));
+        }
+        text += line_break;
+      }
+    for (int part = splits_.first_part[polygon]; part < splits_.first_part[polygon + 1]; ++part) {
+      if (part > splits_.first_part[polygon]) text += line_break;
+      text += element.keyword;
+      for (int k = splits_.part_start[static_cast<std::size_t>(part)];
+           k < splits_.part_start[static_cast<std::size_t>(part) + 1]; ++k) {
+        const auto corner = static_cast<std::size_t>(splits_.part_corners[static_cast<std::size_t>(k)]);
+        text.append(" ").append(word(obj_.faces[corner].data, {}));
+      }
+    }
+    return text;
+  }
+
+  int decimals(std::size_t kind, std::size_t k, const ObjVertexData::Number& number) const {
+    if (kind == obj_position && k < 3) return position_decimals_;
+    return kind == obj_normal ? normal_decimals_ : std::max(least_decimals, number.decimals);
+  }
+
+  void renumber(const ObjElement& element, std::vector<TextEdit>& edits) const {
+    const std::vector<ObjElementCorner>& corners = element.is_face ? obj_.faces : obj_.others;
+    for (std::size_t k = element.first; k < element.last; ++k) {
+      const ObjElementCorner& corner = corners[k];
+      const ObjCorner read = *read_corner(corner.word);
+      ObjKinds counted_back{};
+      for (std::size_t kind = 0; kind < obj_kinds; ++kind)
+        if (read.index[kind] < 0) counted_back[kind] = element.before[kind] + element.made_until[kind];
+      std::string now = word(corner.data, counted_back);
+      if (now != word_as_read(read)) edits.push_back({corner.word, std::move(now)});
+    }
+  }
+
+  /// A corner by its data; kinds with a count are counted back from it.
+  std::string word(const ObjKinds& data, const ObjKinds& counted_back) const {
+    std::array<long long, obj_kinds> number{};
+    for (std::size_t kind = 0; kind < obj_kinds; ++kind) {
+      if (data[kind] == no_obj_data) continue;
+      const int place = obj_.data[kind].place(data[kind]);
+      number[kind] = counted_back[kind] > 0 ? place - counted_back[kind] : place + 1;
+    }
+    return word(number);
+  }
+
+  static std::string word_as_read(const ObjCorner& corner) { return word(corner.index); }
+
+  static std::string word(const std::array<long long, obj_kinds>& number) {
+    std::string text = std::to_string(number[obj_position]);
+    if (number[obj_texture] != 0 || number[obj_normal] != 0) text += '/';
+    if (number[obj_texture] != 0) text += std::to_string(number[obj_texture]);
+    if (number[obj_normal] != 0) text.append("/").append(std::to_string(number[obj_normal]));
+    return text;
+  }
+
+  std::string line_break_behind(const ObjElement& element) const {
+    const auto behind = static_cast<std::size_t>(element.text.data() + element.text.size() - text_.data());
+    const std::size_t newline = text_.find('\n', behind);
+    return newline != std::string_view::npos && newline > 0 && text_[newline - 1] == '\r' ? "\r\n" : "\n";
+  }
+
+  std::string_view text_;
+  const ObjText& obj_;
+  const FaceSplits& splits_;
+  int position_decimals_, normal_decimals_;
+};
+
+}  // namespace
+
+// Faces were read whole to be split, so their text may be too.
+void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& output) {
+  const ObjContent found = check_obj_product(file, {});
+  if (found.has_free_form)
+    throw InvalidInput(file.path().string() +
+                       ": has free-form statements (vp, curv, surf), whose vertices cannot be renumbered; it "
+                       "can be refined without them");
+  std::string text(file.size(), '\0');
+  file.read(0, text.data(), text.size());
+  ObjText obj = read_obj_text(text, file.path());
+  CornerMaker(obj, splits).run();
+  output.write(Writer(text, obj, splits, found).run());
+}
+
+}  // namespace bespoke
