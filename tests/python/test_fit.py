@@ -3,6 +3,7 @@ import json
 import bespoke
 import numpy as np
 import pytest
+from conftest import SHIFT, SOURCE_RADII, TARGET_RADII, TURN
 
 
 def write_anchors(path, anchors):
@@ -30,6 +31,61 @@ def test_fit_is_that_of_the_command(pair, command, tmp_path):
     np.testing.assert_array_equal(fit.map(points), commands(points))
     assert fit.map.info == commands.info
     assert fit.map.info.unit == "cm"
+
+
+def lines_and_parts(pair):
+    """A waist that goes half way up on the target, and a few faces that have no counterpart."""
+    angles = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    circle = np.stack([np.cos(angles), np.sin(angles), np.zeros(60)], axis=1)
+    higher = circle * np.sqrt(1 - 0.2**2) + (0, 0, 0.2)
+    waist = bespoke.Curve(circle * SOURCE_RADII, higher * TARGET_RADII @ TURN.T + SHIFT, "waist", True, ((0, 0),))
+    stand = bespoke.Patch(bespoke.PatchSide(faces=(0, 1, 2)), None, "stand", True)
+    away = [anchor for anchor in pair.anchors if abs(anchor.a[2]) > 0.1]
+    return bespoke.Anchors(away, "cm", [waist], [stand])
+
+
+def test_curves_and_patches_are_those_of_the_command(pair, command, tmp_path):
+    anchors = lines_and_parts(pair)
+    curve, patch = anchors.curves[0], anchors.patches[0]
+    document = {
+        "units": "cm",
+        "pairs": [{"name": anchor.name, "a": anchor.a, "b": anchor.b, "sigma": 0} for anchor in anchors],
+        "curves": [
+            {"name": "waist", "a": curve.a.tolist(), "b": curve.b.tolist(), "closed": True, "fixed": curve.fixed}
+        ],
+        "patches": [{"name": "stand", "a": {"faces": patch.a.faces}, "exclude": True}],
+    }
+    (tmp_path / "anchors.json").write_text(json.dumps(document))
+    bespoke.write_mesh(tmp_path / "source.ply", pair.source)
+    bespoke.write_mesh(tmp_path / "target.ply", pair.target)
+    models = ("source.ply", "target.ply")
+    command(
+        "fit", *(tmp_path / model for model in models), "--anchors", tmp_path / "anchors.json",
+        "--tolerance", "0.5%", "-o", tmp_path / "command.vdb",
+    )  # fmt: skip
+    commands = bespoke.Map.load(tmp_path / "command.vdb")
+    points = np.random.default_rng(3).uniform(-2, 2, (1000, 3))
+    meshes = [bespoke.read_mesh(tmp_path / model) for model in models]
+    for given in (anchors, bespoke.read_anchors(tmp_path / "anchors.json")):
+        fit = bespoke.fit(*meshes, given, tolerance="0.5%")
+        np.testing.assert_array_equal(fit.map(points), commands(points))
+    around, higher = fit.map(curve.a), (np.asarray(curve.b) - SHIFT) @ TURN
+    assert np.abs(((around - SHIFT) @ TURN)[:, 2] - higher[:, 2]).max() < 0.02
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"curves": [bespoke.Curve(np.eye(3), np.eye(3), fixed=((0, 7),))]}, "fixed"),
+        ({"curves": [bespoke.Curve(np.zeros((1, 3)), np.eye(3))]}, "two points"),
+        ({"curves": [bespoke.Curve(np.full((3, 3), np.nan), np.eye(3))]}, "finite"),
+        ({"patches": [bespoke.Patch(bespoke.PatchSide(faces=(1,)), None, "face")]}, "face"),
+        ({"patches": [bespoke.Patch(bespoke.PatchSide(), None, "face", True)]}, "border"),
+    ],
+)
+def test_refuses_wrong_curves_and_patches(pair, changed, words):
+    with pytest.raises(bespoke.InvalidInput, match=words):
+        bespoke.fit(pair.source, pair.target, bespoke.Anchors(pair.anchors, **changed))
 
 
 def test_fit_says_what_it_found(pair):

@@ -138,9 +138,15 @@ Points points(const Anchors& anchors, Vector3 AnchorPair::*end) {
 
 Anchors read_anchors(const std::filesystem::path& path) {
   const std::string text = read_text(path);
-  Anchors anchors =
-      lower_ending(path) == ".csv" ? parse_csv(text, path.string()) : parse_anchor_json(text, path.string());
+  if (lower_ending(path) != ".csv") return parse_anchors(text, path.string());
+  Anchors anchors = parse_csv(text, path.string());
   require_distinct_names(anchors.pairs, "pairs", path.string());
+  return anchors;
+}
+
+Anchors parse_anchors(const std::string& text, const std::string& name) {
+  Anchors anchors = parse_anchor_json(text, name);
+  require_distinct_names(anchors.pairs, "pairs", name);
   return anchors;
 }
 

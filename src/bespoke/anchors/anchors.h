@@ -69,6 +69,9 @@ struct Anchors {
 /// with one side that excludes nothing).
 Anchors read_anchors(const std::filesystem::path& path);
 
+/// The same of a text in JSON, which messages call `name`. anchors_json (anchor_files.h) writes such texts.
+Anchors parse_anchors(const std::string& text, const std::string& name);
+
 /// Appends the eight corners of the bounding boxes as exact pairs (σ = 0) named "corner_000" … "corner_111"
 /// (x, y, z; Fig. 5). The boxes are those of the source and of the target in the source's frame, H'_b, which
 /// the pairs already there fix (Eq. 2–6): a model that is turned has other corners. With fewer than three

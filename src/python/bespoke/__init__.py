@@ -21,7 +21,7 @@ from ._engine import (
     MemoryLimitError,
     SolverError,
 )
-from .anchors import Anchor, read_anchors
+from .anchors import Anchor, Anchors, Curve, Patch, PatchSide, read_anchors
 from .fitting import Fit, fit
 from .maps import Map
 from .meshes import Mesh, read_mesh, write_mesh
@@ -41,8 +41,10 @@ from .summaries import (
 __all__ = [
     "Anchor",
     "AnchorResidual",
+    "Anchors",
     "ApplySummary",
     "Certificate",
+    "Curve",
     "Error",
     "FileError",
     "Fit",
@@ -56,6 +58,8 @@ __all__ = [
     "MemoryLimitError",
     "Mesh",
     "Model",
+    "Patch",
+    "PatchSide",
     "Quality",
     "SolverError",
     "Stage",

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,8 +8,6 @@ _Points = npt.NDArray[np.float64]
 _Faces = npt.NDArray[np.int32]
 _Progress = Callable[[str, int, int], object] | None
 _Length = float | str | None
-_Triple = tuple[float, float, float]
-AnchorFields = tuple[str, _Triple, _Triple, float | None, float | None]  # name, a, b, weight, sigma
 
 class Error(Exception): ...
 class InvalidInput(Error, ValueError): ...
@@ -63,13 +61,12 @@ class PointCloud:
 
 def read_mesh(path: str) -> tuple[_Points, _Faces, PointCloud | None]: ...
 def write_mesh(path: str, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None: ...
-def read_anchors(path: str) -> tuple[str, list[AnchorFields]]: ...
+def read_anchors(path: str) -> str: ...
 def fit(
     source: tuple[npt.ArrayLike, npt.ArrayLike],
     target: tuple[npt.ArrayLike, npt.ArrayLike],
     target_cloud: PointCloud | None,
-    anchors: Iterable[AnchorFields],
-    unit: str,
+    anchors: str,
     fitted: tuple[npt.ArrayLike, npt.ArrayLike] | None,
     add_corners: bool,
     options: dict[str, Any],

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _engine
-from .anchors import Anchor, _pairs
+from .anchors import Anchor, _text
 from .maps import Length, Map, Progress
 from .meshes import Mesh, _arrays, _source_arrays
 from .summaries import FitReport
@@ -56,7 +56,7 @@ def fit(
 
     The options are those of `bespoke fit`, with its defaults; lengths are numbers in the models' unit or texts like
     "10%" of the source's diagonal, `max_memory` is in bytes. Without anchors models in similar pose are aligned by their
-    surfaces, or refused. Given the same input, the map is the command's, bit for bit.
+    surfaces, or refused. `Anchors` hold curves and patches too. Given the same input, the map is the command's, bit for bit.
 
     Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be
     aligned with certainty), MemoryLimitError.
@@ -84,8 +84,7 @@ def fit(
         _source_arrays(source),
         _arrays(target, "target"),
         target.cloud,
-        _pairs(anchors),
-        getattr(anchors, "unit", ""),
+        _text(anchors),
         None if fitted is None else _arrays(fitted, "fitted"),
         add_corners,
         options,

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "bespoke/anchors/anchors.h"
+#include "bespoke/anchors/anchor_files.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/product/mesh_io.h"
@@ -32,21 +32,8 @@ void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArra
   write_triangle_mesh(path, mesh);
 }
 
-/// (unit, [(name, a, b, weight or None, sigma or None), …])
-py::tuple anchors_of_file(const fs::path& path) {
-  const Anchors anchors = read_anchors(path);
-  if (!anchors.curves.empty())
-    throw InvalidInput(path.string() + ": has curves, which only the command's fit takes so far");
-  if (!anchors.patches.empty())
-    throw InvalidInput(path.string() + ": has patches, which only the command's fit takes so far");
-  py::list pairs;
-  for (const AnchorPair& pair : anchors.pairs) {
-    const py::object weight = std::isinf(pair.weight) ? py::object(py::none()) : py::float_(pair.weight);
-    const auto triple = [](const Vector3& x) { return py::make_tuple(x.x(), x.y(), x.z()); };
-    pairs.append(py::make_tuple(pair.name, triple(pair.a), triple(pair.b), weight, pair.sigma));
-  }
-  return py::make_tuple(anchors.unit, pairs);
-}
+/// As the text of a JSON file, whatever the file was.
+std::string anchors_of_file(const fs::path& path) { return anchors_json(read_anchors(path)); }
 
 }  // namespace
 

@@ -1,8 +1,8 @@
 #include <pybind11/stl.h>
 
-#include <limits>
-
+#include "bespoke/anchors/anchors.h"
 #include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/error.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/stopwatch.h"
 #include "loaded_asset.h"
@@ -13,21 +13,13 @@ namespace bespoke::python {
 namespace py = pybind11;
 namespace {
 
-Vector3 to_vector(const py::handle& triple) {
-  const py::sequence numbers = py::reinterpret_borrow<py::sequence>(triple);
-  return {numbers[0].cast<double>(), numbers[1].cast<double>(), numbers[2].cast<double>()};
-}
-
-/// [(name, a, b, weight or None, sigma or None), …]
-Anchors to_anchors(const py::iterable& pairs, const std::string& unit) {
-  Anchors anchors{unit, {}};
-  for (const py::handle& item : pairs) {
-    const auto row = py::reinterpret_borrow<py::tuple>(item);
-    const double weight = row[3].is_none() ? std::numeric_limits<double>::infinity() : row[3].cast<double>();
-    anchors.pairs.push_back({row[0].cast<std::string>(), to_vector(row[1]), to_vector(row[2]), weight,
-                             row[4].cast<std::optional<double>>()});
+/// Of a text in JSON, which Python made of its objects.
+Anchors to_anchors(const std::string& text) {
+  try {
+    return parse_anchors(text, "anchors");
+  } catch (const FormatError& error) {
+    throw InvalidInput(error.what());
   }
-  return anchors;
 }
 
 /// Options by the command's names, with _ for -; all of them are taken out of `given`.
@@ -88,9 +80,9 @@ void require_in_range(const MapRequest& request) {
 
 /// (map, fitted vertices n×3 in the target frame, confidence n, report as JSON)
 py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
-              const std::optional<PointCloudSummary>& target_cloud, const py::iterable& pairs,
-              const std::string& unit, const py::object& fitted_arrays, bool add_corners,
-              const py::dict& options, const py::object& callback) {
+              const std::optional<PointCloudSummary>& target_cloud, const std::string& anchors_text,
+              const py::object& fitted_arrays, bool add_corners, const py::dict& options,
+              const py::object& callback) {
   const auto mesh = [](const py::tuple& arrays, const std::string& role) {
     TriangleMesh made = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
     require_valid(made, role);
@@ -101,7 +93,7 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   if (!fitted_arrays.is_none()) fitted = mesh(fitted_arrays, "fitted");
   const MapRequest request = RequestReader(options).read();
   require_in_range(request);
-  Anchors anchors = to_anchors(pairs, unit);
+  Anchors anchors = to_anchors(anchors_text);
   rate_anchors(anchors, request, diagonal(source.vertices));
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
@@ -121,8 +113,7 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
 
 void add_fit(py::module_& engine) {
   engine.def("fit", &fit, py::arg("source"), py::arg("target"), py::arg("target_cloud"), py::arg("anchors"),
-             py::arg("unit"), py::arg("fitted"), py::arg("add_corners"), py::arg("options"),
-             py::arg("progress"));
+             py::arg("fitted"), py::arg("add_corners"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace bespoke::python
