@@ -87,6 +87,7 @@ struct VdbPart::Archive : public openvdb::io::Archive {
     openvdb::io::setGridClass(stream, grid->getGridClass());
     of_one_grid.metadata->setLeaf(0);
     grid->readTransform(stream);
+    require_readable_to(descriptor.getBlockPos());
     grid->readTopology(stream);
     StoredGridPart part;
     part.all_leaves = leaves_of(*grid);
@@ -94,6 +95,14 @@ struct VdbPart::Archive : public openvdb::io::Archive {
     grid->readBuffers(stream, nodes_of(leaves));
     part.grid = from_vdb(*grid);
     return part;
+  }
+
+  /// OpenVDB loses the nodes at hand when the stream throws while it reads topology, so what would throw does
+  /// so before.
+  void require_readable_to(std::streamoff end) {
+    const std::streamoff begin = stream.tellg();
+    stream.ignore(end - begin);
+    stream.seekg(begin);
   }
 
   struct OfOneGrid {
