@@ -9,8 +9,6 @@ namespace bespoke {
 namespace {
 
 // Garments are drawn on a mannequin of this height and scaled with it.
-constexpr double standard_height = 165;
-
 // Positive on the far side of the plane.
 double beyond_plane(const Vector3& p, const Vector3& on_plane, const Vector3& normal) {
   return (p - on_plane).dot(normal.normalized());

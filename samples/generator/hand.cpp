@@ -7,8 +7,6 @@ namespace bespoke {
 namespace {
 
 constexpr double forearm_end = -8;
-constexpr double degree = 3.14159265358979323846 / 180;
-
 // Joint centres from knuckle to tip, and the radius at each.
 struct Finger {
   std::string name;

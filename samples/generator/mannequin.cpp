@@ -9,7 +9,6 @@ namespace bespoke {
 namespace {
 
 // All shapes are built for this height and then scaled.
-constexpr double standard_height = 165;
 constexpr double standard_hip_height = 84;
 
 const Vector3 shoulder(15.8, 130.2, -1.6);

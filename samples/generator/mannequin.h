@@ -4,6 +4,9 @@
 
 namespace bespoke {
 
+/// Of the figure that all lengths are given for, centimetres.
+inline constexpr double standard_height = 165;
+
 /// A display mannequin with arms held away from the body. Girth factors are about 1.
 struct MannequinBuild {
   double height = 165;  ///< cm

@@ -13,8 +13,6 @@ namespace {
 
 // By this much (cm) the outline of a mannequin of triangles is shorter than that of its smooth surface.
 constexpr double girth_lost_to_chords = 0.2;
-constexpr double degree = 3.14159265358979323846 / 180;
-
 Tessellation body_tessellation(double lattice_angle, double coarsest, double deviation = 0.06) {
   Tessellation how;
   how.lattice_spacing = 1.1;

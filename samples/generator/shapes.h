@@ -2,10 +2,13 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <numbers>
 #include <variant>
 #include <vector>
 
 namespace bespoke {
+
+inline constexpr double degree = std::numbers::pi / 180;
 
 /// Shapes of which the samples are moulded, in centimetres and in coordinates of their own. `distance` is
 /// negative inside, zero on the surface, and near the surface close to the signed distance.

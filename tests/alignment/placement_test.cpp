@@ -8,14 +8,14 @@
 namespace bespoke {
 namespace {
 
-TriangleMesh ellipsoid() {
+TriangleMesh flattened_ellipsoid() {
   TriangleMesh mesh = shapes::icosphere(3);
   mesh.vertices = Vector3(2, 1, 0.7).asDiagonal() * mesh.vertices;
   return mesh;
 }
 
 TEST(JudgePlacement, FindsNothingWrongWithASimilarCopy) {
-  const TriangleMesh source = ellipsoid();
+  const TriangleMesh source = flattened_ellipsoid();
   const Matrix3 rotation = Eigen::AngleAxisd(1.2, Vector3(1, -1, 2).normalized()).toRotationMatrix();
   const TriangleMesh target{(3 * rotation * source.vertices).colwise() + Vector3(5, 6, 7), source.faces};
   const PlacementFigures figures = judge_placement(source, target.vertices, target);

@@ -15,7 +15,7 @@ namespace {
 using ::testing::Each;
 using ::testing::HasSubstr;
 
-constexpr std::size_t count = 60;
+constexpr std::size_t pair_count = 60;
 
 /// A sphere and an ellipsoid, with vertices of the one paired with their images.
 struct Pair {
@@ -24,8 +24,8 @@ struct Pair {
   Anchors anchors;
 
   Pair() {
-    const auto stride = source.vertices.cols() / static_cast<Eigen::Index>(count);
-    for (std::size_t k = 0; k < count; ++k) {
+    const auto stride = source.vertices.cols() / static_cast<Eigen::Index>(pair_count);
+    for (std::size_t k = 0; k < pair_count; ++k) {
       const auto vertex = static_cast<Eigen::Index>(k) * stride;
       AnchorPair pair{"p", source.vertices.col(vertex), target.vertices.col(vertex)};
       pair.name += std::to_string(k);
@@ -46,7 +46,7 @@ struct Pair {
 TEST(RateAnchors, TakesAnchorsOnBothSurfacesForExact) {
   const Pair pair;
   const RatedAnchors rated = pair.rate();
-  EXPECT_EQ(rated.accuracy.estimated, count);
+  EXPECT_EQ(rated.accuracy.estimated, pair_count);
   EXPECT_EQ(rated.accuracy.sigma, 0);
   EXPECT_THAT(rated.sigmas, Each(0.0));
   for (const AnchorPair& anchor : rated.anchors.pairs) EXPECT_TRUE(is_exact(anchor));
@@ -73,7 +73,7 @@ TEST(RateAnchors, LeavesAloneWhatHasAnAccuracyOrIsNoPointOfTheSurface) {
   pair.anchors.pairs[2].weight = 3;
   pair.anchors.pairs[3].a *= 1.5;
   const RatedAnchors rated = pair.rate();
-  EXPECT_EQ(rated.accuracy.estimated, count - 4);
+  EXPECT_EQ(rated.accuracy.estimated, pair_count - 4);
   EXPECT_EQ(rated.anchors.pairs[0].sigma, 0.0);
   EXPECT_EQ(rated.anchors.pairs[1].sigma, 0.5);
   EXPECT_EQ(rated.anchors.pairs[2].sigma, std::nullopt);
@@ -99,8 +99,8 @@ TEST(RateAnchors, LeavesOutASwappedPairAndNamesIt) {
   std::swap(pair.anchors.pairs[3].b, pair.anchors.pairs[40].b);
   const RatedAnchors rated = pair.rate();
   ASSERT_EQ(rated.accuracy.swapped.size(), 1u);
-  EXPECT_EQ(rated.anchors.pairs.size(), count - 2);
-  ASSERT_EQ(rated.sigmas.size(), count);
+  EXPECT_EQ(rated.anchors.pairs.size(), pair_count - 2);
+  ASSERT_EQ(rated.sigmas.size(), pair_count);
   EXPECT_EQ(rated.sigmas[3], (pair.anchors.pairs[3].b - pair.anchors.pairs[40].b).norm());
   EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p3\" and \"p40\" look swapped"));
   for (AnchorPair& anchor : pair.anchors.pairs) anchor.sigma = 0;  // somebody stands by them

@@ -111,7 +111,14 @@ TEST_F(AnchorFiles, MeshLabsPointsMayBeSwitchedOff) {
             "b.pp", "<PickedPoints><point x='1'/><point x=\"4\" y=\"5\" z=\"6\" name=\"A\"/></PickedPoints>");
   EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(files); }),
               HasSubstr("b.pp: point 0 has not all of x"));
-  write_text(files[1], "<PickedPoints><point x=\"4\" y=\"5\" z=\"6\" name=\"other\"/></PickedPoints>");
+  write_text(files[1], "<PickedPoints>\n<point x=\"4\" y=\"5\" z=\"6\"></PickedPoints>");
+  EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(files); }), HasSubstr("b.pp:2: is no XML"));
+  write_text(files[1], "<Points><point x=\"4\" y=\"5\" z=\"6\"/></Points>");
+  EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(files); }),
+              HasSubstr("b.pp: no <PickedPoints>"));
+  write_text(
+      files[1],
+      "<PickedPoints><!-- <point x=\"0\"/> -->\n<point x='4' y='5' z='6' name='other'/></PickedPoints>");
   const Anchors found = read_anchor_files(files);
   ASSERT_EQ(found.pairs.size(), 1u);
   EXPECT_EQ(found.pairs[0].name, "A & B");

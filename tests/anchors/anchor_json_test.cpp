@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::string ring = R"({"border": [[0,0,0],[1,0,0],[1,1,0],[0,0,0]]})";
+const std::string border_ring = R"({"border": [[0,0,0],[1,0,0],[1,1,0],[0,0,0]]})";
 
 std::string complaint(const std::string& patches) {
   return test::error_message<FormatError>(
@@ -25,7 +25,7 @@ std::string complaint(const std::string& patches) {
 
 TEST(PatchJson, TakesALineAroundItOrFaces) {
   const Anchors anchors = parse_anchor_json(
-      R"({"pairs": [], "patches": [{"name": "face", "a": )" + ring +
+      R"({"pairs": [], "patches": [{"name": "face", "a": )" + border_ring +
           R"(, "b": {"faces": [5, 2]}}, {"name": "hair", "a": {"faces": [0]}, "exclude": true, "why": ""}]})",
       "a.json");
   ASSERT_EQ(anchors.patches.size(), 2u);
@@ -56,13 +56,14 @@ TEST(PatchJson, IsReadAsItWasWritten) {
 }
 
 TEST(PatchJson, NamesThePatchAndWhatIsWrong) {
-  EXPECT_EQ(complaint(R"({"a": )" + ring + R"(, "b": )" + ring + "}"), "accepted");
-  EXPECT_THAT(complaint(R"({"name": "face", "a": )" + ring + "}"),
+  EXPECT_EQ(complaint(R"({"a": )" + border_ring + R"(, "b": )" + border_ring + "}"), "accepted");
+  EXPECT_THAT(complaint(R"({"name": "face", "a": )" + border_ring + "}"),
               AllOf(HasSubstr("a.json: patch 0 (\"face\")"), HasSubstr("\"b\" is missing"),
                     HasSubstr("\"exclude\": true")));
   EXPECT_THAT(complaint(R"({"name": "hair", "exclude": true})"), HasSubstr("neither \"a\" nor \"b\""));
-  EXPECT_THAT(complaint(R"({"a": [[0,0,0]], "b": )" + ring + "}"), HasSubstr("\"a\" must be {\"border\""));
-  EXPECT_THAT(complaint(R"({"a": {}, "b": )" + ring + "}"), HasSubstr("one of them"));
+  EXPECT_THAT(complaint(R"({"a": [[0,0,0]], "b": )" + border_ring + "}"),
+              HasSubstr("\"a\" must be {\"border\""));
+  EXPECT_THAT(complaint(R"({"a": {}, "b": )" + border_ring + "}"), HasSubstr("one of them"));
   EXPECT_THAT(complaint(R"({"a": {"faces": []}, "exclude": true})"), HasSubstr("one face at least"));
   EXPECT_THAT(complaint(R"({"a": {"faces": [1, -2]}, "exclude": true})"), HasSubstr("holds -2"));
   EXPECT_THAT(complaint(R"({"a": {"faces": [99999999999]}, "exclude": true})"),

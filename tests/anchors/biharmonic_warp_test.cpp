@@ -7,11 +7,11 @@
 namespace bespoke {
 namespace {
 
-const Points sources = test::random_points(15, 1), targets = test::random_points(15, 2);
+const Points from = test::random_points(15, 1), onto = test::random_points(15, 2);
 
 TEST(BiharmonicWarp, BendsNothingUnderAnAffineMap) {
-  const Points image = (test::random_rotation(3) * 1.3 * sources).colwise() + Vector3(2, 0, 1);
-  const BiharmonicWarp warp(sources, image);
+  const Points image = (test::random_rotation(3) * 1.3 * from).colwise() + Vector3(2, 0, 1);
+  const BiharmonicWarp warp(from, image);
   EXPECT_NEAR(warp.energy(), 0, 1e-9);
   EXPECT_LT((warp(Vector3(5, 6, 7)) - (test::random_rotation(3) * 1.3 * Vector3(5, 6, 7) + Vector3(2, 0, 1)))
                 .norm(),
@@ -19,18 +19,18 @@ TEST(BiharmonicWarp, BendsNothingUnderAnAffineMap) {
 }
 
 TEST(BiharmonicWarp, PredictsAPairByTheOthers) {
-  const BiharmonicWarp warp(sources, targets);
-  const BiharmonicWarp others(sources.leftCols(14), targets.leftCols(14));
-  // The smoothing is relative to the sources' box, which the last of them does not span.
-  EXPECT_NEAR(warp.left_out(14), (others(sources.col(14)) - targets.col(14)).norm(), 1e-2);
+  const BiharmonicWarp warp(from, onto);
+  const BiharmonicWarp others(from.leftCols(14), onto.leftCols(14));
+  // The smoothing is relative to the from' box, which the last of them does not span.
+  EXPECT_NEAR(warp.left_out(14), (others(from.col(14)) - onto.col(14)).norm(), 1e-2);
 }
 
 TEST(BiharmonicWarp, KnowsTheEnergyOfInterchangedTargets) {
-  const BiharmonicWarp warp(sources, targets);
+  const BiharmonicWarp warp(from, onto);
   EXPECT_GT(warp.energy(), 0);
-  Points changed = targets;
+  Points changed = onto;
   changed.col(3).swap(changed.col(9));
-  const double expected = BiharmonicWarp(sources, changed).energy();
+  const double expected = BiharmonicWarp(from, changed).energy();
   EXPECT_NEAR(warp.energy_interchanged(3, 9), expected, 1e-9 * expected);
 }
 

@@ -28,7 +28,7 @@ Anchors similar_with_twins() {
 
 TEST(ContradictingAnchors, AreNoneUnderASimilarity) {
   EXPECT_TRUE(contradicting_anchors(similar_with_twins()).empty());
-  EXPECT_EQ(to_string({}, similar_with_twins()), "");
+  EXPECT_EQ(to_string(std::vector<ContradictingAnchors>{}, similar_with_twins()), "");
 }
 
 TEST(ContradictingAnchors, AreThoseMovedFartherThanTheyAreApart) {

@@ -33,7 +33,7 @@ TEST(SwappedAnchors, AreNoneAmongRightPairs) {
   Anchors affine = bent_pairs(24);
   for (AnchorPair& pair : affine.pairs) pair.b = 2 * pair.a + Vector3(5, 0, 1);
   EXPECT_TRUE(swapped_anchors(affine).empty());
-  EXPECT_EQ(to_string({}, affine), "");
+  EXPECT_EQ(to_string(std::vector<SwappedAnchors>{}, affine), "");
 }
 
 TEST(SwappedAnchors, AreFoundWhicheverTheyAre) {

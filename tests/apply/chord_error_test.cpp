@@ -1,17 +1,14 @@
 #include "bespoke/apply/chord_error.h"
+#include "apply/motions.h"
 
 #include <gtest/gtest.h>
 
 namespace bespoke {
 namespace {
 
-/// (x, y, z + x² / 2): the chord error of an edge that goes d along x is d² / 8.
-Points bend(const Points& x) {
-  Points y = x;
-  y.row(2) += 0.5 * x.row(0).cwiseAbs2();
-  return y;
-}
+using test::bend;
 
+/// (x, y, z + x² / 2): the chord error of an edge that goes d along x is d² / 8.
 /// A square from x = 0 to 1 and a triangle beside it, which reaches to x = 3.
 Product square_and_triangle() {
   Product product;

@@ -1,4 +1,5 @@
 #include "bespoke/apply/motion_jacobian.h"
+#include "apply/motions.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +12,6 @@
 namespace bespoke {
 namespace {
 
-RigidTransform some_motion() {
-  return {Eigen::AngleAxisd(0.7, Vector3(1, 1, 0).normalized()).toRotationMatrix(), {1, -2, 3}};
-}
-
 std::shared_ptr<ElasticMap> some_map(double turn) {
   AffineMap affine;
   affine.linear = Eigen::AngleAxisd(turn, Vector3::UnitZ()) * Matrix3(Vector3(1, 1.2, 0.9).asDiagonal());
@@ -26,12 +23,12 @@ std::shared_ptr<ElasticMap> some_map(double turn) {
 double deviation(const ElasticMap& map, double t, const MotionOptions& motion) {
   constexpr double step = 1e-5;
   const Points x = Points{{0.1, 0.5, 3, -0.3}, {0.2, -0.5, 0, 0.3}, {0, 0.1, 0, 0.2}};
-  const Points jacobians = motion_jacobian(map, some_motion(), x, {t}, motion).front();
+  const Points jacobians = motion_jacobian(map, test::some_motion(), x, {t}, motion).front();
   double largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3 offset = step * Vector3::Unit(axis);
     const auto moved = [&](const Points& at) {
-      return apply_mapping(map, some_motion(), at, {t}, motion).frames.front();
+      return apply_mapping(map, test::some_motion(), at, {t}, motion).frames.front();
     };
     const Points slope = (moved(x.colwise() + offset) - moved(x.colwise() - offset)) / (2 * step);
     for (Eigen::Index i = 0; i < x.cols(); ++i)
@@ -56,7 +53,8 @@ TEST(MotionJacobian, AgreesWithFiniteDifferencesAlongTheFlowOfAChain) {
 }
 
 TEST(MotionJacobian, IsTheIdentityAtRest) {
-  const Points jacobians = motion_jacobian(*some_map(0.2), some_motion(), Points::Random(3, 5), {0}).front();
+  const Points jacobians =
+      motion_jacobian(*some_map(0.2), test::some_motion(), Points::Random(3, 5), {0}).front();
   EXPECT_EQ(jacobians, Points(Matrix3::Identity().replicate(1, 5)));
 }
 

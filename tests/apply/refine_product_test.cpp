@@ -1,4 +1,5 @@
 #include "bespoke/apply/refine_product.h"
+#include "apply/motions.h"
 
 #include <gmock/gmock.h>
 
@@ -10,13 +11,9 @@
 namespace bespoke {
 namespace {
 
-using ::testing::HasSubstr;
+using test::bend;
 
-Points bend(const Points& x) {
-  Points y = x;
-  y.row(2) += 0.5 * x.row(0).cwiseAbs2();
-  return y;
-}
+using ::testing::HasSubstr;
 
 /// Four triangles around (1, 1, 0) that fill the square from 0 to 3, their texture coordinates x and y.
 Product fan() {

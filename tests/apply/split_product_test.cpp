@@ -4,8 +4,7 @@
 #include <random>
 #include <sstream>
 
-#include "bespoke/apply/refine_product.h"
-#include "product/product_files.h"
+#include "apply/split_files.h"
 
 namespace bespoke {
 namespace {
@@ -14,24 +13,7 @@ using test::identity_motion;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-Points bend(const Points& x) {
-  Points y = x;
-  y.row(2) += 0.5 * x.row(0).cwiseAbs2();
-  return y;
-}
-
-class SplitProduct : public test::ProductFiles {
- protected:
-  /// The file with its edges split for a chord error, otherwise as it was.
-  std::string split(const std::string& name, const std::string& content, double length) {
-    const std::filesystem::path in = file(name, content), out = directory_ / ("out_" + name);
-    refined_ = refine_product(read_product(in), bend, length);
-    carry_product(in, {out}, identity_motion(), {{}, {}, &refined_.splits});
-    return test::read_text(out);
-  }
-
-  RefinedProduct refined_;
-};
+using SplitProduct = test::SplitFiles;
 
 // A triangle whose two edges along x are split, the longer one first. What stands behind it names vertices by
 // numbers that grow, or by numbers that count back, which grow only where they reach back over new vertices.

@@ -20,7 +20,7 @@ PointCloudSurface surface_of(const OrientedPoints& cloud) {
   return point_cloud_surface(cloud, "target a.ply");
 }
 
-std::string complaint(const OrientedPoints& cloud) {
+std::string meshing_complaint(const OrientedPoints& cloud) {
   return test::error_message<InvalidInput>([&] { surface_of(cloud); });
 }
 
@@ -135,14 +135,16 @@ TEST(PointCloudSurface, RefusesNormalsWithoutAnOrder) {
   std::mt19937 coin(6);
   for (auto normal : cloud.normals.colwise())
     if (coin() % 2 == 0) normal = -normal;
-  EXPECT_THAT(complaint(cloud), HasSubstr("of the normals face against their neighbours; orient them"));
+  EXPECT_THAT(meshing_complaint(cloud),
+              HasSubstr("of the normals face against their neighbours; orient them"));
 }
 
 TEST(PointCloudSurface, RefusesCloudsThatAreNotValid) {
-  EXPECT_THAT(complaint(test::sphere_cloud(20)), HasSubstr("target a.ply: a point cloud of 20 points"));
+  EXPECT_THAT(meshing_complaint(test::sphere_cloud(20)),
+              HasSubstr("target a.ply: a point cloud of 20 points"));
   OrientedPoints heap = test::sphere_cloud(200);
   for (auto point : heap.points.colwise()) point = point.cwiseSign();
-  EXPECT_THAT(complaint(heap), HasSubstr("its points lie at only"));
+  EXPECT_THAT(meshing_complaint(heap), HasSubstr("its points lie at only"));
 }
 
 }  // namespace

@@ -20,12 +20,12 @@ TEST(InfoCommand, SaysWhatTheAssetHolds) {
 
   const ProgramResult result = bespoke({"info", pair.file("map.vdb"), "--json", "--untrusted"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
+  const auto printed = nlohmann::json::parse(result.out);
   for (const char* key : {"rotation", "translation", "affine_linear", "affine_offset", "certificate",
                           "options", "stages", "source", "target", "anchors", "bake_error", "levels"})
-    EXPECT_TRUE(json.contains(key)) << key;
-  EXPECT_EQ(json["unit"], "cm");
-  const auto& certificate = json["certificate"];
+    EXPECT_TRUE(printed.contains(key)) << key;
+  EXPECT_EQ(printed["unit"], "cm");
+  const auto& certificate = printed["certificate"];
   EXPECT_EQ(certificate["bijection"].get<bool>(), certificate["folded"] == 0 &&
                                                       certificate["undecided"] == 0 &&
                                                       certificate["affine_determinant"] > 0);

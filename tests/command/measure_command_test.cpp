@@ -36,24 +36,24 @@ TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
                                          pair.file("source.obj")};
   const ProgramResult result = measure(pair, options);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto json = nlohmann::json::parse(result.out);
-  EXPECT_EQ(json["anchor_residuals"]["count"], 14);
-  EXPECT_EQ(json["source_faces"], 1280);
-  EXPECT_EQ(json["flipped_faces"], 0);
+  const auto printed = nlohmann::json::parse(result.out);
+  EXPECT_EQ(printed["anchor_residuals"]["count"], 14);
+  EXPECT_EQ(printed["source_faces"], 1280);
+  EXPECT_EQ(printed["flipped_faces"], 0);
   // The bake adds at most its tolerance, and chords of either mesh lie up to 1 % of the largest radius, 1.4,
   // below its ellipsoid.
   const double off =
       0.014 +
       nlohmann::json::parse(bespoke({"info", pair.file("map.vdb"), "--json"}).out)["tolerance"].get<double>();
-  EXPECT_LT(json["source_to_target"]["p99"].get<double>(), off);
-  EXPECT_LT(json["target_to_source"]["p99"].get<double>(), off);
-  EXPECT_GE(json["hausdorff"].get<double>(), json["source_to_target"]["max"].get<double>());
-  EXPECT_GT(json["distortion"]["least_determinant"].get<double>(), 0);
-  EXPECT_GE(json["distortion"]["conformal"]["min"].get<double>(), 1);
-  ASSERT_EQ(json["products"].size(), 2u);
-  EXPECT_EQ(json["products"][0]["name"], "product.obj");
+  EXPECT_LT(printed["source_to_target"]["p99"].get<double>(), off);
+  EXPECT_LT(printed["target_to_source"]["p99"].get<double>(), off);
+  EXPECT_GE(printed["hausdorff"].get<double>(), printed["source_to_target"]["max"].get<double>());
+  EXPECT_GT(printed["distortion"]["least_determinant"].get<double>(), 0);
+  EXPECT_GE(printed["distortion"]["conformal"]["min"].get<double>(), 1);
+  ASSERT_EQ(printed["products"].size(), 2u);
+  EXPECT_EQ(printed["products"][0]["name"], "product.obj");
   // The source as a product lies on its own surface and lands on the target's.
-  const auto& itself = json["products"][1];
+  const auto& itself = printed["products"][1];
   EXPECT_EQ(itself["clearance_before"]["max"], 0);
   EXPECT_EQ(itself["penetration_before"]["vertices"], 0);
   EXPECT_LT(itself["clearance_change"]["p95"].get<double>(), off);

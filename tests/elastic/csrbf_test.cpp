@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "support/arithmetic.h"
 #include "support/error_message.h"
 #include "support/finite_differences.h"
 #include "support/random_points.h"
@@ -29,16 +30,14 @@ std::string refusal(const Points& sources, const Points& targets, const CsrbfOpt
   return test::error_message<ExpectedError>([&] { fit_csrbf(sources, targets, options); });
 }
 
-Points bent(const Points& x) { return x + 0.1 * (3 * x.array()).sin().matrix().colwise().reverse(); }
-
-double largest_distance(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
+Points wavy(const Points& x) { return x + 0.1 * (3 * x.array()).sin().matrix().colwise().reverse(); }
 
 TEST(FitCsrbf, Interpolates) {
   for (const double lambda : {0.05, 0.2, 0.5, 2.5}) {
     const Points sources = test::sphere_points(1500);
-    const CsrbfFit fit = fit_csrbf(sources, bent(sources), with_lambda(lambda));
-    EXPECT_LT(largest_distance((*fit.map)(sources), bent(sources)), 1e-9) << "lambda " << lambda;
-    EXPECT_EQ(fit.summary.residual, largest_distance((*fit.map)(sources), bent(sources)));
+    const CsrbfFit fit = fit_csrbf(sources, wavy(sources), with_lambda(lambda));
+    EXPECT_LT(test::largest_distance((*fit.map)(sources), wavy(sources)), 1e-9) << "lambda " << lambda;
+    EXPECT_EQ(fit.summary.residual, test::largest_distance((*fit.map)(sources), wavy(sources)));
   }
 }
 
@@ -49,13 +48,13 @@ TEST(FitCsrbf, ReproducesAffineMapsEverywhere) {
   const Points sources = test::sphere_points(800).colwise() + Vector3(3, -2, 7);
   const CsrbfFit fit = fit_csrbf(sources, map * sources, with_lambda(0.4));
   const Points x = (1.5 * test::random_points(2000, 1)).colwise() + Vector3(3, -2, 7);
-  EXPECT_LT(largest_distance((*fit.map)(x), map * x), 1e-10);
+  EXPECT_LT(test::largest_distance((*fit.map)(x), map * x), 1e-10);
   EXPECT_LT((fit.map->affine().linear - map.linear).norm(), 1e-11);
 }
 
 TEST(FitCsrbf, IsExactlyAffineBeyondLambda) {
   const Points sources = test::sphere_points(500);
-  const CsrbfFit fit = fit_csrbf(sources, bent(sources), with_lambda(0.3));
+  const CsrbfFit fit = fit_csrbf(sources, wavy(sources), with_lambda(0.3));
   const Points x = 2 * test::random_points(1000, 2);
   const Points u = fit.map->displacement(x);
   for (Eigen::Index i = 0; i < x.cols(); ++i)
@@ -66,7 +65,7 @@ TEST(FitCsrbf, IsExactlyAffineBeyondLambda) {
 
 TEST(FitCsrbf, SupportHoldsEveryPointThatMoves) {
   const Points sources = test::sphere_points(300);
-  const CsrbfFit fit = fit_csrbf(sources, bent(sources), with_lambda(0.3));
+  const CsrbfFit fit = fit_csrbf(sources, wavy(sources), with_lambda(0.3));
   const Support support = fit.map->support();
   ASSERT_EQ(support.clouds.size(), 1u);
   EXPECT_EQ(support.clouds[0].radius, 0.3);
@@ -75,7 +74,7 @@ TEST(FitCsrbf, SupportHoldsEveryPointThatMoves) {
 
 TEST(FitCsrbf, GradientEqualsFiniteDifferences) {
   const Points sources = test::sphere_points(500);
-  const CsrbfFit fit = fit_csrbf(sources, bent(sources), with_lambda(0.5));
+  const CsrbfFit fit = fit_csrbf(sources, wavy(sources), with_lambda(0.5));
   const Points x = 1.2 * test::random_points(200, 3);
   const Points slope = test::finite_differences(*fit.map, x, 1e-5);
   EXPECT_LT((fit.map->displacement_gradient(x) - slope).colwise().norm().maxCoeff(), 1e-6);
@@ -85,9 +84,9 @@ TEST(FitCsrbf, DisconnectedPiecesDoNotFeelEachOther) {
   Points sources(3, 400);
   sources << test::sphere_points(200), test::sphere_points(200).colwise() + Vector3(5, 0, 0);
   Points targets = sources;
-  targets.leftCols(200) = bent(sources.leftCols(200));
+  targets.leftCols(200) = wavy(sources.leftCols(200));
   const CsrbfFit fit = fit_csrbf(sources, targets, with_lambda(0.3));
-  EXPECT_LT(largest_distance((*fit.map)(sources), targets), 1e-10);
+  EXPECT_LT(test::largest_distance((*fit.map)(sources), targets), 1e-10);
 }
 
 TEST(FitCsrbf, RefusesUnusableSources) {
@@ -139,7 +138,7 @@ void expect_good_advice(const Points& sources, CsrbfOptions options) {
   larger.lambda = 1.1 * estimate.advised_lambda;
   EXPECT_FALSE(estimate_csrbf(sources, larger).within_limits);
   options.lambda = estimate.advised_lambda;
-  const CsrbfFit fit = fit_csrbf(sources, bent(sources), options);
+  const CsrbfFit fit = fit_csrbf(sources, wavy(sources), options);
   EXPECT_LT(fit.summary.residual, 1e-6);
 }
 

@@ -12,11 +12,11 @@
 namespace bespoke {
 namespace {
 
-const TriangleMesh source = shapes::icosphere(2);
-const Points fitted = 1.1 * source.vertices + 0.02 * test::random_points(source.vertices.cols(), 1);
+const TriangleMesh ball = shapes::icosphere(2);
+const Points fitted_ball = 1.1 * ball.vertices + 0.02 * test::random_points(ball.vertices.cols(), 1);
 
 ElasticFit fit_by(const ElasticMethodRow& row) {
-  return row.fit({source, fitted, source.vertices, fitted}, {0.5, 1e-3}, {});
+  return row.fit({ball, fitted_ball, ball.vertices, fitted_ball}, {0.5, 1e-3}, {});
 }
 
 TEST(ElasticMethods, HaveOneRowEachWithANameOfItsOwn) {
@@ -44,7 +44,7 @@ TEST(ElasticMethods, FitPrintAndAreKept) {
   const Points x = 1.2 * test::random_points(100, 2);
   for (const ElasticMethodRow& row : elastic_methods) {
     const ElasticFit fit = fit_by(row);
-    EXPECT_LT(((*fit.map)(source.vertices) - fitted).norm() / fitted.norm(), 0.05) << row.name;
+    EXPECT_LT(((*fit.map)(ball.vertices) - fitted_ball).norm() / fitted_ball.norm(), 0.05) << row.name;
     const std::string line = std::visit([](const auto& found) { return to_string(found); }, fit.found);
     EXPECT_FALSE(line.empty()) << row.name;
     EXPECT_EQ(line.find('\n'), std::string::npos) << row.name;
@@ -54,12 +54,12 @@ TEST(ElasticMethods, FitPrintAndAreKept) {
 }
 
 TEST(ElasticMethods, ThatMeetPointsMeetOnesOffTheSurface) {
-  Points sources(3, source.vertices.cols() + 1), targets(3, fitted.cols() + 1);
-  sources << source.vertices, Vector3(0, 0, 1.3);
-  targets << fitted, Vector3(0.03, 0.02, 1.45);
+  Points sources(3, ball.vertices.cols() + 1), targets(3, fitted_ball.cols() + 1);
+  sources << ball.vertices, Vector3(0, 0, 1.3);
+  targets << fitted_ball, Vector3(0.03, 0.02, 1.45);
   for (const ElasticMethodRow& row : elastic_methods) {
     if (!row.meets_points) continue;
-    const ElasticFit fit = row.fit({source, fitted, sources, targets}, {0.5, 1e-3}, {});
+    const ElasticFit fit = row.fit({ball, fitted_ball, sources, targets}, {0.5, 1e-3}, {});
     EXPECT_LE(((*fit.map)(sources)-targets).colwise().norm().maxCoeff(), 1e-3) << row.name;
   }
 }

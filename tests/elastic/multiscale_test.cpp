@@ -13,6 +13,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_alignment.h"
+#include "support/arithmetic.h"
 #include "support/error_message.h"
 #include "support/finite_differences.h"
 #include "support/random_points.h"
@@ -31,15 +32,13 @@ MultiscaleOptions with_options(double lambda, double tolerance, bool composed) {
 }
 
 /// A smooth, strong deformation.
-Points bent(const Points& x) {
+Points wrung(const Points& x) {
   Points result = x;
   result.row(0) += (0.3 * (2 * x.row(1).array()).sin()).matrix();
   result.row(1) += (0.2 * (3 * x.row(2).array()).cos()).matrix();
   result.row(2) *= 1.4;
   return result;
 }
-
-double largest_distance(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
 
 /// Within `reach` of the sources.
 Points band_points(const Points& sources, int count, double reach, unsigned seed) {
@@ -60,12 +59,12 @@ INSTANTIATE_TEST_SUITE_P(, FitMultiscale, testing::Values(false, true),
 
 TEST_P(FitMultiscale, MeetsTheTolerance) {
   const Points sources = test::sphere_points(4000);
-  const Points targets = bent(sources);
+  const Points targets = wrung(sources);
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
     const MultiscaleFit fit = fit_multiscale(sources, targets, with_options(0.6, tolerance, GetParam()));
     EXPECT_EQ(fit.summary.within_tolerance, 4000u);
-    EXPECT_LE(largest_distance((*fit.map)(sources), targets), tolerance);
-    EXPECT_NEAR(fit.summary.residuals.max, largest_distance((*fit.map)(sources), targets), 1e-12);
+    EXPECT_LE(test::largest_distance((*fit.map)(sources), targets), tolerance);
+    EXPECT_NEAR(fit.summary.residuals.max, test::largest_distance((*fit.map)(sources), targets), 1e-12);
   }
 }
 
@@ -77,12 +76,12 @@ TEST_P(FitMultiscale, ReproducesAffineMapsWithoutAnyLayer) {
   const MultiscaleFit fit = fit_multiscale(sources, map * sources, with_options(0.5, 1e-6, GetParam()));
   EXPECT_TRUE(fit.map->layers().empty());
   const Points x = 10 * test::random_points(100, 1);
-  EXPECT_LT(largest_distance((*fit.map)(x), map * x), 1e-10);
+  EXPECT_LT(test::largest_distance((*fit.map)(x), map * x), 1e-10);
 }
 
 TEST_P(FitMultiscale, IsExactlyAffineOutsideTheSupportItReports) {
   const Points sources = test::sphere_points(1000);
-  const MultiscaleFit fit = fit_multiscale(sources, bent(sources), with_options(0.4, 1e-3, GetParam()));
+  const MultiscaleFit fit = fit_multiscale(sources, wrung(sources), with_options(0.4, 1e-3, GetParam()));
   const Support support = fit.map->support();
   const Points x = 2 * test::random_points(3000, 2);
   const Points u = fit.map->displacement(x);
@@ -103,7 +102,7 @@ TEST_P(FitMultiscale, IsExactlyAffineOutsideTheSupportItReports) {
 
 TEST_P(FitMultiscale, GradientEqualsFiniteDifferences) {
   const Points sources = test::sphere_points(1000);
-  const MultiscaleFit fit = fit_multiscale(sources, bent(sources), with_options(0.6, 1e-3, GetParam()));
+  const MultiscaleFit fit = fit_multiscale(sources, wrung(sources), with_options(0.6, 1e-3, GetParam()));
   const Points x = band_points(sources, 300, 0.5, 3);
   const Points slope = test::finite_differences(*fit.map, x, 1e-6);
   EXPECT_LT((fit.map->displacement_gradient(x) - slope).colwise().norm().maxCoeff(), 1e-5);
@@ -113,8 +112,8 @@ TEST_P(FitMultiscale, GivesTheSameBitsTwice) {
   const Points sources = test::sphere_points(1500);
   const auto options = with_options(0.5, 1e-3, GetParam());
   const Points x = band_points(sources, 500, 0.5, 4);
-  EXPECT_EQ(fit_multiscale(sources, bent(sources), options).map->displacement(x),
-            fit_multiscale(sources, bent(sources), options).map->displacement(x));
+  EXPECT_EQ(fit_multiscale(sources, wrung(sources), options).map->displacement(x),
+            fit_multiscale(sources, wrung(sources), options).map->displacement(x));
 }
 
 TEST_P(FitMultiscale, DisconnectedPiecesMoveApart) {
@@ -123,17 +122,17 @@ TEST_P(FitMultiscale, DisconnectedPiecesMoveApart) {
   Points targets = sources;
   targets.leftCols(500).row(1).array() += 0.2;
   const MultiscaleFit fit = fit_multiscale(sources, targets, with_options(0.6, 1e-3, GetParam()));
-  EXPECT_LE(largest_distance((*fit.map)(sources), targets), 1e-3);
+  EXPECT_LE(test::largest_distance((*fit.map)(sources), targets), 1e-3);
 }
 
 TEST_P(FitMultiscale, TakesASingleTriangleAndASinglePoint) {
   const Points triangle = Matrix3::Identity();
   const Points moved = 2 * triangle;
   const MultiscaleFit fit = fit_multiscale(triangle, moved, with_options(0.5, 1e-3, GetParam()));
-  EXPECT_LT(largest_distance((*fit.map)(triangle), moved), 1e-3);
+  EXPECT_LT(test::largest_distance((*fit.map)(triangle), moved), 1e-3);
   const MultiscaleFit point =
       fit_multiscale(triangle.col(0), moved.col(0), with_options(0.5, 1e-3, GetParam()));
-  EXPECT_LT(largest_distance((*point.map)(triangle.col(0)), moved.col(0)), 1e-12);
+  EXPECT_LT(test::largest_distance((*point.map)(triangle.col(0)), moved.col(0)), 1e-12);
 }
 
 TEST_P(FitMultiscale, CountsWhatCannotBeMet) {
@@ -180,7 +179,7 @@ TEST(FitMultiscaleComposed, DoesNotFoldWhereTheDataFolds) {
 
 TEST(FitMultiscaleComposed, ReportsGradientBoundsThatHold) {
   const Points sources = test::sphere_points(1500);
-  const MultiscaleFit fit = fit_multiscale(sources, bent(sources), with_options(0.6, 1e-3, true));
+  const MultiscaleFit fit = fit_multiscale(sources, wrung(sources), with_options(0.6, 1e-3, true));
   ASSERT_EQ(fit.summary.gradient_bounds.size(), fit.map->layers().size());
   for (std::size_t k = 0; k < fit.map->layers().size(); ++k) {
     EXPECT_LT(fit.summary.gradient_bounds[k], 1);
@@ -234,7 +233,7 @@ TEST(MultiscaleMap, ComposesAfterTheAffinePart) {
 TEST(MultiscaleSummary, PrintsOneLine) {
   const Points sources = test::sphere_points(300);
   const std::string line =
-      to_string(fit_multiscale(sources, bent(sources), with_options(0.5, 1e-2, true)).summary);
+      to_string(fit_multiscale(sources, wrung(sources), with_options(0.5, 1e-2, true)).summary);
   EXPECT_THAT(line, HasSubstr("300 of 300"));
   EXPECT_EQ(line.find('\n'), std::string::npos);
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr double lambda = 0.5;
 
 /// A smooth change of the unit sphere that is not affine.
-Points bent(const Points& x) {
+Points parabolic(const Points& x) {
   Points result = x;
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     result(0, i) += 0.2 * x(1, i) * x(1, i);
@@ -33,7 +33,7 @@ Matrix3 corners(const Points& points, const Faces& faces, Eigen::Index face) {
 
 struct Scene {
   TriangleMesh source = shapes::icosphere(2);
-  Points fitted = bent(source.vertices);
+  Points fitted = parabolic(source.vertices);
   SmoothPffdMap map = SmoothPffdMap(source, fitted, lambda);
 };
 
@@ -108,7 +108,7 @@ TEST(SmoothPffdMap, GradientOnAFaceIsThatOfItsFrame) {
 
 TEST(SmoothPffdMap, SupportHoldsAllThatMoves) {
   TriangleMesh coarse = shapes::cube();
-  const SmoothPffdMap map(coarse, bent(coarse.vertices), 0.2);
+  const SmoothPffdMap map(coarse, parabolic(coarse.vertices), 0.2);
   const Support support = map.support();
   ASSERT_EQ(support.clouds.size(), 1u);
   const BallCloud& cloud = support.clouds[0];
@@ -133,14 +133,14 @@ TEST(SmoothPffdMap, KeepsTheThirdDimensionOfAFlatSource) {
 
 TEST(SmoothPffdMap, IgnoresFacesWithoutAreaAndLooseVertices) {
   TriangleMesh source = shapes::icosphere(2);
-  const SmoothPffdMap clean(source, bent(source.vertices), lambda);
+  const SmoothPffdMap clean(source, parabolic(source.vertices), lambda);
   TriangleMesh dirty = source;
   dirty.faces.conservativeResize(3, dirty.faces.cols() + 1);
   dirty.faces.rightCols(1) << 0, 0, 1;
   dirty.vertices.conservativeResize(3, dirty.vertices.cols() + 1);
   dirty.vertices.rightCols(1) = Vector3(9, 9, 9);
   Points fitted(3, dirty.vertices.cols());
-  fitted << bent(source.vertices), Vector3(-5, 0, 0);
+  fitted << parabolic(source.vertices), Vector3(-5, 0, 0);
   const Points x = points_in_shell(100, 0.5, 1.5);
   EXPECT_EQ(SmoothPffdMap(dirty, fitted, lambda)(x), clean(x));
 }

@@ -17,10 +17,10 @@
 namespace bespoke {
 namespace {
 
-constexpr double lambda = 0.4;
-const TriangleMesh source = shapes::icosphere(2);
+constexpr double width = 0.4;
+const TriangleMesh sphere = shapes::icosphere(2);
 
-Points bent(const Points& x) {
+Points sheared_bend(const Points& x) {
   Points result = x;
   for (Eigen::Index i = 0; i < x.cols(); ++i)
     result.col(i) += Vector3(0.2 * x(2, i), 0.1 * x(0, i) * x(0, i), 0.2 * x(2, i) * x(1, i));
@@ -31,7 +31,7 @@ Points bent(const Points& x) {
 Points near_points(Eigen::Index count, unsigned seed) {
   Points x = test::random_points(count, seed).colwise().normalized();
   const Points height = test::random_points(count, seed + 1);
-  for (Eigen::Index i = 0; i < count; ++i) x.col(i) *= 1 + 0.9 * lambda * height(0, i);
+  for (Eigen::Index i = 0; i < count; ++i) x.col(i) *= 1 + 0.9 * width * height(0, i);
   return x;
 }
 
@@ -75,32 +75,32 @@ Vector3 printed(const TriangleMesh& mesh, const Points& fitted, const Vector3& x
 }
 
 TEST(PffdMap, IsThePrintedMeanOfNearFaces) {
-  const Points fitted = bent(source.vertices);
-  const PffdMap map(source, fitted, lambda);
+  const Points fitted = sheared_bend(sphere.vertices);
+  const PffdMap map(sphere, fitted, width);
   const Points x = near_points(300, 1);
   const Points image = map(x);
   for (Eigen::Index i = 0; i < x.cols(); ++i)
-    EXPECT_LT((image.col(i) - printed(source, fitted, x.col(i))).norm(), 1e-12) << x.col(i).transpose();
+    EXPECT_LT((image.col(i) - printed(sphere, fitted, x.col(i))).norm(), 1e-12) << x.col(i).transpose();
 }
 
 TEST(PffdMap, ReproducesSimilaritiesEverywhere) {
   const AffineMap similarity{1.7 * test::random_rotation(3), Vector3(1, 2, 3)};
-  const PffdMap map(source, similarity * source.vertices, lambda);
+  const PffdMap map(sphere, similarity * sphere.vertices, width);
   const Points x = 2 * test::random_points(300, 4);
   EXPECT_LT((map(x) - similarity * x).cwiseAbs().maxCoeff(), 1e-11);
 }
 
 TEST(PffdMap, IsAffineBeyondLambdaAndJumpsThere) {
-  const PffdMap map(source, bent(source.vertices), lambda);
-  const ClosestPointTree surface(source);
+  const PffdMap map(sphere, sheared_bend(sphere.vertices), width);
+  const ClosestPointTree surface(sphere);
   const Points x = 1.6 * test::random_points(2000, 5);
   const Points u = map.displacement(x);
   double largest_at_rim = 0;
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const double distance = std::sqrt(surface.closest(x.col(i))->squared_distance);
-    if (distance > lambda * (1 + 1e-9)) {
+    if (distance > width * (1 + 1e-9)) {
       EXPECT_EQ(u.col(i), Vector3(Vector3::Zero()));
-    } else if (distance > 0.99 * lambda) {
+    } else if (distance > 0.99 * width) {
       largest_at_rim = std::max(largest_at_rim, u.col(i).norm());
     }
   }
@@ -109,7 +109,7 @@ TEST(PffdMap, IsAffineBeyondLambdaAndJumpsThere) {
 }
 
 TEST(PffdMap, GradientIsTheLimitOfDifferencesBetweenJumps) {
-  const PffdMap map(source, bent(source.vertices), lambda);
+  const PffdMap map(sphere, sheared_bend(sphere.vertices), width);
   const Points x = near_points(100, 6);
   const Points gradient = map.displacement_gradient(x);
   constexpr double step = 1e-6;
@@ -133,7 +133,7 @@ TEST(PffdMap, GradientIsTheLimitOfDifferencesBetweenJumps) {
 }
 
 TEST(PffdMap, BakesAsItIsAndTheCertificateCounts) {
-  const PffdMap map(source, bent(source.vertices), lambda);
+  const PffdMap map(sphere, sheared_bend(sphere.vertices), width);
   BakeOptions options;
   options.tolerance = 0.02;
   options.error_points = 20'000;
@@ -144,8 +144,8 @@ TEST(PffdMap, BakesAsItIsAndTheCertificateCounts) {
   const Certificate certificate = certify(baked.pyramid, map.affine());
   EXPECT_GT(certificate.certified, 0u);
   EXPECT_EQ(certificate.folded + certificate.undecided, baked.summary.folded_cells);
-  const Points vertices = BakedMap(map.affine(), baked.pyramid)(source.vertices);
-  EXPECT_LT((vertices - map(source.vertices)).colwise().norm().maxCoeff(), 0.1);
+  const Points vertices = BakedMap(map.affine(), baked.pyramid)(sphere.vertices);
+  EXPECT_LT((vertices - map(sphere.vertices)).colwise().norm().maxCoeff(), 0.1);
 }
 
 TEST(PffdMap, RejectsWhatItCannotUse) {

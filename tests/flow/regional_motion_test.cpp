@@ -5,13 +5,14 @@
 #include <numbers>
 
 #include "flow/bent_tube.h"
+#include "support/arithmetic.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using test::degree;
 
 TEST(RegionalMotion, OfALimbIsItsTurn) {
   const TriangleMesh source = test::tube();

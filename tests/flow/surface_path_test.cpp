@@ -10,13 +10,14 @@
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "flow/bent_tube.h"
+#include "support/arithmetic.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using test::degree;
 
 std::vector<int> columns_between(const Points& x, double low, double high) {
   std::vector<int> columns;

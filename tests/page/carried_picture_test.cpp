@@ -14,7 +14,7 @@
 namespace bespoke {
 namespace {
 
-constexpr int size = 48;
+constexpr int picture_size = 48;
 
 const TriangleMesh model = shapes::icosphere(3);
 const std::vector<TriangleMesh> products{
@@ -32,11 +32,11 @@ TriangleMesh stretched(TriangleMesh mesh) {
 TEST(CarriedPicture, ShowsTheWayFromSourceToTarget) {
   const TriangleMesh target = stretched(model);
   const auto picture = [&](double t) {
-    return carried_picture({grows, {}, {}, t, model, target, products}, size);
+    return carried_picture({grows, {}, {}, t, model, target, products}, picture_size);
   };
   const std::vector<TriangleMesh> large{stretched(products[0])};
-  EXPECT_EQ(picture(0), carried_picture({stays, {}, {}, 1, model, model, products}, size));
-  EXPECT_EQ(picture(1), carried_picture({stays, {}, {}, 1, target, target, large}, size));
+  EXPECT_EQ(picture(0), carried_picture({stays, {}, {}, 1, model, model, products}, picture_size));
+  EXPECT_EQ(picture(1), carried_picture({stays, {}, {}, 1, target, target, large}, picture_size));
   EXPECT_NE(picture(0.5), picture(0));
   EXPECT_NE(picture(0.5), picture(1));
   EXPECT_THAT(picture(1), testing::StartsWith("\x89PNG"));
@@ -47,16 +47,16 @@ TEST(CarriedPicture, StaysBeforeTheFrontOfTheSource) {
                               Vector3(3, 0, 4)};
   const TriangleMesh target = shapes::moved(model, {turned.rotation, turned.translation});
   const auto shown = [&](const RigidTransform& rigid, const TriangleMesh& there) {
-    return carried_picture({stays, rigid, {}, 0.5, model, there, products}, size);
+    return carried_picture({stays, rigid, {}, 0.5, model, there, products}, picture_size);
   };
   EXPECT_EQ(shown(turned, target), shown({}, model));
 }
 
 TEST(CarriedPicture, LeavesPointsOutAndNeedsAModel) {
   const std::vector<TriangleMesh> points{{Points::Random(3, 5), {}}};
-  EXPECT_EQ(carried_picture({stays, {}, {}, 1, model, model, points}, size),
-            carried_picture({stays, {}, {}, 1, model, model, {}}, size));
-  EXPECT_THROW(carried_picture({stays, {}, {}, 1, {}, {}, {}}, size), InvalidInput);
+  EXPECT_EQ(carried_picture({stays, {}, {}, 1, model, model, points}, picture_size),
+            carried_picture({stays, {}, {}, 1, model, model, {}}, picture_size));
+  EXPECT_THROW(carried_picture({stays, {}, {}, 1, {}, {}, {}}, picture_size), InvalidInput);
 }
 
 }  // namespace

@@ -17,10 +17,10 @@ ElasticChain chain(int steps) {
   return ElasticChain(std::move(maps));
 }
 
-struct Scene {
+struct BakeScene {
   TriangleMesh source = shapes::icosphere(3);
   BakeOptions options;
-  Scene() {
+  BakeScene() {
     source.vertices *= 0.6;
     options.tolerance = 1e-3;
     options.error_points = 20'000;
@@ -34,7 +34,7 @@ struct Scene {
 };
 
 TEST(BakeSteps, MeetTheToleranceAsAWhole) {
-  const Scene scene;
+  const BakeScene scene;
   const ElasticChain exact = chain(4);
   const BakedSteps baked = bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options);
   ASSERT_EQ(baked.steps.size(), 4u);
@@ -47,7 +47,7 @@ TEST(BakeSteps, MeetTheToleranceAsAWhole) {
 }
 
 TEST(BakeSteps, OfOneStepAreItsBake) {
-  const Scene scene;
+  const BakeScene scene;
   const ElasticChain exact = chain(1);
   const BakedSteps baked = bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options);
   BakeOptions options = scene.options;
@@ -63,7 +63,7 @@ TEST(BakeSteps, OfOneStepAreItsBake) {
 }
 
 TEST(BakeSteps, EndAtAStepThatFoldsAndMayBeDividedAndGoOnFromThoseAfterIt) {
-  const Scene scene;
+  const BakeScene scene;
   const std::vector<std::shared_ptr<const ElasticMap>> sound = chain(3).steps();
   // A bump that moves points farther than it is wide takes space back over itself.
   const auto folding =

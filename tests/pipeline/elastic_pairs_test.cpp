@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr double tolerance = 1e-3;
+constexpr double pair_tolerance = 1e-3;
 
 TEST(ElasticPairs, AreTheDistinctPlacesInTheirOrder) {
   TriangleMesh mesh = shapes::triangle();
@@ -38,11 +38,11 @@ TEST(AnchorsOffSurface, AreTheExactOnesBeyondTheDistance) {
   const Vector3 on = sphere.vertices.col(7);
   Anchors anchors;
   anchors.pairs = {{"on", on, on},
-                   {"near", (1 + tolerance / 2) * on, on},
-                   {"off", (1 + 2 * tolerance) * on, on},
+                   {"near", (1 + pair_tolerance / 2) * on, on},
+                   {"off", (1 + 2 * pair_tolerance) * on, on},
                    {"inside", 0.5 * on, on},
                    {"soft", 2 * on, on, 1.0}};
-  EXPECT_THAT(anchors_off_surface(sphere, anchors, tolerance), ElementsAre(2, 3));
+  EXPECT_THAT(anchors_off_surface(sphere, anchors, pair_tolerance), ElementsAre(2, 3));
 }
 
 TEST(AnchorsOffSurface, FollowThePairsInTheSourceFrame) {
@@ -61,20 +61,20 @@ TEST(AnchorsOffSurface, FollowThePairsInTheSourceFrame) {
 // ---- through the whole fit
 
 /// The unit sphere onto an ellipsoid of the same connectivity; anchors at the corners of an icosahedron.
-struct Scene {
+struct PairScene {
   TriangleMesh source = shapes::icosphere(3);
   TriangleMesh fitted = source;
   Anchors anchors;
   FitOptions options;
 
-  Scene() {
+  PairScene() {
     const Vector3 radii(1.1, 1, 0.9);
     fitted.vertices = radii.asDiagonal() * source.vertices;
     const TriangleMesh icosahedron = shapes::icosphere(0);
     for (const auto& corner : icosahedron.vertices.colwise())
       anchors.pairs.push_back({"", corner, radii.asDiagonal() * Vector3(corner)});
     options.lambda = 0.5;
-    options.fit_tolerance = tolerance;
+    options.fit_tolerance = pair_tolerance;
   }
 
   FittedMapping fit() const { return fit_mapping_to_fitted(source, fitted, anchors, options); }
@@ -82,7 +82,7 @@ struct Scene {
 
 TEST(FitOffSurface, AnchorsAreMetByEveryMethodThatMeetsPoints) {
   for (const ElasticMethodRow& row : elastic_methods) {
-    Scene scene;
+    PairScene scene;
     scene.options.elastic = row.value;
     const FittedMapping without = scene.fit();
     scene.anchors.pairs.push_back({"above", Vector3(0, 0, 1.5), Vector3(0.05, 0.1, 1.45)});
@@ -91,17 +91,17 @@ TEST(FitOffSurface, AnchorsAreMetByEveryMethodThatMeetsPoints) {
     EXPECT_EQ(with.summary.elastic.meets_anchors_off_surface, row.meets_points) << row.name;
     if (!row.meets_points) continue;
     EXPECT_EQ(without.summary.elastic.anchors_off_surface, 0u);
-    EXPECT_LE(with.anchor_residual.back(), tolerance) << row.name;
+    EXPECT_LE(with.anchor_residual.back(), pair_tolerance) << row.name;
     // The surface is carried as well as before.
     EXPECT_LE(with.summary.elastic.vertex_residuals.max,
-              std::max(tolerance, without.summary.elastic.vertex_residuals.max))
+              std::max(pair_tolerance, without.summary.elastic.vertex_residuals.max))
         << row.name;
     EXPECT_TRUE(with.summary.elastic.unmet.empty()) << row.name;
   }
 }
 
 TEST(FitOffSurface, SoftAndNearAnchorsChangeNothing) {
-  Scene scene;
+  PairScene scene;
   const Points x = 1.5 * test::random_points(200, 3);
   // Of the rigid part they are pairs all the same: here they agree with it exactly.
   scene.fitted = scene.source;
@@ -109,7 +109,7 @@ TEST(FitOffSurface, SoftAndNearAnchorsChangeNothing) {
   scene.fitted.vertices.row(2) *= 1.1;
   const FittedMapping without = scene.fit();
   const Vector3 above = 1.5 * scene.source.vertices.col(40);
-  const Vector3 near = (1 + tolerance / 4) * scene.source.vertices.col(40);
+  const Vector3 near = (1 + pair_tolerance / 4) * scene.source.vertices.col(40);
   scene.anchors.pairs.push_back({"soft", above, above, 1e-9});
   scene.anchors.pairs.push_back({"near", near, near});
   const FittedMapping with = scene.fit();

@@ -23,13 +23,13 @@ Points level_curve(const Vector3& radii, double z, int points, double begin) {
 }
 
 /// A sphere and an ellipsoid, with a waist line at other heights of the two: 0.1 and 0.25.
-struct Scene {
+struct CurveScene {
   TriangleMesh source = shapes::icosphere(4);
   TriangleMesh target = shapes::icosphere(5);
   Anchors anchors;
   FitOptions options;
 
-  Scene() {
+  CurveScene() {
     const Vector3 one(1, 1, 1), radii(1.1, 0.9, 1.2);
     target.vertices = radii.asDiagonal() * target.vertices;
     for (const double side : {-1.0, 1.0})
@@ -44,7 +44,7 @@ struct Scene {
 };
 
 TEST(FitCurves, MeetThemWithinTheTolerance) {
-  Scene scene;
+  CurveScene scene;
   const FittedMapping fit = fit_mapping(scene.source, scene.target, scene.anchors, scene.options);
   ASSERT_EQ(fit.summary.curves.size(), 1u);
   EXPECT_LT(fit.summary.curves[0].largest_distance, 2 * scene.options.fit_tolerance);
@@ -61,7 +61,7 @@ TEST(FitCurves, MeetThemWithinTheTolerance) {
 }
 
 TEST(FitCurves, AreRefusedWithAGivenFit) {
-  Scene scene;
+  CurveScene scene;
   EXPECT_THROW(fit_mapping_to_fitted(scene.source, scene.source, scene.anchors, scene.options), InvalidInput);
 }
 

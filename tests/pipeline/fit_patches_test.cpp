@@ -52,7 +52,7 @@ std::vector<int> faces_around(const TriangleMesh& mesh, const Vector3& direction
 
 /// A sphere and an ellipsoid with a face on the front that is larger and higher on the target, where nothing
 /// of its shape tells.
-struct Scene {
+struct PatchScene {
   const Vector3 front = Vector3(1, 0, 0.1).normalized(), front_b = Vector3(1, 0.05, 0.25).normalized();
   const double radius = 0.5, radius_b = 0.62;
   TriangleMesh source = shapes::icosphere(4);
@@ -60,7 +60,7 @@ struct Scene {
   Anchors anchors;
   FitOptions options;
 
-  Scene() {
+  PatchScene() {
     const Vector3 one(1, 1, 1);
     target.vertices = radii.asDiagonal() * target.vertices;
     for (const Vector3& x :
@@ -79,7 +79,7 @@ struct Scene {
 
 /// Where the map takes vertices that lie this much within the patch of the source, or without it: the
 /// smallest margin by which they are on the right side on the target, radians.
-double least_margin(const Scene& scene, const FittedMapping& fit, double clear) {
+double least_margin(const PatchScene& scene, const FittedMapping& fit, double clear) {
   const Points mapped = fit.target_from_source * (*fit.elastic)(scene.source.vertices);
   double least = 10;
   for (Eigen::Index i = 0; i < mapped.cols(); ++i) {
@@ -95,7 +95,7 @@ double least_margin(const Scene& scene, const FittedMapping& fit, double clear) 
 }
 
 TEST(FitPatches, PutBorderOntoBorderAndInsideInto) {
-  const Scene scene;
+  const PatchScene scene;
   const FittedMapping fit = scene.fit();
   ASSERT_EQ(fit.summary.patches.size(), 1u);
   ASSERT_TRUE(fit.summary.patches[0].largest_distance);
@@ -104,7 +104,7 @@ TEST(FitPatches, PutBorderOntoBorderAndInsideInto) {
   EXPECT_TRUE(fit.summary.curves.empty());
   EXPECT_EQ(fit.anchor_residual.size(), scene.anchors.pairs.size());
 
-  Scene without;
+  PatchScene without;
   without.anchors.patches.clear();
   EXPECT_LT(least_margin(scene, without.fit(), 0.02), -0.1);
 }
@@ -121,7 +121,7 @@ double longest_edge(const Points& vertices, const Faces& faces, const std::vecto
 
 // A border of faces goes to and fro by about an edge, differently on both meshes.
 TEST(FitPatches, OfFacesMeetTheirBordersWithinAnEdgeAsCarried) {
-  Scene scene;
+  PatchScene scene;
   AnchorPatch& face = scene.anchors.patches[0];
   face.a = {Points(3, 0), faces_around(scene.source, scene.front, scene.radius, Vector3(1, 1, 1))};
   face.b = {Points(3, 0), faces_around(scene.target, scene.front_b, scene.radius_b, radii)};
@@ -140,14 +140,14 @@ TEST(FitPatches, OfFacesMeetTheirBordersWithinAnEdgeAsCarried) {
 }
 
 TEST(FitPatches, NeedPairsAndNoGivenFit) {
-  Scene scene;
+  PatchScene scene;
   EXPECT_THROW(fit_mapping_to_fitted(scene.source, scene.source, scene.anchors, scene.options), InvalidInput);
   scene.anchors.pairs.clear();
   EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(); }), HasSubstr("anchor pairs"));
 }
 
 TEST(FitPatches, AreRefusedWhereThePairsSayThatTheOtherSideWasMeant) {
-  Scene scene;
+  PatchScene scene;
   const Vector3 one(1, 1, 1), up(0, 0, 1);
   // Less than half of the source, more than half of the target.
   scene.anchors.patches[0] = {
@@ -162,7 +162,7 @@ TEST(FitPatches, AreRefusedWhereThePairsSayThatTheOtherSideWasMeant) {
 }
 
 TEST(FitPatches, AreNoneWithoutAny) {
-  Scene scene;
+  PatchScene scene;
   scene.anchors.patches.clear();
   const FitPatches found = fit_patches(scene.anchors, scene.source, scene.target);
   EXPECT_TRUE(found.source.is_empty() && found.target.is_empty() && found.borders.empty() &&

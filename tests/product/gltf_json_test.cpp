@@ -5,25 +5,25 @@
 namespace bespoke {
 namespace {
 
-const std::string text = R"( {"a" : [ 1.50 , {"b": "x\"]" , "\u0063":[ ]}, 3],
+const std::string json_text = R"( {"a" : [ 1.50 , {"b": "x\"]" , "\u0063":[ ]}, 3],
   "d": {"e": 1e0, "f": [[1], [2]]} , "g":null } )";
 
 std::string edited(const std::function<void(GltfJson&)>& edit) {
-  const GltfJson before = GltfJson::parse(text);
+  const GltfJson before = GltfJson::parse(json_text);
   GltfJson now = before;
   edit(now);
-  const std::string result = edited_json(text, before, now);
+  const std::string result = edited_json(json_text, before, now);
   EXPECT_EQ(GltfJson::parse(result), now) << result;
   return result;
 }
 
 std::string replaced(const std::string& old, const std::string& with) {
-  std::string result = text;
+  std::string result = json_text;
   return result.replace(result.find(old), old.size(), with);
 }
 
 TEST(EditedJson, KeepsWhatIsTheSame) {
-  EXPECT_EQ(edited([](GltfJson&) {}), text);
+  EXPECT_EQ(edited([](GltfJson&) {}), json_text);
 }
 
 TEST(EditedJson, ReplacesSingleValues) {

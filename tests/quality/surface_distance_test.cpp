@@ -16,7 +16,7 @@ AffineMap scaling(double x, double y, double z) {
   return {Vector3(x, y, z).asDiagonal().toDenseMatrix(), Vector3::Zero()};
 }
 
-AffineMap shift(double x, double y, double z) { return {Matrix3::Identity(), {x, y, z}}; }
+AffineMap moved_by(double x, double y, double z) { return {Matrix3::Identity(), {x, y, z}}; }
 
 TEST(SampleSurface, StandsForEqualAreas) {
   // A face of 3/4 of the area, and one of 1/4, and one of none.
@@ -69,7 +69,7 @@ TEST(SurfaceDistance, OfASurfaceFromItselfIsZero) {
 
 TEST(SurfaceDistance, OfParallelSquaresIsTheirGap) {
   const TriangleMesh square = shapes::square_grid(5);
-  const SurfaceDistance distance = surface_distance(square, shapes::moved(square, shift(0, 0, 0.25)));
+  const SurfaceDistance distance = surface_distance(square, shapes::moved(square, moved_by(0, 0, 0.25)));
   for (const Statistics& one_way : {distance.a_to_b, distance.b_to_a}) {
     EXPECT_EQ(one_way.min, 0.25);
     EXPECT_EQ(one_way.max, 0.25);

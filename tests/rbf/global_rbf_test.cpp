@@ -14,10 +14,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Eigen::VectorXd exact(Eigen::Index count) { return Eigen::VectorXd::Constant(count, infinity); }
+Eigen::VectorXd exact(Eigen::Index count) { return Eigen::VectorXd::Constant(count, infinite); }
 
 double extent(const Points& points) {
   return (points.rowwise().maxCoeff() - points.rowwise().minCoeff()).norm();
@@ -59,7 +59,7 @@ TEST(GlobalRbf, ReproducesAffineMapsEverywhere) {
   map.linear << 2, 1, 0, -1, 1, 3, 0.5, 0, 1;
   map.offset << 4, 5, -6;
   const Points x = 3 * test::random_points(200, 5);
-  for (const double weight : {infinity, 10.0}) {
+  for (const double weight : {infinite, 10.0}) {
     const Points sources = test::random_points(20, 6);
     const GlobalRbf warp(sources, map * sources, Eigen::VectorXd::Constant(20, weight));
     EXPECT_LT((warp(x) - map * x).colwise().norm().maxCoeff(), 1e-10);
@@ -106,7 +106,7 @@ TEST(GlobalRbf, MeetsExactAnchorsAmongSoftOnes) {
   const Points sources = test::random_points(20, 14);
   const Points targets = sources + 0.2 * test::random_points(20, 15);
   Eigen::VectorXd weights = Eigen::VectorXd::Constant(20, 1.0);
-  weights.head(10).setConstant(infinity);
+  weights.head(10).setConstant(infinite);
   const GlobalRbf warp(sources, targets, weights);
   const Eigen::RowVectorXd residuals = (warp(sources) - targets).colwise().norm();
   EXPECT_LT(residuals.head(10).maxCoeff(), 1e-9);

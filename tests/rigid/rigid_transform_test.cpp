@@ -16,7 +16,7 @@ double angle_between(const Matrix3& a, const Matrix3& b) {
   return Eigen::Quaterniond(a).angularDistance(Eigen::Quaterniond(b));
 }
 
-void expect_rotation(const Matrix3& rotation) {
+void expect_motion(const Matrix3& rotation) {
   EXPECT_LT((rotation.transpose() * rotation - Matrix3::Identity()).norm(), 1e-13);
   EXPECT_GT(rotation.determinant(), 0);
 }
@@ -53,7 +53,7 @@ TEST(RotationAt, ReachesItsEndsContinuously) {
     for (const RotationPath path : {RotationPath::geodesic, RotationPath::euler}) {
       EXPECT_LT((rotation_at(rotation, path, small) - Matrix3::Identity()).norm(), 1e-7);
       EXPECT_LT((rotation_at(rotation, path, 1 - small) - rotation).norm(), 1e-7);
-      expect_rotation(rotation_at(rotation, path, 0.3));
+      expect_motion(rotation_at(rotation, path, 0.3));
     }
   }
 }
@@ -98,7 +98,7 @@ TEST(RotationAt, PathsAgreeForASingleAxis) {
       (rotation_at(about_z, RotationPath::euler, 0.4) - rotation_at(about_z, RotationPath::geodesic, 0.4))
           .norm(),
       1e-14);
-  expect_rotation(rotation_at(rotation, RotationPath::euler, 0.4));
+  expect_motion(rotation_at(rotation, RotationPath::euler, 0.4));
 }
 
 TEST(RotationAt, IsRobustNearHalfATurn) {
@@ -108,7 +108,7 @@ TEST(RotationAt, IsRobustNearHalfATurn) {
       const Vector3 axis = test::random_points(1, seed).col(0).normalized();
       const Matrix3 rotation = Eigen::AngleAxisd(pi - below, axis).toRotationMatrix();
       const Matrix3 half = rotation_at(rotation, RotationPath::geodesic, 0.5);
-      expect_rotation(half);
+      expect_motion(half);
       EXPECT_LT((half * half - rotation).norm(), 1e-13) << "angle pi - " << below;
       EXPECT_LT((half * axis - axis).norm(), 1e-13);
     }
@@ -136,7 +136,7 @@ TEST(RotationAt, IsRobustAtGimbalLock) {
                               Eigen::AngleAxisd(sign * std::numbers::pi / 2, Vector3::UnitY()) *
                               Eigen::AngleAxisd(0.5, Vector3::UnitX()))
                                  .toRotationMatrix();
-    expect_rotation(rotation_at(rotation, RotationPath::euler, 0.5));
+    expect_motion(rotation_at(rotation, RotationPath::euler, 0.5));
     EXPECT_LT((rotation_at(rotation, RotationPath::euler, 1 - 1e-9) - rotation).norm(), 1e-7);
   }
 }

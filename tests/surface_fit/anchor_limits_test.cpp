@@ -7,27 +7,27 @@
 namespace bespoke {
 namespace {
 
-constexpr double area = 3, diagonal_length = 2, pair_distance = 0.05, smoothing = 0.2;
+constexpr double model_area = 3, diagonal_length = 2, pair_distance = 0.05, smoothness = 0.2;
 
 Eigen::VectorXd all(double value) { return Eigen::VectorXd::Constant(3, value); }
 
-AnchorLimits limits_of(const Eigen::VectorXd& sigmas) { return {sigmas, area, diagonal_length, {}}; }
+AnchorLimits limits_of(const Eigen::VectorXd& sigmas) { return {sigmas, model_area, diagonal_length, {}}; }
 
 TEST(AnchorLimits, AreNoneForExactAnchorsAndBeforeThePairs) {
   const Eigen::VectorXd none = all(0);
   AnchorLimits exact = limits_of(none);
-  for (const double limit : exact.next({none, pair_distance, smoothing})) EXPECT_TRUE(std::isinf(limit));
+  for (const double limit : exact.next({none, pair_distance, smoothness})) EXPECT_TRUE(std::isinf(limit));
   AnchorLimits inaccurate = limits_of(all(0.1));
-  for (const double limit : inaccurate.next({none, 0, smoothing})) EXPECT_TRUE(std::isinf(limit));
+  for (const double limit : inaccurate.next({none, 0, smoothness})) EXPECT_TRUE(std::isinf(limit));
 }
 
 TEST(AnchorLimits, AreTheRatioOfTheVariances) {
   const Eigen::VectorXd none = all(0);
   const double along = AnchorSettings{}.along_surface * diagonal_length;
   AnchorLimits limits = limits_of(Vector3(0.1, 0.2, 0.4));
-  const std::vector<double> found = limits.next({none, pair_distance, smoothing});
+  const std::vector<double> found = limits.next({none, pair_distance, smoothness});
   const double variance = pair_distance * pair_distance + along * along;
-  EXPECT_NEAR(found[0], smoothing * smoothing / area * variance / (0.1 * 0.1), 1e-15);
+  EXPECT_NEAR(found[0], smoothness * smoothness / model_area * variance / (0.1 * 0.1), 1e-15);
   EXPECT_NEAR(found[0] / found[1], 4, 1e-12);
   EXPECT_NEAR(found[1] / found[2], 4, 1e-12);
 }
@@ -36,21 +36,21 @@ TEST(AnchorLimits, RiseWhileTheAnchorsAreMissedByMoreThanTheirErrors) {
   constexpr double sigma = 0.1;
   const Eigen::VectorXd none = all(0), missed = all(5 * sigma), typical = all(sigma);
   AnchorLimits limits = limits_of(all(sigma));
-  const double base = limits.next({none, pair_distance, smoothing})[0];
-  EXPECT_EQ(limits.next({typical, pair_distance, smoothing})[0], base);
-  const double once = limits.next({missed, pair_distance, smoothing})[0];
-  const double twice = limits.next({missed, pair_distance, smoothing})[0];
+  const double base = limits.next({none, pair_distance, smoothness})[0];
+  EXPECT_EQ(limits.next({typical, pair_distance, smoothness})[0], base);
+  const double once = limits.next({missed, pair_distance, smoothness})[0];
+  const double twice = limits.next({missed, pair_distance, smoothness})[0];
   EXPECT_GT(once, base);
   EXPECT_GT(twice, once);
   EXPECT_LE(once, AnchorSettings{}.most_reinforced * base * (1 + 1e-12));
-  for (int k = 0; k < 3; ++k) limits.next({none, pair_distance, smoothing});
-  EXPECT_EQ(limits.next({none, pair_distance, smoothing})[0], base);
+  for (int k = 0; k < 3; ++k) limits.next({none, pair_distance, smoothness});
+  EXPECT_EQ(limits.next({none, pair_distance, smoothness})[0], base);
 }
 
 TEST(AnchorLimits, FollowTheMedianSoThatOneSlippedAnchorChangesNothing) {
   AnchorLimits calm = limits_of(all(0.1)), slipped = limits_of(all(0.1));
   const Eigen::VectorXd few = all(0.05), one = Vector3(0.05, 30, 0.05);
-  EXPECT_EQ(calm.next({few, pair_distance, smoothing}), slipped.next({one, pair_distance, smoothing}));
+  EXPECT_EQ(calm.next({few, pair_distance, smoothness}), slipped.next({one, pair_distance, smoothness}));
 }
 
 }  // namespace

@@ -27,28 +27,28 @@ double least_distance_of_balls(const Points& vertices) {
   return least;
 }
 
-constexpr ContactOptions options{.gap = 0.02, .reach = 0.2};
+constexpr ContactOptions contact_options{.gap = 0.02, .reach = 0.2};
 
 TEST(HoldApart, SeparatesPartsThatPassThroughEachOther) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
   ASSERT_FALSE(self_intersections(fitted).empty());
-  const ContactFit fit = hold_apart(source, fitted.vertices, options);
+  const ContactFit fit = hold_apart(source, fitted.vertices, contact_options);
   EXPECT_GT(fit.summary.touching, 0u);
   EXPECT_NEAR(fit.summary.deepest, 0.1, 0.01);
   EXPECT_EQ(fit.summary.left, 0u);
   EXPECT_TRUE(self_intersections({fit.vertices, source.faces}).empty());
-  EXPECT_GE(least_distance_of_balls(fit.vertices), 0.95 * options.gap);
+  EXPECT_GE(least_distance_of_balls(fit.vertices), 0.95 * contact_options.gap);
   // What lies on the far sides stays.
   const Eigen::Index count = source.vertices.cols() / 2;
   for (Eigen::Index i = 0; i < count; ++i)
     if (source.vertices.col(i).dot(direction) < -0.5) {
-      EXPECT_LT((fit.vertices.col(i) - fitted.vertices.col(i)).norm(), 0.1 * options.gap);
+      EXPECT_LT((fit.vertices.col(i) - fitted.vertices.col(i)).norm(), 0.1 * contact_options.gap);
     }
 }
 
 TEST(HoldApart, ReleasesWhatTouchesAndNothingElse) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(2.001);
-  const ContactFit fit = hold_apart(source, fitted.vertices, options);
+  const ContactFit fit = hold_apart(source, fitted.vertices, contact_options);
   EXPECT_EQ(fit.summary.left, 0u);
   EXPECT_FALSE(fit.summary.released.empty());
   for (const ReleasedVertex& released : fit.summary.released) {
@@ -59,7 +59,7 @@ TEST(HoldApart, ReleasesWhatTouchesAndNothingElse) {
 
 TEST(HoldApart, LeavesPartsThatAreAsNearOnTheSource) {
   const TriangleMesh source = two_balls(2.01);
-  const ContactFit fit = hold_apart(source, source.vertices, options);
+  const ContactFit fit = hold_apart(source, source.vertices, contact_options);
   EXPECT_EQ(fit.summary.touching, 0u);
   EXPECT_EQ(fit.vertices, source.vertices);
 }
@@ -69,7 +69,7 @@ TEST(HoldApart, LeavesTheTwoSidesOfAThinPart) {
   source.vertices.row(2) *= 0.3;
   TriangleMesh flat = source;
   flat.vertices.row(2) *= 0.03;
-  EXPECT_EQ(hold_apart(source, flat.vertices, options).summary.touching, 0u);
+  EXPECT_EQ(hold_apart(source, flat.vertices, contact_options).summary.touching, 0u);
 }
 
 TEST(HoldApart, DoesNothingWithoutAGap) {
@@ -79,7 +79,7 @@ TEST(HoldApart, DoesNothingWithoutAGap) {
 
 TEST(HoldApart, RefusesWhatCannotBe) {
   const TriangleMesh source = two_balls(4);
-  EXPECT_THROW(hold_apart(source, Points::Zero(3, 5), options), InvalidInput);
+  EXPECT_THROW(hold_apart(source, Points::Zero(3, 5), contact_options), InvalidInput);
   EXPECT_THROW(hold_apart(source, source.vertices, {.gap = -1}), InvalidInput);
   EXPECT_THROW(hold_apart(source, source.vertices, {.gap = 0.1, .reach = 0.05}), InvalidInput);
 }

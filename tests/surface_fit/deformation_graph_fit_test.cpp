@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "support/arithmetic.h"
 #include "support/bent_tube.h"
 #include "support/fitting_scene.h"
 #include "support/potato.h"
@@ -19,7 +20,7 @@ namespace {
 using shapes::bend;
 using shapes::potato;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::infinity;
 
 using Scene = test::FittingScene;
 

@@ -7,15 +7,16 @@
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "support/arithmetic.h"
 #include "support/fitting_scene.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::infinity;
 
-struct Scene : test::FittingScene {
+struct LaplacianScene : test::FittingScene {
   SurfaceFit fit(SurfaceFitOptions options = {}) const {
     options.method = SurfaceFitMethod::laplacian;
     return FittingScene::fit(options);
@@ -24,7 +25,7 @@ struct Scene : test::FittingScene {
 
 TEST(FitSurfaceLaplacian, LeavesAFittedSourceWhereItIs) {
   const TriangleMesh sphere = shapes::icosphere(2);
-  const SurfaceFit fit = Scene{sphere, sphere}.fit();
+  const SurfaceFit fit = LaplacianScene{sphere, sphere}.fit();
   EXPECT_LT((fit.vertices - sphere.vertices).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ(fit.summary.stop_reason, StopReason::converged);
   EXPECT_EQ(fit.summary.unmatched_vertices, 0u);
@@ -32,7 +33,8 @@ TEST(FitSurfaceLaplacian, LeavesAFittedSourceWhereItIs) {
 
 TEST(FitSurfaceLaplacian, BringsATranslatedSphereBack) {
   const TriangleMesh sphere = shapes::icosphere(3);
-  Scene scene{sphere, shapes::moved(shapes::icosphere(4), {Matrix3::Identity(), Vector3(0.05, 0.1, -0.02)})};
+  LaplacianScene scene{sphere,
+                       shapes::moved(shapes::icosphere(4), {Matrix3::Identity(), Vector3(0.05, 0.1, -0.02)})};
   // A stiff surface can only move as one, so that its vertices do not slide.
   SurfaceFitOptions options;
   options.stiffness = 1e4;
@@ -47,7 +49,7 @@ TEST(FitSurfaceLaplacian, BringsATranslatedSphereBack) {
 
 TEST(FitSurfaceLaplacian, KeepsExactAnchors) {
   const TriangleMesh sphere = shapes::icosphere(3);
-  Scene scene{sphere, shapes::moved(sphere, {1.1 * Matrix3::Identity(), Vector3::Zero()})};
+  LaplacianScene scene{sphere, shapes::moved(sphere, {1.1 * Matrix3::Identity(), Vector3::Zero()})};
   scene.anchor_sources = sphere.vertices.col(3);
   scene.anchor_targets = 1.1 * sphere.vertices.col(9);
   scene.anchor_weights = Eigen::VectorXd::Constant(1, infinity);
@@ -62,7 +64,7 @@ TEST(FitSurfaceLaplacian, TurnsNoFaceOver) {
     bumpy.vertices.col(i) *= 1 + 0.1 * std::sin(9 * x.x()) * std::cos(8 * x.y());
   }
   const TriangleMesh source = shapes::icosphere(4);
-  const SurfaceFit fit = Scene{source, bumpy}.fit();
+  const SurfaceFit fit = LaplacianScene{source, bumpy}.fit();
   const Points normals = face_normals({fit.vertices, source.faces});
   for (Eigen::Index face = 0; face < normals.cols(); ++face)
     EXPECT_GT(normals.col(face).dot(fit.vertices.col(source.faces(0, face))), 0);
@@ -74,7 +76,7 @@ TEST(FitSurfaceLaplacian, DoesNotPileUpOnTheBoundaryOfAShorterTarget) {
   TriangleMesh shorter = strip;
   shorter.vertices.row(0) *= 0.8;
   shorter.vertices.row(2).setConstant(0.03);
-  const Scene scene{strip, shorter};
+  const LaplacianScene scene{strip, shorter};
   const SurfaceFit fit = scene.fit();
   const Points moved = fit.vertices - strip.vertices;
   EXPECT_GT(fit.summary.unmatched_vertices, 0u);
@@ -90,17 +92,17 @@ TEST(FitSurfaceLaplacian, WorksOnPiecesSingleTrianglesAndLooseVertices) {
   pieces.vertices.rightCols(1) = Vector3(7, 7, 7);
   TriangleMesh target = pieces;
   target.vertices.row(2).array() += 0.01;
-  const SurfaceFit fit = Scene{pieces, target}.fit();
+  const SurfaceFit fit = LaplacianScene{pieces, target}.fit();
   EXPECT_TRUE(fit.vertices.allFinite());
   EXPECT_EQ(fit.vertices.rightCols(1), pieces.vertices.rightCols(1));
 
-  const SurfaceFit single = Scene{shapes::triangle(), shapes::triangle()}.fit();
+  const SurfaceFit single = LaplacianScene{shapes::triangle(), shapes::triangle()}.fit();
   EXPECT_TRUE(single.vertices.isApprox(shapes::triangle().vertices));
 }
 
 TEST(FitSurfaceLaplacian, SaysWhyItStopped) {
   const TriangleMesh sphere = shapes::icosphere(2);
-  Scene scene{sphere, shapes::moved(sphere, {1.2 * Matrix3::Identity(), Vector3::Zero()})};
+  LaplacianScene scene{sphere, shapes::moved(sphere, {1.2 * Matrix3::Identity(), Vector3::Zero()})};
   SurfaceFitOptions options;
   options.max_iterations = 1;
   const SurfaceFit fit = scene.fit(options);
@@ -111,7 +113,7 @@ TEST(FitSurfaceLaplacian, SaysWhyItStopped) {
 
 // ---- the printed method
 
-SurfaceFit fit_as_printed(const Scene& scene, int max_iterations = 100) {
+SurfaceFit fit_as_printed(const LaplacianScene& scene, int max_iterations = 100) {
   SurfaceFitOptions options;
   options.laplacian = no_additions;
   options.max_iterations = max_iterations;
@@ -152,7 +154,7 @@ Eigen::MatrixXd printed_matrix(const TriangleMesh& mesh) {
 
 TEST(FitSurfaceLaplacian, AsPrintedIsEquation13RepeatedAndASnap) {
   const TriangleMesh target = bumpy_sphere(3);
-  const Scene scene{shapes::icosphere(2), target};
+  const LaplacianScene scene{shapes::icosphere(2), target};
   const Eigen::MatrixXd inverse = printed_matrix(scene.source).inverse();
   TriangleMesh moving = scene.source;
   for (int iteration = 1; iteration <= 4; ++iteration) {
@@ -166,14 +168,14 @@ TEST(FitSurfaceLaplacian, AsPrintedIsEquation13RepeatedAndASnap) {
 
 TEST(FitSurfaceLaplacian, AsPrintedStopsWhenTheDisplacementsAreWithinEpsilonAndNotBefore) {
   const TriangleMesh sphere = shapes::icosphere(2);
-  const SurfaceFit there = fit_as_printed(Scene{sphere, sphere});
+  const SurfaceFit there = fit_as_printed(LaplacianScene{sphere, sphere});
   EXPECT_EQ(there.summary.stop_reason, StopReason::converged);
   EXPECT_EQ(there.summary.iterations, 0);
 
   // The part of the source beyond the end of the target has a way to go, and takes several steps of Eq. 13.
   TriangleMesh half = shapes::square_grid(6);
   half.vertices.row(0) /= 2;
-  const Scene scene{shapes::square_grid(6), half};
+  const LaplacianScene scene{shapes::square_grid(6), half};
   const SurfaceFit capped = fit_as_printed(scene, 5);
   EXPECT_EQ(capped.summary.iterations, 5);
   EXPECT_EQ(capped.summary.stop_reason, StopReason::unprinted_cap);
@@ -184,7 +186,7 @@ TEST(FitSurfaceLaplacian, AsPrintedStopsWhenTheDisplacementsAreWithinEpsilonAndN
 
 TEST(FitSurfaceLaplacian, AsPrintedLetsTheWarpAloneKnowTheAnchors) {
   const TriangleMesh sphere = shapes::icosphere(3);
-  Scene scene{sphere, bumpy_sphere(4)};
+  LaplacianScene scene{sphere, bumpy_sphere(4)};
   const SurfaceFit without = fit_as_printed(scene, 5);
   scene.anchor_sources = sphere.vertices.leftCols(4);
   scene.anchor_targets = scene.target.vertices.leftCols(4);
@@ -196,19 +198,19 @@ TEST(FitSurfaceLaplacian, AsPrintedTakesTheBoundaryForACounterpart) {
   const TriangleMesh strip = shapes::square_grid(10);
   TriangleMesh shorter = strip;
   shorter.vertices.row(0) *= 0.8;
-  const SurfaceFit printed = fit_as_printed(Scene{strip, shorter});
+  const SurfaceFit printed = fit_as_printed(LaplacianScene{strip, shorter});
   EXPECT_EQ(printed.summary.unmatched_vertices, 0u);
   EXPECT_NEAR(printed.vertices.row(0).maxCoeff(), 0.8, 1e-12);
-  EXPECT_NEAR((Scene{strip, shorter}.fit().vertices.row(0).maxCoeff()), 1, 1e-9);
+  EXPECT_NEAR((LaplacianScene{strip, shorter}.fit().vertices.row(0).maxCoeff()), 1, 1e-9);
 }
 
 TEST(FitSurfaceLaplacian, ScaledStiffnessGrowsWithTheVerticesUnlessToldOtherwise) {
   const TriangleMesh fine = shapes::icosphere(4), coarse = shapes::icosphere(1);
-  EXPECT_GT((Scene{fine, fine}.fit().summary.stiffness), 1);
-  EXPECT_EQ((Scene{coarse, coarse}.fit().summary.stiffness), 1);
+  EXPECT_GT((LaplacianScene{fine, fine}.fit().summary.stiffness), 1);
+  EXPECT_EQ((LaplacianScene{coarse, coarse}.fit().summary.stiffness), 1);
   SurfaceFitOptions options;
   options.stiffness = 7;
-  EXPECT_EQ((Scene{fine, fine}.fit(options).summary.stiffness), 7);
+  EXPECT_EQ((LaplacianScene{fine, fine}.fit(options).summary.stiffness), 7);
 }
 
 }  // namespace

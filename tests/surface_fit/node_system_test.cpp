@@ -4,12 +4,13 @@
 
 #include <limits>
 
+#include "support/arithmetic.h"
 #include "support/shapes.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+using test::infinity;
 
 class NodeSystemTest : public testing::Test {
  protected:

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "bespoke/pipeline/summary_json.h"
+#include "terminal_progress.h"
 
 namespace bespoke::command {
 namespace {
 
 constexpr std::chrono::milliseconds terminal_interval{100};
-constexpr std::chrono::seconds line_interval{10};
 constexpr std::chrono::seconds openjd_interval{1};
 
 /// Whole lines, at once: another program reads them.

@@ -11,7 +11,6 @@ namespace bespoke::command {
 namespace {
 
 constexpr std::chrono::milliseconds bar_interval{100};
-constexpr std::chrono::seconds line_interval{10};
 constexpr int bar_width = 30;
 
 std::string duration(double seconds) {

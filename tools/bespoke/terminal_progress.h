@@ -8,6 +8,9 @@
 
 namespace bespoke::command {
 
+/// Between lines of progress where there is no terminal.
+inline constexpr std::chrono::seconds line_interval{10};
+
 /// Shows on standard error where a long run is: a bar with the time left when that is a terminal,
 /// else one line when a stage first starts and one every ten seconds. Also what makes an interruption reach
 /// the library. One thread.

@@ -12,7 +12,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t min_pairs = 8;
+constexpr std::size_t min_audited_pairs = 8;
 constexpr double typical_factor = 4;
 constexpr double least_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
 
@@ -25,10 +25,10 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
   AnchorAudit audit;
   std::vector<Eigen::Index> trusted(anchors.pairs.size());
   std::iota(trusted.begin(), trusted.end(), 0);
-  if (trusted.size() < min_pairs) return audit;
+  if (trusted.size() < min_audited_pairs) return audit;
 
   const double least = least_share * diagonal(targets);
-  const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_pairs - 2);
+  const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_audited_pairs - 2);
   std::vector<Eigen::Index> doubted;
   for (;;) {
     const BiharmonicWarp warp(sources(Eigen::all, trusted), targets(Eigen::all, trusted));

@@ -12,17 +12,15 @@ namespace {
 constexpr const char* format_name = "bespoke catalog";
 constexpr int format_version = 1;
 
-Json to_json(const ModelRecord& model) {
-  return {{"hash", model.hash}, {"box", bespoke::to_json(model.box)}};
-}
+Json model_json(const ModelRecord& model) { return {{"hash", model.hash}, {"box", to_json(model.box)}}; }
 
-Json to_json(const CatalogEntry& entry) {
+Json entry_json(const CatalogEntry& entry) {
   return {{"file", entry.file},
           {"sha256", entry.sha256},
           {"bytes", entry.bytes},
           {"unit", entry.unit},
-          {"source", to_json(entry.source)},
-          {"target", to_json(entry.target)},
+          {"source", model_json(entry.source)},
+          {"target", model_json(entry.target)},
           {"surface_fit", entry.surface_fit},
           {"elastic", entry.elastic},
           {"lambda", entry.lambda},
@@ -84,7 +82,7 @@ std::filesystem::path catalog_path(const std::filesystem::path& directory) {
 
 std::string catalog_json(const Catalog& catalog) {
   Json assets = Json::array(), refused = Json::array();
-  for (const CatalogEntry& entry : catalog.assets) assets.push_back(to_json(entry));
+  for (const CatalogEntry& entry : catalog.assets) assets.push_back(entry_json(entry));
   for (const RefusedFile& file : catalog.refused)
     refused.push_back({{"file", file.file}, {"reason", file.reason}});
   const Json json = {{"format", format_name},

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t printed_anchors = 10;  // JSON has all
 
-std::string number(double value) { return in_digits(value, 4); }
+std::string figure(double value) { return in_digits(value, 4); }
 
 std::string tuple(const Vector3& v) { return in_digits(v, 6); }
 
@@ -42,7 +42,7 @@ std::string largest_text(const ComparedMaps& compared, const PointDifference& di
   std::string text = "  largest at " + tuple(difference.largest) + ", which A takes to " +
                      tuple(difference.image_a) + " and B to " + tuple(difference.image_b);
   if (const auto anchor = nearest_anchor(compared.a, difference.largest))
-    text += "; " + number(anchor->distance) + " from anchor \"" + anchor->name + "\"";
+    text += "; " + figure(anchor->distance) + " from anchor \"" + anchor->name + "\"";
   return text + "\n";
 }
 
@@ -50,8 +50,8 @@ std::string anchor_text(const AnchorDifference& anchor) {
   std::string text = "  anchor \"" + anchor.name + "\": ";
   if (!anchor.in_b) return text + "in A only\n";
   if (!anchor.in_a) return text + "in B only\n";
-  if (anchor.moved_source > 0) text += "moved by " + number(anchor.moved_source) + " on the source; ";
-  if (anchor.moved_target > 0) text += "moved by " + number(anchor.moved_target) + " on the target; ";
+  if (anchor.moved_source > 0) text += "moved by " + figure(anchor.moved_source) + " on the source; ";
+  if (anchor.moved_target > 0) text += "moved by " + figure(anchor.moved_target) + " on the target; ";
   if (anchor.other_accuracy) text += "of another accuracy; ";
   text.erase(text.size() - 2);
   return text + "\n";
@@ -74,11 +74,11 @@ std::string map_text(const Asset& asset) {
   const Certificate certificate = whole_certificate(asset);
   const std::string proof =
       certificate.is_bijection()
-          ? "proved a bijection, least determinant " + number(certificate.least_determinant)
+          ? "proved a bijection, least determinant " + figure(certificate.least_determinant)
           : "not proved: " + std::to_string(certificate.folded) + " cells fold, " +
                 std::to_string(certificate.undecided) + " are undecided";
-  return proof + "; bake error p99 " + number(asset.record.bake_error.p99) + ", max " +
-         number(asset.record.bake_error.max) + "; " + std::to_string(voxel_count(asset)) + " voxels\n";
+  return proof + "; bake error p99 " + figure(asset.record.bake_error.p99) + ", max " +
+         figure(asset.record.bake_error.max) + "; " + std::to_string(voxel_count(asset)) + " voxels\n";
 }
 
 Json difference_json(const ComparedMaps& compared, const PointDifference& difference) {
@@ -126,7 +126,7 @@ std::string difference_text(const ComparedMaps& compared) {
   std::ostringstream text;
   text << "distance     " << to_string(maps.band.distance) << ", " << unit_text(compared) << '\n'
        << largest_text(compared, maps.band) << "  without rigid parts " << to_string(maps.band.elastic)
-       << "\n  affine parts at most " << number(maps.affine) << " apart over the source's box\n";
+       << "\n  affine parts at most " << figure(maps.affine) << " apart over the source's box\n";
   for (std::size_t i = 0; i < maps.products.size(); ++i)
     text << compared.products[i] << "  " << to_string(maps.products[i].distance) << '\n'
          << largest_text(compared, maps.products[i]);

@@ -7,13 +7,6 @@
 #include "bespoke/lattice/brick_lookup.h"
 
 namespace bespoke {
-namespace {
-
-std::span<const double> as_span(const Points& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-std::span<double> as_span(Points& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
-}  // namespace
-
 AtlasMap::AtlasMap(AffineMap affine, BrickAtlas atlas, Support support)
     : affine_(std::move(affine)), atlas_(std::move(atlas)), support_(std::move(support)) {}
 

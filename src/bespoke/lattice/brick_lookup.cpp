@@ -10,8 +10,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t points_per_chunk = 4096;
-
 // Points that are located together before any is blended: the walks of all are under way at a time, and their
 // cells on the way into the cache. What is known of them takes a quarter of a first-level cache.
 constexpr std::size_t block_size = 64;

@@ -10,9 +10,6 @@
 namespace bespoke {
 namespace {
 
-std::span<const double> as_span(const Points& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-std::span<double> as_span(Points& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
 Support support_of(const PyramidPart& part) {
   Pyramid outline;
   outline.origin = part.read.origin;

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bespoke/lattice/brick_lookup.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
-
-constexpr std::size_t points_per_chunk = 4096;
 
 // Lattice coordinates of level 0 beyond this are outside every leaf that require_valid admits.
 constexpr double coordinate_limit = 1 << 30;

@@ -23,7 +23,7 @@ constexpr std::size_t candidates = 1000;
 constexpr std::size_t neighbours = 7;
 /// Of the diagonal: within about so much of a pair, another one says little. Half of the distance that
 /// maps reach by default, so that thirty pairs or so cover a body.
-constexpr double reach = 0.05;
+constexpr double suggestion_reach = 0.05;
 /// Of the diagonal: no pair is taken for more accurate, as for those that people pick.
 constexpr double least_sigma = 1e-3;
 
@@ -117,7 +117,7 @@ std::vector<SuggestedAnchor> suggest_anchors(const TriangleMesh& source, const T
   const Uncertainty found = find_uncertainty(source, target, there, back);
 
   const Points x = source.vertices(Eigen::all, found.vertices);
-  const double length = reach * diagonal(source.vertices);
+  const double length = suggestion_reach * diagonal(source.vertices);
   Eigen::VectorXd worth = found.around;
   if (there.summary.surface) {
     // What patches exclude has no counterpart that could be proposed.

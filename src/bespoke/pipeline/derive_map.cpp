@@ -37,7 +37,7 @@ Points band_points(const Pyramid& pyramid) {
   return random_points({pyramid.origin, level.voxel_size}, level.leaves, deviation_points, deviation_seed);
 }
 
-Statistics distances(const Points& a, const Points& b) {
+Statistics distance_statistics(const Points& a, const Points& b) {
   std::vector<double> values;
   for (Eigen::Index i = 0; i < a.cols(); ++i) values.push_back((a.col(i) - b.col(i)).norm());
   return summarize(std::move(values));
@@ -120,7 +120,7 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
     anchor.residual = (back(anchor.a) - Points(anchor.b)).norm();
   }
   const Points x = band_points(b_from_a.steps.front().pyramid);
-  derived.deviation = distances(back(forth(x)), x);
+  derived.deviation = distance_statistics(back(forth(x)), x);
   take_measured_error(derived);
   record_stages(derived, "round trip");
   asset = with_preview_of(std::move(asset), b_from_a, [&](const Points& y) { return back(y); });
@@ -204,7 +204,7 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
   take_steps(derived, composed_steps(b_from_a, c_from_b, options, progress), options.tolerance);
   if (asset.steps.size() > 1) asset.path = RotationPath::flow;
   const Points x = band_points(asset.steps.front().pyramid);
-  derived.deviation = distances(WholeMap(asset)(x), second(first(x)));
+  derived.deviation = distance_statistics(WholeMap(asset)(x), second(first(x)));
   take_measured_error(derived);
   record_stages(derived, "composition");
   asset = with_preview_of(std::move(asset), b_from_a);

@@ -21,7 +21,7 @@ constexpr double least_covered = 0.99;
 /// Vertices at which the two directions lead: each some tenth of the diagonal from the next.
 constexpr std::size_t leading_vertices = 100;
 /// Of the diagonal: no anchor is taken for more accurate, as for those that people pick.
-constexpr double least_sigma = 1e-3;
+constexpr double least_lead_sigma = 1e-3;
 
 struct Candidate {
   SurfaceFit surface;
@@ -66,7 +66,7 @@ Leads leads_of(const Scene& scene, const Points& forward, const Points& back) {
   leads.vertices = spread_vertices(scene.source, leading_vertices);
   TwoWayPoints points = two_way_points(scene.source, forward, scene.target, back, leads.vertices);
   leads.targets = std::move(points.middles);
-  leads.sigmas = (points.apart / 2).cwiseMax(least_sigma * diagonal(scene.source.vertices));
+  leads.sigmas = (points.apart / 2).cwiseMax(least_lead_sigma * diagonal(scene.source.vertices));
   return leads;
 }
 

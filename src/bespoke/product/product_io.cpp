@@ -33,7 +33,7 @@ constexpr std::array face_formats{FaceFormat{".obj", read_obj_faces, write_obj_f
                                   FaceFormat{".glb", read_gltf_faces},
                                   FaceFormat{".3mf", read_3mf_faces}};
 
-const FaceFormat* find_format(const std::filesystem::path& path) {
+const FaceFormat* find_face_format(const std::filesystem::path& path) {
   const auto at = std::find_if(
       face_formats.begin(), face_formats.end(),
       [ending = lower_ending(path)](const FaceFormat& format) { return format.ending == ending; });
@@ -51,7 +51,7 @@ void require_writable(const std::filesystem::path& path, const Product& product)
   const double* const values = product.vertices.data();
   if (!std::all_of(values, values + product.vertices.size(), fits_float))
     throw InvalidInput("cannot write " + path.string() + ": a coordinate is not finite in single precision");
-  if (find_format(path)->ending == ".stl" && product.corners.empty())
+  if (find_face_format(path)->ending == ".stl" && product.corners.empty())
     throw InvalidInput("cannot write " + path.string() + ": STL holds triangles only, and there are none");
 }
 
@@ -64,10 +64,10 @@ bool needs_doubles(const Points& vertices) {
 
 }  // namespace
 
-bool can_read_product(const std::filesystem::path& path) { return find_format(path) != nullptr; }
+bool can_read_product(const std::filesystem::path& path) { return find_face_format(path) != nullptr; }
 
 bool can_write_product(const std::filesystem::path& path) {
-  const FaceFormat* const format = find_format(path);
+  const FaceFormat* const format = find_face_format(path);
   return format && format->write;
 }
 
@@ -75,7 +75,7 @@ std::string read_product_endings() { return endings(false); }
 std::string written_product_endings() { return endings(true); }
 
 Product read_product(const std::filesystem::path& path) {
-  const FaceFormat* const format = find_format(path);
+  const FaceFormat* const format = find_face_format(path);
   if (!format) throw InvalidInput(path.string() + ": the name must end in " + read_product_endings());
   return format->read(InputFile(path));
 }
@@ -89,7 +89,7 @@ void write_product(const std::filesystem::path& path, const Product& product) {
   write_atomically(path, [&](const std::filesystem::path& temporary) {
     errno = 0;
     std::ofstream stream(temporary, std::ios::binary);
-    find_format(path)->write(stream, faces);
+    find_face_format(path)->write(stream, faces);
     stream.close();
     if (!stream) throw FileError("cannot write " + path.string() + ": " + std::strerror(errno));
   });

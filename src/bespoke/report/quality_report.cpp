@@ -36,11 +36,11 @@ Json to_json(const ProductQuality& product) {
           {"self_intersections_after", product.self_intersections_after}};
 }
 
-std::string number(double value) { return in_digits(value, 4); }
+std::string figure(double value) { return in_digits(value, 4); }
 
 std::string penetration_text(const Penetration& penetration) {
-  return std::to_string(penetration.vertices) + " vertices, " + number(100 * penetration.area_share) +
-         " % of the area, deepest " + number(penetration.deepest);
+  return std::to_string(penetration.vertices) + " vertices, " + figure(100 * penetration.area_share) +
+         " % of the area, deepest " + figure(penetration.deepest);
 }
 
 std::string product_text(const std::string& name, const ProductQuality& product) {
@@ -51,9 +51,9 @@ std::string product_text(const std::string& name, const ProductQuality& product)
   text += "  angles change by degrees:  " + to_string(product.distortion.angle) + "\n";
   text += "  clearance before:          " + to_string(product.clearance_before) + "\n";
   text += "  clearance after:           " + to_string(product.clearance_after) + "\n";
-  text += "  clearance kept within " + number(change.median) + " for 50 %, " + number(change.p95) +
-          " for 95 %, " + number(change.p99) + " for 99 % of " + std::to_string(change.count) +
-          " vertices, " + number(change.max) + " for all";
+  text += "  clearance kept within " + figure(change.median) + " for 50 %, " + figure(change.p95) +
+          " for 95 %, " + figure(change.p99) + " for 99 % of " + std::to_string(change.count) +
+          " vertices, " + figure(change.max) + " for all";
   if (product.unsided_vertices > 0)
     text += " (" + std::to_string(product.unsided_vertices) + " lie beyond the body's boundary)";
   text += "\n  inside the body before:    " + penetration_text(product.penetration_before) + "\n";
@@ -73,13 +73,13 @@ std::string quality_text(const MappingQuality& quality, const std::vector<std::s
   text += "anchor residuals:    " + to_string(quality.anchor_residuals) + "\n";
   text += "source to target:    " + to_string(quality.surfaces.a_to_b) + "\n";
   text += "target to source:    " + to_string(quality.surfaces.b_to_a) + "\n";
-  text += "Hausdorff distance:  " + number(quality.surfaces.hausdorff) + "\n";
+  text += "Hausdorff distance:  " + figure(quality.surfaces.hausdorff) + "\n";
   text += "conformal s1/s3:     " + to_string(map.conformal) + "\n";
   text += "area s1 s2:          " + to_string(map.area) + "\n";
   text += "volume det:          " + to_string(map.volume) + "\n";
   text += "flips: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
           " points of the band, " + std::to_string(quality.flipped_faces) + " of " +
-          std::to_string(quality.source_faces) + " source faces; least det " + number(map.least_determinant) +
+          std::to_string(quality.source_faces) + " source faces; least det " + figure(map.least_determinant) +
           "\n";
   for (std::size_t i = 0; i < names.size(); ++i) text += product_text(names[i], quality.products[i]);
   return text;

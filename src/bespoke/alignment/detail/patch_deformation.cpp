@@ -10,7 +10,7 @@
 namespace bespoke {
 namespace {
 
-struct Settings {
+struct DeformationSettings {
   double first_length = 0.2;  // of the target's radius: what the similarities leave
   double last_length = 0.5;   // of the patches' spacing: below it one patch outweighs its neighbours
   int iterations = 40;
@@ -22,7 +22,7 @@ struct Settings {
   double residual_noise = 0.003;
   double bending_noise = 0.01;
 };
-constexpr Settings settings;
+constexpr DeformationSettings deformation_settings;
 
 /// From patch i to patch j, within two links.
 struct Link {
@@ -87,9 +87,9 @@ class PatchSystem {
     const auto size = static_cast<Eigen::Index>(links_.size());
     std::vector<Eigen::Triplet<double>> entries;
     Points right = state.matches.targets * state.matches.weights.asDiagonal();
-    right += settings.free_floating * state.points;
+    right += deformation_settings.free_floating * state.points;
     for (Eigen::Index i = 0; i < size; ++i)
-      entries.emplace_back(i, i, state.matches.weights[i] + settings.free_floating);
+      entries.emplace_back(i, i, state.matches.weights[i] + deformation_settings.free_floating);
     for (Eigen::Index i = 0; i < size; ++i)
       for (const Link& link : links_[static_cast<std::size_t>(i)]) {
         const double weight = stiffness * link.weight;
@@ -120,7 +120,8 @@ class PatchSystem {
 }  // namespace
 
 double PatchDeformation::misfit() const {
-  return std::sqrt((residual + settings.residual_noise) * (bending + settings.bending_noise)) /
+  return std::sqrt((residual + deformation_settings.residual_noise) *
+                   (bending + deformation_settings.bending_noise)) /
          matches.matched();
 }
 
@@ -132,14 +133,15 @@ PatchDeformation deform_patches(const SurfacePatches& source, const SurfacePatch
   state.points = start * source.points;
   state.normals = start.rotation * source.normals;
   state.similarities.assign(links.size(), start.scale * start.rotation);
-  const double first = settings.first_length * target.radius;
-  const double last = settings.last_length * std::max(target.spacing, start.scale * source.spacing);
-  for (int iteration = 0; iteration < settings.iterations; ++iteration) {
-    const double progress = iteration / double(settings.iterations - 1);
+  const double first = deformation_settings.first_length * target.radius;
+  const double last =
+      deformation_settings.last_length * std::max(target.spacing, start.scale * source.spacing);
+  for (int iteration = 0; iteration < deformation_settings.iterations; ++iteration) {
+    const double progress = iteration / double(deformation_settings.iterations - 1);
     const double length = first * std::pow(last / first, progress);
     state.matches = soft_matches(source, state.points, state.normals, target, length);
     const double in_source = length / start.scale;  // the links' weights are those of the source's lengths
-    state.points = system.solve(state, settings.stiffness * in_source * in_source);
+    state.points = system.solve(state, deformation_settings.stiffness * in_source * in_source);
     update_similarities(source, links, state);
   }
   state.residual = state.matches.residual(state.points) / target.radius;

@@ -10,7 +10,7 @@
 namespace bespoke {
 namespace {
 
-struct Settings {
+struct SearchSettings {
   double first_length = 0.5;  // of the target's radius
   double last_length = 0.12;  // of the target's radius: what 5 to 15 % of other shape leave
   int iterations = 20;
@@ -18,20 +18,20 @@ struct Settings {
   double same_place = 0.2;      // mean distance, of the target's radius
   double same_rotation = 1e-6;  // norm of the difference of two rotations
 };
-constexpr Settings settings;
+constexpr SearchSettings search_settings;
 
 SimilarityCandidate refine(const SurfacePatches& source, const SurfacePatches& target,
                            const Similarity& start) {
   constexpr double lost = std::numeric_limits<double>::infinity();
   SimilarityCandidate candidate{start, lost};
   Similarity& now = candidate.target_from_source;
-  for (int iteration = 0; iteration < settings.iterations; ++iteration) {
-    const double progress = iteration / double(settings.iterations - 1);
-    const double length = target.radius * settings.first_length *
-                          std::pow(settings.last_length / settings.first_length, progress);
+  for (int iteration = 0; iteration < search_settings.iterations; ++iteration) {
+    const double progress = iteration / double(search_settings.iterations - 1);
+    const double length = target.radius * search_settings.first_length *
+                          std::pow(search_settings.last_length / search_settings.first_length, progress);
     const Points points = now * source.points;
     const SoftMatches matches = soft_matches(source, points, now.rotation * source.normals, target, length);
-    if (!(matches.matched() > settings.least_matched)) return {start, lost};
+    if (!(matches.matched() > search_settings.least_matched)) return {start, lost};
     candidate.misfit = matches.residual(points) / target.radius / matches.matched();
     Similarity next = align_similarly(source.points, matches.targets, matches.weights);
     // Least squares shrink the source where matches are vague; the ratio of the spreads does not.
@@ -47,7 +47,7 @@ SimilarityCandidate refine(const SurfacePatches& source, const SurfacePatches& t
 
 void add_new(std::vector<Matrix3>& rotations, const Matrix3& rotation) {
   const bool known = std::any_of(rotations.begin(), rotations.end(), [&](const Matrix3& other) {
-    return (other - rotation).norm() < settings.same_rotation;
+    return (other - rotation).norm() < search_settings.same_rotation;
   });
   if (!known) rotations.push_back(rotation);
 }
@@ -105,7 +105,7 @@ std::vector<SimilarityCandidate> search_similarities(const SurfacePatches& sourc
     const Points places = candidate.target_from_source * source.points;
     const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const SimilarityCandidate& other) {
       const Points others = other.target_from_source * source.points;
-      return (places - others).colwise().norm().mean() < settings.same_place * target.radius;
+      return (places - others).colwise().norm().mean() < search_settings.same_place * target.radius;
     });
     if (!known) distinct.push_back(candidate);
   }

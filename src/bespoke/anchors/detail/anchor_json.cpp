@@ -13,16 +13,16 @@
 namespace bespoke {
 namespace {
 
-using Json = nlohmann::json;
+using ParsedJson = nlohmann::json;
 
-double json_number(const Json& value, const std::string& where) {
+double json_number(const ParsedJson& value, const std::string& where) {
   if (!value.is_number()) throw FormatError(where + " is " + value.type_name() + ", not a number");
   const double number = value.get<double>();
   if (!std::isfinite(number)) throw FormatError(where + " is not finite");
   return number;
 }
 
-Vector3 json_point(const Json& pair, const char* key, const std::string& where) {
+Vector3 json_point(const ParsedJson& pair, const char* key, const std::string& where) {
   const auto found = pair.find(key);
   if (found == pair.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
   if (!found->is_array() || found->size() != 3)
@@ -35,7 +35,7 @@ Vector3 json_point(const Json& pair, const char* key, const std::string& where) 
 }
 
 /// Of a pair, a curve or a patch; empty without one.
-std::string json_name(const Json& value, const std::string& position) {
+std::string json_name(const ParsedJson& value, const std::string& position) {
   if (!value.is_object()) throw FormatError(position + " is " + value.type_name() + ", not an object");
   const auto name = value.find("name");
   if (name == value.end()) return "";
@@ -50,14 +50,14 @@ std::string named_place(const std::string& position, const std::string& name) {
 }
 
 /// False without it.
-bool json_flag(const Json& value, const char* key, const std::string& where) {
+bool json_flag(const ParsedJson& value, const char* key, const std::string& where) {
   const auto flag = value.find(key);
   if (flag == value.end()) return false;
   if (!flag->is_boolean()) throw FormatError(where + ": \"" + key + "\" must be true or false");
   return flag->get<bool>();
 }
 
-AnchorPair json_pair(const Json& value, const std::string& position) {
+AnchorPair json_pair(const ParsedJson& value, const std::string& position) {
   AnchorPair pair;
   pair.name = json_name(value, position);
   const std::string where = named_place(position, pair.name);
@@ -78,7 +78,7 @@ AnchorPair json_pair(const Json& value, const std::string& position) {
 }
 
 /// At least two points, not all at one place.
-Points json_polyline(const Json& owner, const char* key, const std::string& where) {
+Points json_polyline(const ParsedJson& owner, const char* key, const std::string& where) {
   const auto found = owner.find(key);
   if (found == owner.end()) throw FormatError(where + ": key \"" + key + "\" is missing");
   if (!found->is_array() || found->size() < 2)
@@ -92,15 +92,15 @@ Points json_polyline(const Json& owner, const char* key, const std::string& wher
   throw FormatError(where + ": \"" + key + "\" has all its points at one place");
 }
 
-std::vector<std::pair<int, int>> json_fixed(const Json& list, const AnchorCurve& curve,
+std::vector<std::pair<int, int>> json_fixed(const ParsedJson& list, const AnchorCurve& curve,
                                             const std::string& where) {
   const std::string rule = where +
                            ": \"fixed\" must be an array of [i, j], a point of a and one of b, by their "
                            "numbers from 0, rising on both sides";
   if (!list.is_array()) throw FormatError(rule);
   std::vector<std::pair<int, int>> fixed;
-  for (const Json& entry : list) {
-    const auto is_number = [](const Json& value, Eigen::Index count) {
+  for (const ParsedJson& entry : list) {
+    const auto is_number = [](const ParsedJson& value, Eigen::Index count) {
       return value.is_number_unsigned() && value.get<std::uint64_t>() < static_cast<std::uint64_t>(count);
     };
     if (!entry.is_array() || entry.size() != 2 || !is_number(entry[0], curve.a.cols()) ||
@@ -115,7 +115,7 @@ std::vector<std::pair<int, int>> json_fixed(const Json& list, const AnchorCurve&
   return fixed;
 }
 
-AnchorCurve json_curve(const Json& value, const std::string& position) {
+AnchorCurve json_curve(const ParsedJson& value, const std::string& position) {
   AnchorCurve curve;
   curve.name = json_name(value, position);
   const std::string where = named_place(position, curve.name);
@@ -132,11 +132,11 @@ AnchorCurve json_curve(const Json& value, const std::string& position) {
 constexpr const char* side_rule =
     R"( must be {"border": [[x, y, z], …]}, a closed line, or {"faces": [i, …]}, numbers from 0)";
 
-std::vector<int> json_faces(const Json& list, const std::string& where) {
+std::vector<int> json_faces(const ParsedJson& list, const std::string& where) {
   if (!list.is_array() || list.empty())
     throw FormatError(where + ": \"faces\" must be an array of one face at least, by their numbers from 0");
   std::vector<int> faces;
-  for (const Json& face : list) {
+  for (const ParsedJson& face : list) {
     if (!face.is_number_unsigned() || face.get<std::uint64_t>() > std::numeric_limits<int>::max())
       throw FormatError(where + ": \"faces\" holds " + face.dump() + ", which is no number of a face");
     faces.push_back(face.get<int>());
@@ -145,7 +145,7 @@ std::vector<int> json_faces(const Json& list, const std::string& where) {
 }
 
 /// A last point at the place of the first says once more that the line is closed.
-Points json_border(const Json& side, const std::string& where) {
+Points json_border(const ParsedJson& side, const std::string& where) {
   constexpr Eigen::Index least_points = 3;
   if (const auto closed = side.find("closed"); closed != side.end() && *closed != true)
     throw FormatError(where + ": \"closed\" is " + closed->dump() +
@@ -160,7 +160,7 @@ Points json_border(const Json& side, const std::string& where) {
 }
 
 /// Empty where the patch has none.
-PatchSide json_side(const Json& patch, const char* key, const std::string& position) {
+PatchSide json_side(const ParsedJson& patch, const char* key, const std::string& position) {
   const auto side = patch.find(key);
   if (side == patch.end()) return {};
   const std::string where = position + ": \"" + key + '"';
@@ -170,7 +170,7 @@ PatchSide json_side(const Json& patch, const char* key, const std::string& posit
   return {json_border(*side, where), {}};
 }
 
-AnchorPatch json_patch(const Json& value, const std::string& position) {
+AnchorPatch json_patch(const ParsedJson& value, const std::string& position) {
   AnchorPatch patch;
   patch.name = json_name(value, position);
   const std::string where = named_place(position, patch.name);
@@ -189,8 +189,8 @@ AnchorPatch json_patch(const Json& value, const std::string& position) {
 // ---- the whole
 
 /// The array under a key; empty without it.
-const Json& json_list(const Json& document, const char* key, const std::string& file) {
-  static const Json none = Json::array();
+const ParsedJson& json_list(const ParsedJson& document, const char* key, const std::string& file) {
+  static const ParsedJson none = ParsedJson::array();
   const auto list = document.find(key);
   if (list == document.end()) return none;
   if (!list->is_array())
@@ -216,10 +216,10 @@ void require_one_accuracy(const AnchorPair& pair, const std::string& where) {
 }
 
 Anchors parse_anchor_json(const std::string& text, const std::string& file) {
-  Json document;
+  ParsedJson document;
   try {
-    document = Json::parse(text);
-  } catch (const Json::exception& error) {
+    document = ParsedJson::parse(text);
+  } catch (const ParsedJson::exception& error) {
     throw FormatError(file + ": not valid JSON: " + error.what());
   }
   if (!document.is_object()) throw FormatError(file + ": must be an object with a key \"pairs\"");
@@ -232,13 +232,13 @@ Anchors parse_anchor_json(const std::string& text, const std::string& file) {
   }
   if (!document.contains("pairs") && !document.contains("curves") && !document.contains("patches"))
     throw FormatError(file + ": key \"pairs\" is missing");
-  const Json& pairs = json_list(document, "pairs", file);
+  const ParsedJson& pairs = json_list(document, "pairs", file);
   for (std::size_t index = 0; index < pairs.size(); ++index)
     anchors.pairs.push_back(json_pair(pairs[index], file + ": pair " + std::to_string(index)));
-  const Json& curves = json_list(document, "curves", file);
+  const ParsedJson& curves = json_list(document, "curves", file);
   for (std::size_t index = 0; index < curves.size(); ++index)
     anchors.curves.push_back(json_curve(curves[index], file + ": curve " + std::to_string(index)));
-  const Json& patches = json_list(document, "patches", file);
+  const ParsedJson& patches = json_list(document, "patches", file);
   for (std::size_t index = 0; index < patches.size(); ++index)
     anchors.patches.push_back(json_patch(patches[index], file + ": patch " + std::to_string(index)));
   require_distinct_names(anchors.patches, "patches", file);

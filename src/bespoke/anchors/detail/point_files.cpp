@@ -1,13 +1,12 @@
 #include "bespoke/anchors/detail/point_files.h"
 
-#include <array>
-#include <cmath>
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
-#include <string_view>
 
-#include "bespoke/digits.h"
+#include "bespoke/anchors/detail/meshlab_points.h"
+#include "bespoke/anchors/detail/point_text.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 
@@ -16,10 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string digits(double value) { return in_digits(value, 17); }
-
 std::string triple(const Vector3& x, const char* separator) {
-  return digits(x.x()) + separator + digits(x.y()) + separator + digits(x.z());
+  return all_digits(x.x()) + separator + all_digits(x.y()) + separator + all_digits(x.z());
 }
 
 /// LPS and RAS differ by half a turn about z; twice is none.
@@ -33,19 +30,6 @@ PatientSystem system_named(const std::string& name, const std::string& where) {
   throw FormatError(where + ": the coordinate system is \"" + name + "\", not LPS or RAS");
 }
 
-double number(const std::string& text, const std::string& where) {
-  std::size_t used = 0;
-  double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == 0 || used != text.size() || !std::isfinite(value))
-    throw FormatError(where + ": \"" + text.substr(0, 40) + "\" is not a finite number");
-  return value;
-}
-
 std::vector<std::string> split(const std::string& row, char separator) {
   std::vector<std::string> fields(1);
   for (const char letter : row)
@@ -54,64 +38,6 @@ std::vector<std::string> split(const std::string& row, char separator) {
     else if (letter != '\r')
       fields.back() += letter;
   return fields;
-}
-
-// ---- MeshLab
-
-std::string unescaped(std::string text) {
-  constexpr std::array<std::pair<const char*, const char*>, 5> entities{
-      {{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&apos;", "'"}, {"&amp;", "&"}}};
-  for (const auto& [entity, letter] : entities)
-    for (std::size_t at = 0; (at = text.find(entity, at)) != std::string::npos; ++at)
-      text.replace(at, std::string_view(entity).size(), letter);
-  return text;
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char letter : text)
-    if (letter == '<')
-      result += "&lt;";
-    else if (letter == '"')
-      result += "&quot;";
-    else if (letter == '&')
-      result += "&amp;";
-    else
-      result += letter;
-  return result;
-}
-
-std::vector<NamedPoint> parse_meshlab(const std::string& text, const std::string& file) {
-  if (text.find("<PickedPoints") == std::string::npos)
-    throw FormatError(file + ": no <PickedPoints>: not a file of picked points");
-  const std::regex point("<point\\b([^>]*)>"), attribute("(\\w+)\\s*=\\s*\"([^\"]*)\"");
-  std::vector<NamedPoint> points;
-  for (std::sregex_iterator found(text.begin(), text.end(), point), end; found != end; ++found) {
-    const std::string attributes = found->str(1);
-    const std::string where = file + ": point " + std::to_string(points.size());
-    NamedPoint next;
-    int coordinates = 0;
-    bool is_active = true;
-    for (std::sregex_iterator pair(attributes.begin(), attributes.end(), attribute); pair != end; ++pair) {
-      const std::string key = pair->str(1), value = unescaped(pair->str(2));
-      if (key == "name") next.name = value;
-      if (key == "active") is_active = value != "0";
-      if (key.size() != 1 || key[0] < 'x' || key[0] > 'z') continue;
-      next.x[key[0] - 'x'] = number(value, where);
-      ++coordinates;
-    }
-    if (coordinates != 3) throw FormatError(where + " has not all of x, y and z");
-    if (is_active) points.push_back(next);
-  }
-  return points;
-}
-
-std::string meshlab_text(const std::vector<NamedPoint>& points) {
-  std::string text = "<!DOCTYPE PickedPoints>\n<PickedPoints>\n";
-  for (const NamedPoint& point : points)
-    text += " <point x=\"" + digits(point.x.x()) + "\" y=\"" + digits(point.x.y()) + "\" z=\"" +
-            digits(point.x.z()) + "\" active=\"1\" name=\"" + escaped(point.name) + "\"/>\n";
-  return text + "</PickedPoints>\n";
 }
 
 // ---- 3D Slicer
@@ -166,7 +92,8 @@ std::vector<NamedPoint> parse_fiducials(const std::string& text, const std::stri
     constexpr std::size_t label_column = 11;
     if (fields.size() < 4) throw FormatError(where + ": fewer than four columns");
     points.push_back({fields.size() > label_column ? fields[label_column] : "",
-                      turned({number(fields[1], where), number(fields[2], where), number(fields[3], where)},
+                      turned({finite_number(fields[1], where), finite_number(fields[2], where),
+                              finite_number(fields[3], where)},
                              system, models)});
   }
   return points;
@@ -178,7 +105,8 @@ std::string fiducials_text(const std::vector<NamedPoint>& points, PatientSystem 
   text += "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     // A comma would end the column.
-    const std::string label = std::regex_replace(points[i].name, std::regex(","), " ");
+    std::string label = points[i].name;
+    std::replace(label.begin(), label.end(), ',', ' ');
     text += std::to_string(i + 1) + "," + triple(points[i].x, ",") + ",0,0,0,1,1,1,0," + label + ",,\n";
   }
   return text;
@@ -198,11 +126,13 @@ std::vector<NamedPoint> parse_landmarks(const std::string& text, const std::stri
     for (std::string word; stream >> word;) words.push_back(word);
     if (words.empty() || words[0] == "Version") continue;
     if (words.size() == 1 && points.empty()) {
-      promised = static_cast<std::size_t>(number(words[0], where));
+      promised = static_cast<std::size_t>(finite_number(words[0], where));
       continue;
     }
     if (words.size() != 4) throw FormatError(where + ": a point is a name and three numbers");
-    points.push_back({words[0], {number(words[1], where), number(words[2], where), number(words[3], where)}});
+    points.push_back(
+        {words[0],
+         {finite_number(words[1], where), finite_number(words[2], where), finite_number(words[3], where)}});
   }
   if (points.size() != promised)
     throw FormatError(file + ": " + std::to_string(points.size()) + " points, but it says " +
@@ -210,11 +140,26 @@ std::vector<NamedPoint> parse_landmarks(const std::string& text, const std::stri
   return points;
 }
 
+/// With an underscore for every run of blanks.
+std::string joined_words(const std::string& text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto is_blank = [&](std::size_t k) {
+      return std::isspace(static_cast<unsigned char>(text[k])) != 0;
+    };
+    if (!is_blank(i))
+      result += text[i];
+    else if (i == 0 || !is_blank(i - 1))
+      result += '_';
+  }
+  return result;
+}
+
 std::string landmarks_text(const std::vector<NamedPoint>& points) {
   std::string text = "Version 1.0\n" + std::to_string(points.size()) + "\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Names are words there.
-    std::string name = std::regex_replace(points[i].name, std::regex("\\s+"), "_");
+    std::string name = joined_words(points[i].name);
     if (name.empty()) name = "S" + std::to_string(i);
     text += name + " " + triple(points[i].x, " ") + "\n";
   }

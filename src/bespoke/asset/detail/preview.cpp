@@ -16,7 +16,7 @@ constexpr double nodes_along_longest_side = 64;
 constexpr double largest_leaf_coordinate = 1 << 26;
 
 /// Whole leaves that cover a box.
-struct LeafBox {
+struct LeafRange {
   LeafCoordinates low;
   LeafCoordinates count;
 
@@ -52,8 +52,8 @@ double preview_voxel_size(const Pyramid& pyramid, double longest_side) {
   return std::ldexp(coarsest, std::max(0, static_cast<int>(std::ceil(std::log2(wanted / coarsest)))));
 }
 
-LeafBox leaf_box(const Box& box, const Vector3& origin, double voxel_size) {
-  LeafBox leaves;
+LeafRange leaf_range(const Box& box, const Vector3& origin, double voxel_size) {
+  LeafRange leaves;
   for (int axis = 0; axis < 3; ++axis) {
     const double leaf = voxel_size * leaf_edge;
     const double low = std::floor((box.min()[axis] - origin[axis]) / leaf);
@@ -76,7 +76,7 @@ void for_each_node(const LatticeCoordinates& count, const Body& body) {
 }
 
 /// Nodes of the box, moved by `shift` voxels along each axis.
-Points lattice_points(const LeafBox& leaves, const Lattice& lattice, double shift) {
+Points lattice_points(const LeafRange& leaves, const Lattice& lattice, double shift) {
   Points points(3, leaves.node_count());
   const LatticeCoordinates first = first_node(leaves.low);
   for_each_node({leaves.nodes(0), leaves.nodes(1), leaves.nodes(2)}, [&](int i, int j, int k) {
@@ -90,7 +90,7 @@ Points displacement_at(const Asset& asset, const ElasticChain& baked, const Poin
   return asset.target_from_source * baked(x) - x;
 }
 
-Statistics preview_error(const LeafBox& leaves, const Points& nodes, const Points& centers) {
+Statistics preview_error(const LeafRange& leaves, const Points& nodes, const Points& centers) {
   std::vector<double> errors;
   errors.reserve(static_cast<std::size_t>(leaves.node_count()));
   for_each_node({leaves.nodes(0) - 1, leaves.nodes(1) - 1, leaves.nodes(2) - 1}, [&](int i, int j, int k) {
@@ -104,7 +104,7 @@ Statistics preview_error(const LeafBox& leaves, const Points& nodes, const Point
   return summarize(std::move(errors));
 }
 
-void pack(const LeafBox& leaves, const Points& values, StoredGrid& grid) {
+void pack(const LeafRange& leaves, const Points& values, StoredGrid& grid) {
   for_each_node(leaves.count, [&](int a, int b, int c) {
     grid.leaves.push_back(moved(leaves.low, {a, b, c}));
     for_each_node({leaf_edge, leaf_edge, leaf_edge}, [&](int i, int j, int k) {
@@ -137,7 +137,7 @@ StoredGrid displacement_preview(const Asset& asset, const ElasticChain& baked, c
   const Pyramid& pyramid = asset.steps.front().pyramid;
   grid.voxel_size = preview_voxel_size(pyramid, box.sizes().maxCoeff());
   grid.origin = pyramid.levels.empty() ? box.min() : pyramid.origin;
-  const LeafBox leaves = leaf_box(box, grid.origin, grid.voxel_size);
+  const LeafRange leaves = leaf_range(box, grid.origin, grid.voxel_size);
   const Lattice lattice{grid.origin, grid.voxel_size};
   const Points nodes =
       displacement_at(asset, baked, lattice_points(leaves, lattice, 0)).cast<float>().cast<double>();

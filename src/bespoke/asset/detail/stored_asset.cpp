@@ -10,10 +10,6 @@ namespace {
 constexpr std::size_t longest_reason = 200;
 constexpr std::size_t longest_path = 80;
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw FormatError(what);
-}
-
 /// One line of printable characters.
 std::string one_line(std::string text, std::size_t longest) {
   for (char& c : text)
@@ -28,28 +24,33 @@ void require_same_metadata(const Metadata& found, const std::string& record) {
   const Metadata expected = file_metadata(record);
   for (const auto& [key, value] : expected) {
     const auto entry = found.find(key);
-    require(entry != found.end(), "metadata " + key + " is missing");
-    require(entry->second == value, "metadata " + key + " contradicts the record");
+    require_format(entry != found.end(), "metadata " + key + " is missing");
+    require_format(entry->second == value, "metadata " + key + " contradicts the record");
   }
-  for (const auto& [key, value] : found) require(expected.count(key) > 0, "unexpected metadata " + key);
+  for (const auto& [key, value] : found)
+    require_format(expected.count(key) > 0, "unexpected metadata " + key);
 }
 
 std::string record_of(const Metadata& metadata) {
   const auto version = metadata.find(version_key);
-  require(version != metadata.end(),
-          std::string("metadata ") + version_key + " is missing: not a bespoke asset");
+  require_format(version != metadata.end(),
+                 std::string("metadata ") + version_key + " is missing: not a bespoke asset");
   const auto* number = std::get_if<std::int64_t>(&version->second);
-  require(number != nullptr, std::string("metadata ") + version_key + " is not a 64-bit integer");
-  require(*number == one_step_version || *number == chain_version,
-          "format version " + std::to_string(*number) + "; this program reads versions " +
-              std::to_string(one_step_version) + " and " + std::to_string(chain_version));
+  require_format(number != nullptr, std::string("metadata ") + version_key + " is not a 64-bit integer");
+  require_format(*number == one_step_version || *number == chain_version,
+                 "format version " + std::to_string(*number) + "; this program reads versions " +
+                     std::to_string(one_step_version) + " and " + std::to_string(chain_version));
   const auto record = metadata.find(record_key);
-  require(record != metadata.end() && std::holds_alternative<std::string>(record->second),
-          std::string("metadata ") + record_key + " is missing");
+  require_format(record != metadata.end() && std::holds_alternative<std::string>(record->second),
+                 std::string("metadata ") + record_key + " is missing");
   return std::get<std::string>(record->second);
 }
 
 }  // namespace
+
+void require_format(bool holds, const std::string& what) {
+  if (!holds) throw FormatError(what);
+}
 
 std::string level_name(std::size_t step, std::size_t level) {
   return step_prefix(step) + "u_" + std::to_string(level);
@@ -64,27 +65,27 @@ std::string checked_record(const Metadata& metadata) {
 void require_grid_count(std::size_t grids, const ParsedRecord& record) {
   std::size_t count = preview_count;
   for (const std::vector<LevelRecord>& levels : record.levels) count += levels.size();
-  require(grids == count,
-          "has " + std::to_string(grids) + " grids, the record asks for " + std::to_string(count));
+  require_format(grids == count,
+                 "has " + std::to_string(grids) + " grids, the record asks for " + std::to_string(count));
 }
 
 void require_level(const StoredGrid& grid, const std::string& name, const Pyramid& pyramid,
                    double voxel_size) {
-  require(grid.name == name, "grid " + grid.name + " stands in the place of " + name);
-  require(grid.components == 3 && grid.grid_class == GridClass::unknown,
-          "grid " + grid.name + " is no Vec3S grid");
-  require(grid.voxel_size == voxel_size && grid.origin == pyramid.origin,
-          "the transform of grid " + grid.name + " contradicts the record");
-  require(grid.half == (pyramid.precision == ValuePrecision::half),
-          "the precision of grid " + grid.name + " contradicts the record");
-  require(grid.background == 0, "the background of grid " + grid.name + " is not 0");
-  require(grid.active.empty(), "grid " + grid.name + " has inactive nodes in its leaves");
-  require(grid.metadata.empty(), "grid " + grid.name + " has unexpected metadata");
+  require_format(grid.name == name, "grid " + grid.name + " stands in the place of " + name);
+  require_format(grid.components == 3 && grid.grid_class == GridClass::unknown,
+                 "grid " + grid.name + " is no Vec3S grid");
+  require_format(grid.voxel_size == voxel_size && grid.origin == pyramid.origin,
+                 "the transform of grid " + grid.name + " contradicts the record");
+  require_format(grid.half == (pyramid.precision == ValuePrecision::half),
+                 "the precision of grid " + grid.name + " contradicts the record");
+  require_format(grid.background == 0, "the background of grid " + grid.name + " is not 0");
+  require_format(grid.active.empty(), "grid " + grid.name + " has inactive nodes in its leaves");
+  require_format(grid.metadata.empty(), "grid " + grid.name + " has unexpected metadata");
 }
 
 void require_leaf_count(std::size_t leaves, const std::string& name, const LevelRecord& record) {
-  require(leaves == record.leaves, "grid " + name + " has " + std::to_string(leaves) +
-                                       " leaves, the record says " + std::to_string(record.leaves));
+  require_format(leaves == record.leaves, "grid " + name + " has " + std::to_string(leaves) +
+                                              " leaves, the record says " + std::to_string(record.leaves));
 }
 
 std::string name_for_message(const std::filesystem::path& path) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "bespoke/asset/detail/stored_asset.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/sha256.h"
@@ -44,13 +45,9 @@ std::string hex(std::string_view bytes) {
   return text;
 }
 
-void require(bool holds, const std::string& what) {
-  if (!holds) throw FormatError(what);
-}
-
 TrailerForm form_of(std::uint64_t version) {
-  require(version == 1 || version == 2,
-          "trailer version " + std::to_string(version) + "; this program reads versions 1 and 2");
+  require_format(version == 1 || version == 2,
+                 "trailer version " + std::to_string(version) + "; this program reads versions 1 and 2");
   return version == 1 ? TrailerForm::one_hash : TrailerForm::block_hashes;
 }
 
@@ -102,23 +99,25 @@ std::uint64_t Trailer::block_count() const {
 Trailer parse_trailer(std::string_view last, std::uint64_t file_size) {
   // What is cheap and says most comes first: a file cut short fails by its size or its magic, and only a
   // whole one is hashed.
-  require(
+  require_format(
       file_size >= trailer_size && last.size() == trailer_size,
       "has " + std::to_string(file_size) + " bytes, less than the trailer of an asset: not a bespoke asset");
-  require(last.substr(0, 8) == magic, "does not end in a bespoke trailer: not a bespoke asset, or cut short");
+  require_format(last.substr(0, 8) == magic,
+                 "does not end in a bespoke trailer: not a bespoke asset, or cut short");
   Trailer trailer;
   trailer.form = form_of(little_endian(last.substr(8, 4)));
   const std::uint64_t block = little_endian(last.substr(12, 4));
-  require(trailer.form == TrailerForm::one_hash ? block == 0 : block >= least_block && block <= largest_block,
-          "trailer is damaged");
+  require_format(
+      trailer.form == TrailerForm::one_hash ? block == 0 : block >= least_block && block <= largest_block,
+      "trailer is damaged");
   trailer.block_size = block;
   trailer.vdb_size = little_endian(last.substr(16, 8));
   trailer.exact_size = little_endian(last.substr(24, 8));
   trailer.digest = hex(last.substr(digest_offset));
   const std::uint64_t before = file_size - trailer_size;
-  require(trailer.vdb_size <= before && trailer.exact_size <= before - trailer.vdb_size &&
-              trailer.content_size() + trailer.table_size() == before,
-          "is " + std::to_string(before) + " bytes long before its trailer, which says otherwise");
+  require_format(trailer.vdb_size <= before && trailer.exact_size <= before - trailer.vdb_size &&
+                     trailer.content_size() + trailer.table_size() == before,
+                 "is " + std::to_string(before) + " bytes long before its trailer, which says otherwise");
   return trailer;
 }
 
@@ -126,15 +125,15 @@ void require_sound_table(std::string_view table, std::string_view last, const Tr
   Sha256 hash;
   hash.update(table.data(), table.size());
   hash.update(last.data(), digest_offset);
-  require(hash.finish() == trailer.digest,
-          "SHA-256 of the blocks' hashes does not match: the file was damaged or changed");
+  require_format(hash.finish() == trailer.digest,
+                 "SHA-256 of the blocks' hashes does not match: the file was damaged or changed");
 }
 
 void require_sound_block(std::string_view bytes, std::uint64_t block, std::string_view table,
                          const Trailer& trailer) {
-  require(is_sound(bytes, block, table), "SHA-256 of the block at byte " +
-                                             std::to_string(block * trailer.block_size) +
-                                             " does not match: the file was damaged or changed");
+  require_format(is_sound(bytes, block, table), "SHA-256 of the block at byte " +
+                                                    std::to_string(block * trailer.block_size) +
+                                                    " does not match: the file was damaged or changed");
 }
 
 std::string seal(const AssetSections& sections, TrailerForm form) {
@@ -159,8 +158,8 @@ AssetSections unseal(std::string_view bytes) {
   const Trailer trailer = parse_trailer(last, bytes.size());
   const std::string_view content = bytes.substr(0, trailer.content_size());
   if (trailer.form == TrailerForm::one_hash) {
-    require(sha256(bytes.data(), bytes.size() - digest_size) == trailer.digest,
-            "SHA-256 does not match: the file was damaged or changed");
+    require_format(sha256(bytes.data(), bytes.size() - digest_size) == trailer.digest,
+                   "SHA-256 does not match: the file was damaged or changed");
   } else {
     const std::string_view table = bytes.substr(content.size(), trailer.table_size());
     require_sound_table(table, last, trailer);

@@ -24,12 +24,12 @@ struct UniformEstimate {
 };
 
 // Values, coordinates, and the index that the look-up needs (measured: 1.3 entries of 112 bytes a leaf).
-constexpr std::size_t bytes_per_leaf = leaf_floats * sizeof(float) + 400;
+constexpr std::size_t uniform_bytes_per_leaf = leaf_floats * sizeof(float) + 400;
 // Points and values in flight, and the errors that are measured.
-constexpr std::size_t fixed_bytes = std::size_t{24} << 20;
+constexpr std::size_t uniform_fixed_bytes = std::size_t{24} << 20;
 
-constexpr std::size_t probes = 4096;
-// The largest of a few thousand probes falls short of the largest of all cells.
+constexpr std::size_t error_probes = 4096;
+// The largest of a few thousand error_probes falls short of the largest of all cells.
 constexpr double probe_margin = 1.5;
 
 double smallest_radius(const Support& support) {
@@ -52,7 +52,8 @@ double bytes_needed(const Support& support, const Lattice& lattice) {
     leaves = count_band_leaves(support, {lattice.origin, std::ldexp(lattice.voxel_size, halvings)});
     if (leaves >= enough_leaves) break;
   }
-  return fixed_bytes + bytes_per_leaf * std::ldexp(static_cast<double>(leaves), 3 * std::max(halvings, 0));
+  return uniform_fixed_bytes +
+         uniform_bytes_per_leaf * std::ldexp(static_cast<double>(leaves), 3 * std::max(halvings, 0));
 }
 
 // Largest |u − trilinear| at the centres of cells of this size around x, where it is largest to leading
@@ -81,7 +82,7 @@ UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) 
   require_lattice(support, lattice);
   estimate.bytes = bytes_needed(support, lattice);
   const Lattice coarse{lattice.origin, std::max(lattice.voxel_size, smallest_radius(support) / leaf_edge)};
-  const Points x = random_points(coarse, band_leaves(support, coarse), probes, 1);
+  const Points x = random_points(coarse, band_leaves(support, coarse), error_probes, 1);
   estimate.error = probe_margin * probe_error(map, x, lattice.voxel_size);
   return estimate;
 }
@@ -98,8 +99,9 @@ void require_memory(const ElasticMap& map, const UniformEstimate& estimate, std:
   const Vector3 origin = bounding_box(support).min();
   double voxel_size = estimate.voxel_size;
   for (double needed = estimate.bytes; needed > limit; needed = bytes_needed(support, {origin, voxel_size})) {
-    if (limit <= fixed_bytes + bytes_per_leaf || voxel_size > smallest_radius(support))
-      throw MemoryLimitError(message + "; no voxel size fits, allow at least " + megabytes(4 * fixed_bytes));
+    if (limit <= uniform_fixed_bytes + uniform_bytes_per_leaf || voxel_size > smallest_radius(support))
+      throw MemoryLimitError(message + "; no voxel size fits, allow at least " +
+                             megabytes(4 * uniform_fixed_bytes));
     voxel_size *= std::max(1.02, std::cbrt(needed / limit));
   }
   const double growth = voxel_size / estimate.voxel_size;

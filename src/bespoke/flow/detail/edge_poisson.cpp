@@ -10,8 +10,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t faces_per_chunk = 4096;
-
 // Cotangents of obtuse corners are negative, those of needles unbounded. Any positive weight keeps exact what
 // can be met exactly, and the matrix definite.
 constexpr double least_weight = 0.01;

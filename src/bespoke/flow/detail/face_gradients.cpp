@@ -9,8 +9,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t faces_per_chunk = 4096;
-
 // Of the squared bounding-box diagonal: the measure of inspect_mesh for faces without area.
 constexpr double least_area = 1e-14;
 

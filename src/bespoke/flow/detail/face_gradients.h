@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
+
+/// What one task of a parallel loop over faces takes.
+inline constexpr std::size_t faces_per_chunk = 4096;
 
 /// The affine map of every face onto its fitted counterpart.
 struct FaceGradients {

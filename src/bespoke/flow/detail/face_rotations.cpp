@@ -15,8 +15,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t faces_per_chunk = 4096;
-
 // Beyond it two neighbours are no part of one smooth motion, radians. Joints of the shared models turn
 // neighbouring faces by some 10° against each other, folds of a fit by almost 180°.
 constexpr double largest_neighbour_turn = 2 * std::numbers::pi / 3;

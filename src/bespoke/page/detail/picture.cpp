@@ -121,7 +121,7 @@ class Canvas {
 };
 
 void require_drawable(const PaintedMesh& mesh) {
-  require_valid({mesh.vertices, mesh.faces}, "a mesh to draw");
+  require_valid(TriangleMesh{mesh.vertices, mesh.faces}, "a mesh to draw");
   if (mesh.colours.size() != 1 && mesh.colours.size() != static_cast<std::size_t>(mesh.vertices.cols()))
     throw InvalidInput("a mesh of " + std::to_string(mesh.vertices.cols()) + " vertices has " +
                        std::to_string(mesh.colours.size()) + " colours");

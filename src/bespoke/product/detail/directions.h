@@ -4,6 +4,9 @@
 
 namespace bespoke {
 
+/// To which text files carry directions, of a unit vector.
+inline constexpr double direction_resolution = 1e-7;
+
 /// Normals (3×n) where the motion has these Jacobians (3×3n): cof(J) n, as long as n. The cofactor matrix is
 /// the inverse transpose times the determinant, so that a normal stays on the side from which its faces are
 /// seen counter-clockwise. A normal that is zero or not finite stays as it is.

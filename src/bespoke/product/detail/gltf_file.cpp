@@ -14,7 +14,7 @@ namespace bespoke {
 namespace {
 
 // Of the binary container, in bytes.
-constexpr std::size_t header_size = 12, chunk_header_size = 8, chunk_alignment = 4;
+constexpr std::size_t glb_header_size = 12, chunk_header_size = 8, chunk_alignment = 4;
 constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
 constexpr std::size_t bytes_at_a_time = std::size_t{1} << 22;
@@ -54,12 +54,12 @@ void read_chunks(const InputFile& file, GltfFile& gltf, std::optional<std::strin
   const auto fail = [&](std::size_t byte, const std::string& what) {
     throw FormatError(file.path().string() + ": byte " + std::to_string(byte) + ": " + what);
   };
-  if (file.size() < header_size + chunk_header_size) fail(file.size(), "the file ends within its header");
+  if (file.size() < glb_header_size + chunk_header_size) fail(file.size(), "the file ends within its header");
   if (word_at(file, 4) != 2) fail(4, "version " + std::to_string(word_at(file, 4)) + ", only 2 is read");
   if (word_at(file, 8) != file.size())
     fail(8, "a length of " + std::to_string(word_at(file, 8)) + " bytes, but the file has " +
                 std::to_string(file.size()));
-  std::size_t at = header_size;
+  std::size_t at = glb_header_size;
   for (int chunk = 0; at < file.size() && chunk < 2; ++chunk) {
     const std::size_t left = file.size() - at;
     if (left < chunk_header_size || left - chunk_header_size < word_at(file, at))
@@ -168,7 +168,7 @@ void write_gltf(const GltfFile& file, std::string_view text, std::string_view bi
   const std::string blanks(aligned(text.size()) - text.size(), ' ');
   const std::string zeros(aligned(binary.size()) - binary.size(), '\0');
   const bool has_binary = file.has_binary_chunk();
-  const std::size_t size = header_size + chunk_header_size + text.size() + blanks.size() +
+  const std::size_t size = glb_header_size + chunk_header_size + text.size() + blanks.size() +
                            (has_binary ? chunk_header_size + binary.size() + zeros.size() : 0) +
                            file.chunks_behind.size();
   if (size > std::numeric_limits<std::uint32_t>::max())

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bespoke/parallel.h"
+#include "bespoke/product/detail/number_text.h"
 
 namespace bespoke {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 constexpr std::size_t vectors_at_a_time = std::size_t{1} << 16;
 constexpr std::size_t alignment = 4;      // of vertex attributes in a buffer, bytes
 constexpr int vertex_attributes = 34962;  // what a view is for: ARRAY_BUFFER
-constexpr double largest_whole = 0x1p53;  // as a double
-
 /// Whole numbers without a point.
 GltfJson json_number(double value) {
   if (value == std::floor(value) && std::abs(value) < largest_whole) return static_cast<std::int64_t>(value);

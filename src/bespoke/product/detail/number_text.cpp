@@ -8,8 +8,6 @@
 namespace bespoke {
 namespace {
 
-constexpr double largest_whole = 0x1p53;  // up to here every whole number is a double
-
 // Powers of ten that doubles hold exactly.
 constexpr int exact_powers = 22;
 constexpr std::array<double, exact_powers + 1> powers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,

@@ -7,6 +7,9 @@
 
 namespace bespoke {
 
+/// Up to here every whole number is a double.
+inline constexpr double largest_whole = 0x1p53;
+
 /// A number as a text file writes it.
 struct NumberText {
   const char* begin = nullptr;

@@ -14,7 +14,7 @@ namespace {
 using Counts = std::array<long long, 3>;
 using Uses = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-constexpr std::array<const char*, 3> names{"vertex", "texture coordinate", "normal"};
+constexpr std::array<const char*, 3> kind_names{"vertex", "texture coordinate", "normal"};
 
 struct BlockFindings {
   Box box;
@@ -96,7 +96,7 @@ class BlockCheck {
   long long resolved(const char* what, std::size_t kind, long long written) {
     const long long index = written < 0 ? count_[kind] + 1 + written : written;
     if (index < 1 || index > limits_[kind])
-      words_.fail(std::string("a ") + what + " names " + names[kind] + " " + std::to_string(written) +
+      words_.fail(std::string("a ") + what + " names " + kind_names[kind] + " " + std::to_string(written) +
                   " of " + std::to_string(written < 0 ? count_[kind] : limits_[kind]));
     findings_.largest[kind] = std::max(findings_.largest[kind], index);
     return index;

@@ -17,9 +17,9 @@ struct BlockFaces {
   std::vector<int> sizes, corners, corner_texture;  ///< from 0
 };
 
-class BlockReader {
+class FaceReader {
  public:
-  BlockReader(const TextBlock& block, const std::filesystem::path& path) : words_(block, path, obj_syntax) {
+  FaceReader(const TextBlock& block, const std::filesystem::path& path) : words_(block, path, obj_syntax) {
     for (std::size_t kind = 0; kind < 3; ++kind) count_[kind] = static_cast<long long>(block.before[kind]);
   }
 
@@ -101,7 +101,7 @@ Product read_obj_faces(const InputFile& file) {
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
       file, 0, [&](const Window& window) { return cutter(window); },
-      [&](const TextBlock& block) { return BlockReader(block, file.path()).run(); },
+      [&](const TextBlock& block) { return FaceReader(block, file.path()).run(); },
       [&](const TextBlock&, BlockFaces&& block) {
         const auto count = static_cast<Eigen::Index>(block.positions.size());
         product.vertices.middleCols(at, count) = values(block.positions);

@@ -9,8 +9,6 @@
 namespace bespoke {
 namespace {
 
-constexpr double direction_resolution = 1e-7;  // of a unit vector
-
 struct PositionsAndNormals {
   Points positions, normals;
 };

@@ -13,7 +13,7 @@ namespace bespoke {
 namespace {
 
 // What elements belong to: the statements in which names stand.
-constexpr std::array<std::string_view, 3> keywords{"g", "o", "usemtl"};
+constexpr std::array<std::string_view, 3> part_keywords{"g", "o", "usemtl"};
 constexpr std::array<const char*, 3> kinds{"groups", "objects", "materials"};
 
 /// Elements behind one another, and the statements before them.
@@ -40,10 +40,10 @@ std::vector<Run> read_runs(const TextBlock& block, const std::filesystem::path& 
   auto count = static_cast<long long>(block.before[0]);
   while (words.next_line()) {
     const std::string_view keyword = words.word();
-    const auto kind = std::find(keywords.begin(), keywords.end(), keyword);
-    if (kind != keywords.end()) {
+    const auto kind = std::find(part_keywords.begin(), part_keywords.end(), keyword);
+    if (kind != part_keywords.end()) {
       if (!runs.back().positions.empty()) runs.emplace_back();
-      runs.back().names[static_cast<std::size_t>(kind - keywords.begin())] = read_names(words);
+      runs.back().names[static_cast<std::size_t>(kind - part_keywords.begin())] = read_names(words);
       continue;
     }
     const ObjStatement statement = obj_statement(keyword);

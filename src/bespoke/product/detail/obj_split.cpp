@@ -16,7 +16,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::array<const char*, obj_kinds> keywords{"v", "vt", "vn"};
+constexpr std::array<const char*, obj_kinds> kind_keywords{"v", "vt", "vn"};
 constexpr int least_decimals = 6;  // of new numbers that are no position
 
 /// The mean of two; of normals as long as they are in the mean.
@@ -166,7 +166,7 @@ class Writer {
     std::string text;
     for (std::size_t kind = 0; kind < obj_kinds; ++kind)
       for (int i = element.made_before[kind]; i < element.made_until[kind]; ++i) {
-        text += keywords[kind];
+        text += kind_keywords[kind];
         const std::vector<ObjVertexData::Number>& numbers =
             obj_.data[kind].numbers(obj_.data[kind].of_file() + i);
         for (std::size_t k = 0; k < numbers.size(); ++k) {

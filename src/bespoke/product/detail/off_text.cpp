@@ -29,14 +29,6 @@ bool read_keyword(TextWords& words, OffHeader& header) {
   return true;
 }
 
-void count_lines(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
-  TextBlock block;
-  block.bytes = lines;
-  const std::filesystem::path unnamed;
-  TextWords words(block, unnamed);
-  while (words.next_line()) ++sums[0];
-}
-
 }  // namespace
 
 OffHeader read_off_header(const InputFile& file) {
@@ -61,7 +53,7 @@ OffHeader read_off_header(const InputFile& file) {
   return header;
 }
 
-TextCutter OffText::cutter() const { return {path_, header_.lines + 1, count_lines}; }
+TextCutter OffText::cutter() const { return {path_, header_.lines + 1, line_counter({})}; }
 
 TextRecords OffText::records(const TextBlock& block) const {
   TextRecords records;

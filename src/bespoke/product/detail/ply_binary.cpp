@@ -1,79 +1,18 @@
 #include "bespoke/product/detail/ply_binary.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
 
 #include "bespoke/error.h"
+#include "bespoke/product/detail/ply_scalar.h"
 
 namespace bespoke {
 namespace {
 
 constexpr std::size_t records_a_block = std::size_t{1} << 16;
 constexpr std::size_t bytes_a_block = std::size_t{1} << 20;
-
-static_assert(std::endian::native == std::endian::little);
-
-/// Calls `use` with a zero of the type, so that loops are compiled for every type.
-template <class Use>
-auto with_type(PlyScalar type, const Use& use) {
-  switch (type) {
-    case PlyScalar::int8:
-      return use(std::int8_t{});
-    case PlyScalar::uint8:
-      return use(std::uint8_t{});
-    case PlyScalar::int16:
-      return use(std::int16_t{});
-    case PlyScalar::uint16:
-      return use(std::uint16_t{});
-    case PlyScalar::int32:
-      return use(std::int32_t{});
-    case PlyScalar::uint32:
-      return use(std::uint32_t{});
-    case PlyScalar::float32:
-      return use(float{});
-    case PlyScalar::float64:
-      break;
-  }
-  return use(double{});
-}
-
-template <class Value>
-Value load(const char* bytes, bool is_big) {
-  std::array<char, sizeof(Value)> raw;
-  std::memcpy(raw.data(), bytes, sizeof(Value));
-  if (is_big) std::reverse(raw.begin(), raw.end());
-  return std::bit_cast<Value>(raw);
-}
-
-template <class Value>
-void store(char* bytes, double value, bool is_big) {
-  auto raw = std::bit_cast<std::array<char, sizeof(Value)>>(static_cast<Value>(value));
-  if (is_big) std::reverse(raw.begin(), raw.end());
-  std::memcpy(bytes, raw.data(), sizeof(Value));
-}
-
-bool is_big(const PlyHeader& header) { return header.encoding == PlyHeader::Encoding::big_endian; }
-
-/// A list's length, which may be negative.
-long long list_length(const char* bytes, PlyScalar type, bool is_big) {
-  return with_type(type,
-                   [&](auto zero) { return static_cast<long long>(load<decltype(zero)>(bytes, is_big)); });
-}
-
-/// Goes behind a property of a whole record, and returns the number of its values.
-std::uint64_t skip_property(const PlyProperty& property, const char* bytes, bool is_big, std::size_t& at) {
-  std::uint64_t values = 1;
-  if (property.count) {
-    values = static_cast<std::uint64_t>(list_length(bytes + at, *property.count, is_big));
-    at += size(*property.count);
-  }
-  at += static_cast<std::size_t>(values) * size(property.type);
-  return values;
-}
 
 /// Calls visit(record, list, values) with the values of every list of a face's vertices.
 template <class Visit>
@@ -98,7 +37,7 @@ void require_vertices(const char* list, std::uint64_t values, bool is_big, const
                       const PlyBlock& block, std::uint64_t face, const std::filesystem::path& path) {
   const auto vertices = static_cast<double>(header.elements[header.vertex].count);
   for (std::uint64_t k = 0; k < values; ++k) {
-    const auto index = static_cast<double>(load<Value>(list + k * sizeof(Value), is_big));
+    const auto index = static_cast<double>(load_scalar<Value>(list + k * sizeof(Value), is_big));
     if (index >= 0 && index < vertices) continue;
     throw FormatError(path.string() + ": face " + std::to_string(block.first + face) + " of " +
                       std::to_string(header.elements[block.element].count) + ": " +
@@ -106,7 +45,7 @@ void require_vertices(const char* list, std::uint64_t values, bool is_big, const
   }
 }
 
-bool is_blank(char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t' || c == '\0'; }
+bool is_padding(char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t' || c == '\0'; }
 
 std::size_t lists_of(const PlyElement& element) {
   return static_cast<std::size_t>(std::count_if(element.properties.begin(), element.properties.end(),
@@ -138,7 +77,7 @@ std::size_t PlyCutter::cut_lists(std::string_view bytes, std::uint64_t more, con
       const std::size_t left = bytes.size() - end;
       if (left < head) break;
       const auto length =
-          static_cast<long long>(load<decltype(zero)>(bytes.data() + end + before, is_big(header_)));
+          static_cast<long long>(load_scalar<decltype(zero)>(bytes.data() + end + before, is_big(header_)));
       if (length < 0) fail(done_ + count, "a list of negative length");
       const std::size_t record = head + static_cast<std::size_t>(length) * width + after;
       if (left < record) {
@@ -204,7 +143,7 @@ std::vector<PlyBlock> PlyCutter::operator()(const Window& window) {
     rest.remove_prefix(size);
   }
   if (rest.empty()) return blocks;
-  if (!std::all_of(rest.begin(), rest.end(), is_blank))
+  if (!std::all_of(rest.begin(), rest.end(), is_padding))
     throw FormatError(file_.path().string() + ": bytes behind the last element, from byte " +
                       std::to_string(window.offset + window.bytes.size() - rest.size()) + " on");
   blocks.push_back({rest, element_, 0, 0});
@@ -215,15 +154,15 @@ std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock&
                                         const std::filesystem::path& path) {
   require_vertices(header, block, path);
   std::vector<std::uint32_t> faces;
-  for_face_lists(
-      header, block, [&](std::uint64_t, const PlyProperty& property, const char* list, std::uint64_t values) {
-        faces.push_back(static_cast<std::uint32_t>(values));
-        with_type(property.type, [&](auto zero) {
-          for (std::uint64_t k = 0; k < values; ++k)
-            faces.push_back(
-                static_cast<std::uint32_t>(load<decltype(zero)>(list + k * sizeof zero, is_big(header))));
-        });
-      });
+  for_face_lists(header, block,
+                 [&](std::uint64_t, const PlyProperty& property, const char* list, std::uint64_t values) {
+                   faces.push_back(static_cast<std::uint32_t>(values));
+                   with_type(property.type, [&](auto zero) {
+                     for (std::uint64_t k = 0; k < values; ++k)
+                       faces.push_back(static_cast<std::uint32_t>(
+                           load_scalar<decltype(zero)>(list + k * sizeof zero, is_big(header))));
+                   });
+                 });
   return faces;
 }
 
@@ -253,8 +192,8 @@ void PlyPlaces::read(std::span<const std::size_t> properties, double* values) co
   for (std::size_t k = 0; k < properties.size(); ++k)
     with_type(element_.properties[properties[k]].type, [&](auto zero) {
       for (std::size_t i = 0; i < block_.count; ++i)
-        values[i * properties.size() + k] =
-            static_cast<double>(load<decltype(zero)>(block_.bytes.data() + place(i, properties[k]), is_big));
+        values[i * properties.size() + k] = static_cast<double>(
+            load_scalar<decltype(zero)>(block_.bytes.data() + place(i, properties[k]), is_big));
     });
 }
 
@@ -268,7 +207,7 @@ bool PlyPlaces::write(std::span<const std::size_t> properties, const double* val
       for (std::size_t i = 0; i < block_.count; ++i) {
         const double value = values[i * properties.size() + k];
         if (std::abs(value) <= largest)
-          store<Value>(bytes + place(i, properties[k]), value, is_big);
+          store_scalar<Value>(bytes + place(i, properties[k]), value, is_big);
         else
           fits = false;
       }

@@ -12,13 +12,14 @@ namespace bespoke {
 namespace {
 
 /// What a block holds that tells components apart.
-struct BlockContent {
+struct ConnectedBlock {
   std::vector<double> coordinates;   ///< three a vertex
   std::vector<std::uint32_t> faces;  ///< of each the number of its corners, and the corners
 };
 
-BlockContent read_binary(const PlyBlock& block, const PlyHeader& header, const std::filesystem::path& path) {
-  BlockContent content;
+ConnectedBlock read_binary(const PlyBlock& block, const PlyHeader& header,
+                           const std::filesystem::path& path) {
+  ConnectedBlock content;
   content.faces = face_corners(header, block, path);
   if (block.element != header.vertex || block.count == 0) return content;
   content.coordinates.resize(3 * block.count);
@@ -32,7 +33,7 @@ class Components {
   explicit Components(const PlyHeader& header)
       : sets_(static_cast<int>(header.elements[header.vertex].count)) {}
 
-  void add(BlockContent&& content) {
+  void add(ConnectedBlock&& content) {
     coordinates_.insert(coordinates_.end(), content.coordinates.begin(), content.coordinates.end());
     const std::vector<std::uint32_t>& faces = content.faces;
     for (std::size_t at = 0; at < faces.size(); at += 1 + faces[at])
@@ -89,19 +90,19 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
         file, format.begin(), [&](const Window& window) { return cutter(window); },
         [&](const TextBlock& block) {
           TextRecords records = format.records(block);
-          BlockContent content{{}, std::move(records.faces)};
+          ConnectedBlock content{{}, std::move(records.faces)};
           for (const NumberTriple& point : records.points)
             for (const NumberText& number : point) content.coordinates.push_back(number.value);
           return content;
         },
-        [&](const TextBlock&, BlockContent&& content) { components.add(std::move(content)); }, progress);
+        [&](const TextBlock&, ConnectedBlock&& content) { components.add(std::move(content)); }, progress);
     format.require_complete(cutter.sums());
   } else {
     PlyCutter cutter(file, header);
     walk_blocks(
         file, header.size, [&](const Window& window) { return cutter(window); },
         [&](const PlyBlock& block) { return read_binary(block, header, file.path()); },
-        [&](const PlyBlock&, BlockContent&& content) { components.add(std::move(content)); }, progress);
+        [&](const PlyBlock&, ConnectedBlock&& content) { components.add(std::move(content)); }, progress);
   }
   return parts_of(parts, components.of_parts(parts, file.path()));
 }

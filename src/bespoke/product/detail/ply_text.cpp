@@ -5,19 +5,6 @@
 #include "bespoke/error.h"
 
 namespace bespoke {
-namespace {
-
-constexpr LineSyntax body_syntax{0, false};
-
-void count_lines(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
-  TextBlock block;
-  block.bytes = lines;
-  const std::filesystem::path unnamed;
-  TextWords words(block, unnamed, body_syntax);
-  while (words.next_line()) ++sums[0];
-}
-
-}  // namespace
 
 PlyText::PlyText(const std::filesystem::path& path, const PlyHeader& header) : path_(path), header_(header) {
   std::uint64_t end = 0;
@@ -25,11 +12,11 @@ PlyText::PlyText(const std::filesystem::path& path, const PlyHeader& header) : p
     ends_.push_back(end += element.properties.empty() ? 0 : element.count);
 }
 
-TextCutter PlyText::cutter() const { return {path_, header_.lines + 1, count_lines}; }
+TextCutter PlyText::cutter() const { return {path_, header_.lines + 1, line_counter(ply_body_syntax)}; }
 
 TextRecords PlyText::records(const TextBlock& block) const {
   TextRecords records;
-  TextWords words(block, path_, body_syntax);
+  TextWords words(block, path_, ply_body_syntax);
   std::uint64_t number = block.before[0];
   auto element =
       static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end(), number) - ends_.begin());

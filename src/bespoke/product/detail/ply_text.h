@@ -5,6 +5,8 @@
 
 namespace bespoke {
 
+inline constexpr LineSyntax ply_body_syntax{0, false};
+
 /// The body of an ascii PLY file: every element on a line of its own.
 class PlyText : public TextFormat {
  public:

@@ -129,6 +129,16 @@ void TextWords::fail(const std::string& what) const {
   throw FormatError(path_.string() + ":" + std::to_string(line) + ": " + what);
 }
 
+std::function<void(std::string_view, std::array<std::uint64_t, 3>&)> line_counter(LineSyntax syntax) {
+  return [syntax](std::string_view lines, std::array<std::uint64_t, 3>& sums) {
+    TextBlock block;
+    block.bytes = lines;
+    const std::filesystem::path unnamed;
+    TextWords words(block, unnamed, syntax);
+    while (words.next_line()) ++sums[0];
+  };
+}
+
 std::string in_quotes(std::string_view word) {
   std::string text = "'";
   for (const char c : word.substr(0, 40)) text += c >= ' ' && c <= '~' ? c : '?';

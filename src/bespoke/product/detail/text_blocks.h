@@ -96,6 +96,9 @@ class TextWords {
   const char* line_end_;  ///< without the comment
 };
 
+/// For a TextCutter: adds the lines that have a word to the first sum.
+std::function<void(std::string_view, std::array<std::uint64_t, 3>&)> line_counter(LineSyntax syntax);
+
 /// A word for a message of one line, in quotes, shortened, without what cannot be printed.
 std::string in_quotes(std::string_view word);
 

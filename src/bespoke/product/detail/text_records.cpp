@@ -8,8 +8,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double position_resolution = 1e-7;   // of the diagonal
-constexpr double direction_resolution = 1e-7;  // of a unit vector
+constexpr double position_resolution = 1e-7;  // of the diagonal
 constexpr std::size_t longest_head = std::size_t{1} << 20;
 
 struct Findings {

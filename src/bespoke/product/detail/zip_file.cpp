@@ -13,7 +13,7 @@ namespace {
 
 // APPNOTE.TXT, the specification of ZIP, 4.3.7 to 4.3.16: signatures and sizes of the fixed parts.
 constexpr std::uint64_t entry_signature = 0x02014b50, entry_size = 46;
-constexpr std::uint64_t header_signature = 0x04034b50, header_size = 30;
+constexpr std::uint64_t header_signature = 0x04034b50, entry_header_size = 30;
 constexpr std::uint64_t end_signature = 0x06054b50, end_size = 22, longest_comment = 0xffff;
 constexpr std::uint64_t end64_signature = 0x06064b50, end64_size = 56;
 constexpr std::uint64_t locator_signature = 0x07064b50, locator_size = 20;
@@ -141,11 +141,11 @@ const ZipEntry* ZipFile::find(std::string_view name) const {
 }
 
 std::uint64_t ZipFile::data_of(const ZipEntry& entry) const {
-  if (file_.size() < header_size || entry.header > file_.size() - header_size)
+  if (file_.size() < entry_header_size || entry.header > file_.size() - entry_header_size)
     fail(entry.name + " lies outside of the file");
-  const std::string header = bytes(entry.header, header_size);
+  const std::string header = bytes(entry.header, entry_header_size);
   if (number(header, 0, 4) != header_signature) fail(entry.name + " is not where the directory says");
-  const std::uint64_t data = entry.header + header_size + number(header, 26, 2) + number(header, 28, 2);
+  const std::uint64_t data = entry.header + entry_header_size + number(header, 26, 2) + number(header, 28, 2);
   if (data > file_.size() || entry.stored_size > file_.size() - data) fail(entry.name + " is cut off");
   return data;
 }

@@ -19,7 +19,6 @@ namespace bespoke {
 namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
-constexpr std::size_t grain = 256;
 
 /// Both directions are listed: each end has its own similarity.
 struct Edge {
@@ -217,6 +216,7 @@ AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& set
     pose.iterate(settings.first_smoothness *
                  std::pow(settings.last_smoothness / settings.first_smoothness, share));
   }
+  constexpr std::size_t grain = 256;
   parallel_for(static_cast<std::size_t>(result.vertices.cols()), grain,
                [&](std::size_t begin, std::size_t end) {
                  for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)

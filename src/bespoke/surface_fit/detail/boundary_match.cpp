@@ -9,11 +9,7 @@
 #include "bespoke/parallel.h"
 
 namespace bespoke {
-namespace {
-
-constexpr std::size_t grain = 32;
-
-}  // namespace
+namespace {}  // namespace
 
 BoundaryMatcher::BoundaryMatcher(const BoundaryMatchInput& input, const BoundarySettings& settings)
     : target_(input.target), rule_(input.rule), settings_(settings) {
@@ -94,6 +90,7 @@ std::vector<BoundaryMatch> BoundaryMatcher::match(const Points& vertices) const 
   for (std::size_t k = 0; k < vertices_.size(); ++k)
     if (accepted_[boundary_[k]]) active.push_back(k);
   std::vector<BoundaryMatch> matches(active.size());
+  constexpr std::size_t grain = 32;
   parallel_for(active.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       matches[i] = closest(vertices_[active[i]], vertices);

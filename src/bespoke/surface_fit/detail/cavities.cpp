@@ -8,8 +8,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 128;
-
 /// Whether the way straight out of a surface, over `reach` (mesh units), soon meets the same surface again.
 class Facing {
  public:
@@ -57,6 +55,7 @@ std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, cons
   const Facing faces_source(source, limits.max_distance), faces_target(target, limits.max_distance);
   const Points& vertices = source.mesh().vertices;
   std::vector<char> hidden(static_cast<std::size_t>(vertices.cols()), 0);
+  constexpr std::size_t grain = 128;
   parallel_for(hidden.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vector3 x = vertices.col(static_cast<Eigen::Index>(k));

@@ -23,8 +23,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 256;
-
 /// Anchors that lie on the surface or near it.
 struct SurfaceAnchors {
   Points sources, targets;  // 3×k
@@ -89,6 +87,7 @@ std::vector<double> confidences(const TriangleMesh& fitted, const FacePatches& p
   const std::vector<std::optional<int>> own = vertex_patches(fitted, patches);
   std::vector<double> all(static_cast<std::size_t>(fitted.vertices.cols()), 0.0);
   const Points normals = vertex_normals(fitted);
+  constexpr std::size_t grain = 256;
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);

@@ -17,8 +17,6 @@ namespace {
 
 using Near = std::pair<double, int>;  // distance, node: sorts by distance, then by index
 
-constexpr std::size_t grain = 512;
-
 /// Shortest ways along the edges, from one vertex up to a limit; the arrays are reused.
 class EdgeDistances {
  public:
@@ -102,6 +100,7 @@ void follow_in_space(const Points& vertices, double first_reach, Sampling& sampl
   Points nodes(3, static_cast<Eigen::Index>(sampling.node_vertices.size()));
   for (Eigen::Index k = 0; k < nodes.cols(); ++k) nodes.col(k) = vertices.col(sampling.node_vertices[k]);
   const PointGrid grid(nodes, first_reach);
+  constexpr std::size_t grain = 512;
   parallel_for(sampling.near.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::vector<Near>& near = sampling.near[i];

@@ -14,14 +14,14 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 128;
+constexpr std::size_t layer_grain = 128;
 
 /// Values of Wendland's C4 function between centres, plus a ridge on the diagonal.
 class RidgeSystem {
  public:
   RidgeSystem(const Points& centers, const PointGrid& grid, double lambda, const DetailSettings& settings)
       : rows_(static_cast<std::size_t>(centers.cols())), settings_(settings) {
-    parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(rows_.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
         grid.for_each_within(centers.col(static_cast<Eigen::Index>(i)), lambda, [&](int j, double squared) {
           const double value = WendlandC4::value(std::sqrt(squared) / lambda);
@@ -40,7 +40,7 @@ class RidgeSystem {
 
   Points multiply(const Points& x) const {
     Points image(3, x.cols());
-    parallel_for(rows_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    parallel_for(rows_.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto column = static_cast<Eigen::Index>(i);
         Vector3 sum = settings_.ridge * x.col(column);
@@ -119,7 +119,7 @@ std::vector<Residual> residuals(const DetailStep& step) {
   const Points normals = vertex_normals(step.moved);
   const MatchLimits limits{step.settings.min_cosine,
                            std::max(step.lambda, step.settings.min_reach * step.input.diagonal)};
-  parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(all.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       MatchLimits own = limits;
@@ -166,7 +166,7 @@ Samples sample(const DetailStep& step) {
   const std::vector<int> kept = thin_points(candidates, spacing);
   const PointGrid grid(step.moved.vertices, spacing);
   Samples samples{candidates(Eigen::all, kept), Points(3, static_cast<Eigen::Index>(kept.size()))};
-  parallel_for(kept.size(), grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(kept.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto column = static_cast<Eigen::Index>(k);
       const Vector3 value = kept[k] < step.anchors.cols()
@@ -183,7 +183,7 @@ Samples sample(const DetailStep& step) {
 double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchors) {
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
   const double steepest = parallel_reduce(
-      count, grain, 0.0,
+      count, layer_grain, 0.0,
       [&](std::size_t begin, std::size_t end) {
         double largest = 0;
         for (std::size_t i = begin; i < end; ++i)
@@ -193,7 +193,7 @@ double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchor
       [](double a, double b) { return std::max(a, b); });
   if (steepest > max_gradient) layer.scale(max_gradient / steepest);
   Points step(3, vertices.cols());
-  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
       step.col(i) = layer.displacement(vertices.col(i));
   });

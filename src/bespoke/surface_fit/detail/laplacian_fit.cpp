@@ -14,8 +14,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 64;
-
 /// Anchors count only where both ends lie on their surfaces to this fraction of the source's bounding-box
 /// diagonal: farther off, the surface point beneath them is not what the user paired.
 constexpr double on_surface = 1e-3;
@@ -53,6 +51,7 @@ Correspondence closest_compatible_points(const TriangleMesh& moving, const Targe
   const Points normals = vertex_normals(moving);
   const MatchLimits limits{0, std::numeric_limits<double>::infinity(), 0, !additions.refuse_boundary};
   Correspondence result{moving.vertices, std::vector<char>(count, 0), 0};
+  constexpr std::size_t grain = 64;
   parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto column = static_cast<Eigen::Index>(i);
@@ -67,20 +66,20 @@ Correspondence closest_compatible_points(const TriangleMesh& moving, const Targe
 }
 
 /// An anchor that lies on both surfaces, and where it shall go.
-struct SurfaceAnchors {
+struct SnappedAnchors {
   std::vector<DisplacementAnchor> places;
   Points targets;           // 3×k
   std::vector<char> exact;  // k
 };
 
-SurfaceAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffness) {
+SnappedAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffness) {
   const double reach = on_surface * diagonal(input.source.vertices);
   const double heaviest = exact_anchor_weight(stiffness);
   const ClosestPointTree source(input.source);
   const ClosestPointTree target(input.target);
   ClosestPointQuery near;
   near.max_distance = reach;
-  SurfaceAnchors result;
+  SnappedAnchors result;
   std::vector<Vector3> targets;
   for (Eigen::Index k = 0; k < input.anchor_sources.cols(); ++k) {
     const auto on_source = source.closest(input.anchor_sources.col(k), near);
@@ -96,7 +95,7 @@ SurfaceAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffnes
   return result;
 }
 
-Points anchor_wishes(const SurfaceAnchors& anchors, const Points& vertices) {
+Points anchor_wishes(const SnappedAnchors& anchors, const Points& vertices) {
   Points wished = anchors.targets;
   for (Eigen::Index k = 0; k < wished.cols(); ++k)
     wished.col(k) -= at_anchor(vertices, anchors.places[static_cast<std::size_t>(k)]);
@@ -113,7 +112,7 @@ struct Snapped {
 };
 
 /// Matched vertices on their counterparts, exact anchors on theirs.
-Snapped snap(const Correspondence& found, const SurfaceAnchors& anchors, const TriangleMesh& smooth) {
+Snapped snap(const Correspondence& found, const SnappedAnchors& anchors, const TriangleMesh& smooth) {
   constexpr double at_vertex = 1 - 1e-6;
   Snapped result{smooth, std::vector<char>(found.matched.size(), 0)};
   for (Eigen::Index i = 0; i < found.points.cols(); ++i)
@@ -181,8 +180,8 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
   SurfaceFitSummary& summary = fit.summary;
   summary.stiffness = stiffness_of(options, input.source.vertices.cols());
   const TargetSurface target(input.target);
-  const SurfaceAnchors anchors =
-      additions.hold_anchors ? anchors_on_surfaces(input, summary.stiffness) : SurfaceAnchors{};
+  const SnappedAnchors anchors =
+      additions.hold_anchors ? anchors_on_surfaces(input, summary.stiffness) : SnappedAnchors{};
   const DisplacementSmoother smoother(input.source, anchors.places, summary.stiffness);
   const std::vector<char> all_matched(static_cast<std::size_t>(input.source.vertices.cols()), 1);
 

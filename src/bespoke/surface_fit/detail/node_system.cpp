@@ -11,8 +11,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 128;
-
 /// Appends `ids` to the rows of all of them.
 void couple(const std::vector<int>& ids, std::vector<std::vector<int>>& rows) {
   for (const int id : ids) rows[id].insert(rows[id].end(), ids.begin(), ids.end());
@@ -95,6 +93,7 @@ Points NodeSystem::solve(const NodeGoals& goals) {
 
 Points NodeSystem::moved_vertices() const {
   Points moved = surface_.rest.vertices;
+  constexpr std::size_t grain = 128;
   parallel_for(static_cast<std::size_t>(moved.cols()), grain, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
       moved.col(i) += nodes_.displacement(displacements_, i);

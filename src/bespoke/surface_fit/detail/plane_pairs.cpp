@@ -5,8 +5,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 128;
-
 /// The surface whose vertices ask, with what they speak for, and the one that answers.
 struct Search {
   const TargetSurface& asking;
@@ -25,6 +23,7 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
   const std::size_t count = static_cast<std::size_t>(points.cols());
   const std::size_t stride = (count + search.samples - 1) / search.samples;
   std::vector<PlanePair> found((count + stride - 1) / stride);
+  constexpr std::size_t grain = 128;
   parallel_for(found.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);

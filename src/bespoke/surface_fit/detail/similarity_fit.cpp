@@ -11,8 +11,6 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t grain = 256;
-
 struct PlaneResidual {
   Vector3 point, normal;
   double distance = 0, weight = 0;  // weight 0: no counterpart
@@ -26,6 +24,7 @@ std::vector<PlaneResidual> plane_residuals(const TriangleMesh& moved, const Eige
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
   const std::size_t stride = (count + max_samples - 1) / max_samples;
   std::vector<PlaneResidual> residuals((count + stride - 1) / stride);
+  constexpr std::size_t grain = 256;
   parallel_for(residuals.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k * stride);
@@ -39,7 +38,7 @@ std::vector<PlaneResidual> plane_residuals(const TriangleMesh& moved, const Eige
   return residuals;
 }
 
-constexpr double median = 0.5;
+constexpr double middle = 0.5;
 
 double quantile(const std::vector<PlaneResidual>& residuals, double fraction) {
   std::vector<double> distances;
@@ -100,7 +99,7 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
         iteration >= settings.trial_iterations && !(fit.residual <= settings.hopeless * tolerance);
     if (iteration == settings.max_iterations || give_up) break;
     const double robust_scale =
-        settings.outlier_medians * quantile(residuals, median) + settings.outlier_floor * within;
+        settings.outlier_medians * quantile(residuals, middle) + settings.outlier_floor * within;
     fit.target_from_source = step(residuals, robust_scale) * fit.target_from_source;
   }
   fit.suffices = fit.residual <= tolerance;
