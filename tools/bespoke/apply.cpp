@@ -241,7 +241,7 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
   add_length_option(
       apply, "--refine", arguments.refine,
       "Split straight edges where the map bends them until the middle of an edge's image is no farther "
-      "than this from the image of its middle; an OBJ file keeps all that it says, others their faces "
+      "than this from the image of its middle; OBJ and PLY files keep all that they say, others their faces "
       "(default: none is split)");
 }
 

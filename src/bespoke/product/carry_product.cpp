@@ -24,7 +24,7 @@ struct Format {
 };
 
 constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj},
-                             Format{".ply", carry_ply, find_ply_parts},
+                             Format{".ply", carry_ply, find_ply_parts, split_ply},
                              Format{".stl", carry_stl},
                              Format{".off", carry_off},
                              Format{".gltf", carry_gltf, find_gltf_parts},

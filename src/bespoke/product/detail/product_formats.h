@@ -27,6 +27,7 @@ CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs,
 /// Writes the file with edges split (CarryOptions::splits). Throws FileError, FormatError, and InvalidInput
 /// for what cannot be told of split faces.
 void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& output);
+void split_ply(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 
 /// The points of parts that keep their shape. Throws InvalidInput, listing the names that are known, for one
 /// that is not, and what the reading of the file throws.
