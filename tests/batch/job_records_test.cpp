@@ -26,7 +26,7 @@ class JobRecordsTest : public ::testing::Test {
 
   static void carry_out(const BatchJob& job) {
     JobRecords records;
-    const std::string inputs = records.inputs_of(job);
+    const std::vector<RecordedFile> inputs = records.inputs_of(job);
     records.write(job, inputs, job.run({}));
   }
 

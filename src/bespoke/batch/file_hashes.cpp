@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/sha256.h"
@@ -29,19 +30,19 @@ bool is_too_fresh(const FileStamp& stamp) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - stamp.modified < tick;
 }
 
-std::string FileHashes::of(const std::filesystem::path& path) {
+FileHashes::HashedFile FileHashes::of(const std::filesystem::path& path) {
   const std::optional<FileStamp> stamp = stamp_of(path);
   if (!stamp) throw FileError(path.string() + ": no such file");
   {
     const std::lock_guard lock(mutex_);
-    const auto known = known_.find(path);
-    if (known != known_.end() && known->second.stamp == *stamp) return known->second.hash;
+    const auto known = known_.find(path.native());
+    if (known != known_.end() && known->second.stamp == *stamp) return known->second;
   }
-  std::string hash = sha256_of_file(path);
-  if (is_too_fresh(*stamp)) return hash;
+  const bool is_fresh = is_too_fresh(*stamp);
+  HashedFile read{*stamp, is_fresh, sha256_of_file(path)};
+  if (is_fresh) return read;
   const std::lock_guard lock(mutex_);
-  known_[path] = {*stamp, hash};
-  return hash;
+  return known_[path.native()] = std::move(read);
 }
 
 }  // namespace bespoke

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 namespace bespoke {
 
@@ -27,17 +27,18 @@ bool is_too_fresh(const FileStamp& stamp);
 /// SHA-256 of files, each read once as long as its stamp stays. Thread-safe.
 class FileHashes {
  public:
-  /// Throws FileError when the file cannot be read.
-  std::string of(const std::filesystem::path& path);
-
- private:
-  struct Known {
-    FileStamp stamp;
+  struct HashedFile {
+    FileStamp stamp;  ///< as it was before the file was read
+    bool was_fresh;   ///< is_too_fresh then: the stamp vouches for nothing
     std::string hash;
   };
 
+  /// Throws FileError when the file cannot be read.
+  HashedFile of(const std::filesystem::path& path);
+
+ private:
   std::mutex mutex_;
-  std::map<std::filesystem::path, Known> known_;
+  std::unordered_map<std::string, HashedFile> known_;
 };
 
 }  // namespace bespoke

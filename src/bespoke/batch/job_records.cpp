@@ -21,13 +21,14 @@ Json options_json(const BatchJob& job) {
   return options;
 }
 
-/// Outputs are named as seen from the record, so that a directory may be moved or copied.
-Json file_json(const JobFile& file, const fs::path& directory, FileHashes& hashes) {
-  const std::optional<FileStamp> stamp = stamp_of(file.path);
-  Json json = {{"role", file.role}, {"file", file.path.lexically_proximate(directory).string()}};
-  json["sha256"] = hashes.of(file.path);
-  json["bytes"] = stamp ? stamp->bytes : 0;
-  json["modified"] = stamp ? stamp->modified : 0;
+Json to_json(const std::vector<RecordedFile>& files) {
+  Json json = Json::array();
+  for (const RecordedFile& file : files)
+    json.push_back({{"role", file.role},
+                    {"file", file.file},
+                    {"sha256", file.content.hash},
+                    {"bytes", file.content.stamp.bytes},
+                    {"modified", file.content.stamp.modified}});
   return json;
 }
 
@@ -38,7 +39,7 @@ bool has_stamp(const Json& json, const FileStamp& stamp) {
 
 bool is_the_same(const Json& json, const fs::path& path, FileHashes& hashes) {
   const std::optional<FileStamp> stamp = stamp_of(path);
-  return stamp && (has_stamp(json, *stamp) || json.value("sha256", "") == hashes.of(path));
+  return stamp && (has_stamp(json, *stamp) || json.value("sha256", "") == hashes.of(path).hash);
 }
 
 /// The record; nothing where it is damaged.
@@ -87,7 +88,7 @@ fs::path record_path(const BatchJob& job) {
 std::string JobRecords::line_of(const BatchJob& job) {
   const fs::path path = record_path(job);
   const std::lock_guard lock(mutex_);
-  const auto [lines, is_new] = lines_.try_emplace(path);
+  const auto [lines, is_new] = lines_.try_emplace(path.native());
   if (is_new) {
     std::ifstream file(path, std::ios::binary);
     for (std::string line; std::getline(file, line);) {
@@ -112,33 +113,39 @@ std::string JobRecords::reason_to_run(const BatchJob& job) {
   return input.empty() ? changed_output(job, record["outputs"], hashes_) : input;
 }
 
-std::string JobRecords::inputs_of(const BatchJob& job) {
-  Json inputs = Json::array();
-  if (job.outputs.empty()) return inputs.dump();
-  for (const JobFile& input : job.inputs) {
-    Json json = file_json(input, record_path(job).parent_path(), hashes_);
-    const std::optional<FileStamp> stamp = stamp_of(input.path);
-    if (!stamp || is_too_fresh(*stamp)) json["modified"] = 0;
-    inputs.push_back(std::move(json));
-  }
-  return inputs.dump();
+RecordedFile JobRecords::recorded(const JobFile& file, const fs::path& directory) {
+  return {file.role, file.path.lexically_proximate(directory).string(), hashes_.of(file.path)};
 }
 
-void JobRecords::write(const BatchJob& job, const std::string& inputs, const JobFindings& findings) {
+std::vector<RecordedFile> JobRecords::inputs_of(const BatchJob& job) {
+  std::vector<RecordedFile> inputs;
+  if (job.outputs.empty()) return inputs;
+  const fs::path directory = record_path(job).parent_path();
+  for (const JobFile& input : job.inputs) {
+    inputs.push_back(recorded(input, directory));
+    FileHashes::HashedFile& content = inputs.back().content;
+    if (content.was_fresh) content.stamp.modified = 0;
+  }
+  return inputs;
+}
+
+void JobRecords::write(const BatchJob& job, const std::vector<RecordedFile>& inputs,
+                       const JobFindings& findings) {
   if (job.outputs.empty()) return;
-  const fs::path path = record_path(job);
-  Json outputs = Json::array();
-  for (const JobFile& output : job.outputs) outputs.push_back(file_json(output, path.parent_path(), hashes_));
+  const fs::path path = record_path(job), directory = path.parent_path();
+  std::vector<RecordedFile> outputs;
+  for (const JobFile& output : job.outputs) outputs.push_back(recorded(output, directory));
   for (const fs::path& output : findings.further_outputs)
-    outputs.push_back(file_json({"further", output}, path.parent_path(), hashes_));
-  const Json record = {{"output", output_name(job)},    {"version", record_version},
-                       {"command", job.command},        {"options", options_json(job)},
-                       {"inputs", Json::parse(inputs)}, {"outputs", std::move(outputs)}};
+    outputs.push_back(recorded({"further", output}, directory));
+  const Json record = {{"output", output_name(job)}, {"version", record_version},
+                       {"command", job.command},     {"options", options_json(job)},
+                       {"inputs", to_json(inputs)},  {"outputs", to_json(outputs)}};
+  std::string line = record.dump();
   const std::lock_guard lock(mutex_);
-  std::unique_ptr<LineLog>& log = logs_[path];
+  std::unique_ptr<LineLog>& log = logs_[path.native()];
   if (!log) log = std::make_unique<LineLog>(path);
-  log->append(record.dump());
-  lines_[path][output_name(job)] = record.dump();
+  log->append(line);
+  lines_[path.native()][output_name(job)] = std::move(line);
 }
 
 }  // namespace bespoke

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unordered_map>
+#include <vector>
 
 #include "bespoke/batch/batch_job.h"
 #include "bespoke/batch/file_hashes.h"
@@ -17,6 +18,13 @@ namespace bespoke {
 /// disk, and a line that is lost or damaged costs a run of its job, no more.
 std::filesystem::path record_path(const BatchJob& job);
 
+/// A file of a job as its record has it.
+struct RecordedFile {
+  std::string role;
+  std::string file;  ///< as seen from the record, so that a directory may be moved or copied
+  FileHashes::HashedFile content;
+};
+
 /// What finished jobs were made of. Thread-safe.
 class JobRecords {
  public:
@@ -26,21 +34,23 @@ class JobRecords {
   /// always runs. Throws FileError when a file cannot be read.
   std::string reason_to_run(const BatchJob& job);
 
-  /// What the job is about to read, as JSON: a file that changes while the job runs makes it run again.
-  std::string inputs_of(const BatchJob& job);
+  /// What the job is about to read: a file that changes while the job runs makes it run again. Throws
+  /// FileError.
+  std::vector<RecordedFile> inputs_of(const BatchJob& job);
 
   /// Once all outputs are written. Throws FileError.
-  void write(const BatchJob& job, const std::string& inputs, const JobFindings& findings);
+  void write(const BatchJob& job, const std::vector<RecordedFile>& inputs, const JobFindings& findings);
 
  private:
-  using Lines = std::map<std::string, std::string>;  // by output
+  using Lines = std::unordered_map<std::string, std::string>;  // by output
 
   std::string line_of(const BatchJob& job);
+  RecordedFile recorded(const JobFile& file, const std::filesystem::path& directory);
 
   FileHashes hashes_;
-  std::mutex mutex_;  // of all below
-  std::map<std::filesystem::path, Lines> lines_;
-  std::map<std::filesystem::path, std::unique_ptr<LineLog>> logs_;
+  std::mutex mutex_;                                                // of all below
+  std::unordered_map<std::string, Lines> lines_;                    // by the record's path
+  std::unordered_map<std::string, std::unique_ptr<LineLog>> logs_;  // likewise
 };
 
 }  // namespace bespoke

@@ -196,7 +196,7 @@ class Scheduler {
     try {
       for (const JobFile& output : job.outputs)
         if (output.path.has_parent_path()) fs::create_directories(output.path.parent_path());
-      const std::string inputs = records_.inputs_of(job);
+      const std::vector<RecordedFile> inputs = records_.inputs_of(job);
       run_on_threads(result.threads, [&] { result.findings = job.run({}); });
       records_.write(job, inputs, result.findings);
       result.state = JobState::done;

@@ -9,11 +9,12 @@ from bpy.props import IntProperty
 
 from . import assets, command, points
 from .carry import add_key, remove_keys
+from .curves import curves_for, curves_of
 
 
 def has_animated_t(asset):
     data = asset.animation_data
-    curves = [*data.drivers, *(data.action.fcurves if data.action else [])] if data else []
+    curves = [*data.drivers, *(curves_of(data) or [])] if data else []
     return any(curve.data_path == '["t"]' for curve in curves)
 
 
@@ -22,7 +23,7 @@ def animate_t(asset, first, last):
     for t, frame in ((0.0, first), (1.0, last)):
         asset["t"] = t
         asset.keyframe_insert('["t"]', frame=frame)
-    for curve in asset.animation_data.action.fcurves:
+    for curve in curves_of(asset.animation_data):
         if curve.data_path == '["t"]':
             for point in curve.keyframe_points:
                 point.interpolation = "LINEAR"
@@ -60,8 +61,7 @@ def keyframe(key, ones, frames):
     """The key's value over `frames`: 1 on those in `ones`, else 0; straight between neighbours."""
     value = {frame: float(frame in ones) for frame in frames}
     keys = key.id_data
-    action = keys.animation_data.action
-    curve = action.fcurves.new(f'key_blocks["{key.name}"].value')
+    curve = curves_for(keys.animation_data).new(f'key_blocks["{key.name}"].value')
     # Frames between two of the same value say nothing.
     told = [f for f in frames if any(value.get(f + d, value[f]) != value[f] for d in (-1, 1))] or frames[:1]
     curve.keyframe_points.add(len(told))

@@ -5,6 +5,7 @@ import numpy as np
 from bpy.props import BoolProperty, FloatProperty
 
 from . import assets, command, points
+from .curves import curves_of
 
 KEY_PREFIX = "bespoke "
 FRAMES_A_STEP = 8  # Between them a path may bend unseen.
@@ -80,10 +81,10 @@ def remove_keys(thing):
         return
     for key in [key for key in keys.key_blocks if key.name.startswith(KEY_PREFIX)]:
         key.driver_remove("value")
-        action = keys.animation_data.action if keys.animation_data else None
-        curve = action.fcurves.find(f'key_blocks["{key.name}"].value') if action else None
+        curves = curves_of(keys.animation_data)
+        curve = curves.find(f'key_blocks["{key.name}"].value') if curves else None
         if curve:
-            action.fcurves.remove(curve)
+            curves.remove(curve)
         thing.shape_key_remove(key)
 
 
