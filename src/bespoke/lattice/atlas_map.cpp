@@ -7,6 +7,7 @@
 #include "bespoke/lattice/brick_lookup.h"
 
 namespace bespoke {
+
 AtlasMap::AtlasMap(AffineMap affine, BrickAtlas atlas, Support support)
     : affine_(std::move(affine)), atlas_(std::move(atlas)), support_(std::move(support)) {}
 

@@ -9,7 +9,6 @@
 #include "bespoke/parallel.h"
 
 namespace bespoke {
-namespace {}  // namespace
 
 BoundaryMatcher::BoundaryMatcher(const BoundaryMatchInput& input, const BoundarySettings& settings)
     : target_(input.target), rule_(input.rule), settings_(settings) {
