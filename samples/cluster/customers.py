@@ -15,6 +15,7 @@ import random
 import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -69,7 +70,7 @@ def main():
         parser.add_argument(f"--{name}", type=os.path.abspath)
     parser.add_argument("--product", type=os.path.abspath, action="append")
     arguments = parser.parse_args()
-    bespoke = os.path.abspath(arguments.bespoke)
+    bespoke = os.path.abspath(shutil.which(arguments.bespoke) or arguments.bespoke)
     directory = os.path.abspath(arguments.directory or tempfile.mkdtemp(prefix="bespoke_customers_"))
     customers = pathlib.Path(directory, "customers")
     customers.mkdir(parents=True, exist_ok=True)
@@ -114,6 +115,8 @@ def main():
           f"{1e6 / count * (map_bytes + carried_bytes) / 1e12:.2f} TB, {1e6 / count * (map_files + carried_files):,.0f} files")
     if not arguments.directory:
         shutil.rmtree(directory)
+    if not same:
+        sys.exit("customers.py: a batch made other bytes than single runs")
 
 
 main()

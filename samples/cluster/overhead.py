@@ -14,6 +14,7 @@ import random
 import resource
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
@@ -42,7 +43,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--directory", default=None, help="where to work (default: a temporary directory)")
     arguments = parser.parse_args()
-    bespoke = str(pathlib.Path(arguments.bespoke).resolve())
+    bespoke = os.path.abspath(shutil.which(arguments.bespoke) or arguments.bespoke)
     directory = pathlib.Path(arguments.directory or tempfile.mkdtemp(prefix="bespoke_overhead_")).resolve()
     (directory / "products").mkdir(parents=True, exist_ok=True)
     os.chdir(directory)
@@ -71,6 +72,8 @@ def main():
     print("same bytes" if same else "DIFFERENT BYTES")
     if not arguments.directory:
         shutil.rmtree(directory)
+    if not same:
+        sys.exit("overhead.py: a batch made other bytes than one process")
 
 
 main()
