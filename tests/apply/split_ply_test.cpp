@@ -46,7 +46,7 @@ const std::string split_body_lines =
     "1 3 2 5 1 6 1 1 0.500000 0.500000 1 0\n"
     "2 3 1 2 3 0\n";
 
-/// The body_lines in a binary file. Normals are as long there as a float can tell.
+/// The lines as a binary file has them. Normals are as long there as a float can tell.
 std::string packed(const std::string& text, bool big) {
   std::istringstream stream(text);
   std::string body;
@@ -84,6 +84,19 @@ TEST_F(SplitPly, KeepsWhatATextSays) {
             ply_header("ascii", 6, 4) + split_body_lines);
   EXPECT_EQ(split("a.ply", ply_header("ascii", 4, 2) + body_lines, 9),
             ply_header("ascii", 4, 2) + body_lines);
+}
+
+// Numbers of a face that is split are words: exponents, infinities and signs stay as they were written.
+TEST_F(SplitPly, KeepsTheWordsOfAFaceThatIsSplit) {
+  const std::string out =
+      split("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 1\nproperty float area\nproperty list uchar int vertex_indices\n"
+            "property list uchar double tags\nend_header\n0 0 0\n4 0 0\n4 1 0\n"
+            "1.5e20 3 0 1 2 4 inf -0 +1E3 NaN\n",
+            1.1);
+  EXPECT_THAT(out, HasSubstr("\n1.5e20 3 4 0 3 4 inf -0 +1E3 NaN\n1.5e20 3 4 3 1 4 inf -0 +1E3 NaN\n"
+                             "1.5e20 3 2 4 1 4 inf -0 +1E3 NaN\n"));
 }
 
 TEST_F(SplitPly, KeepsWhatBytesSay) {

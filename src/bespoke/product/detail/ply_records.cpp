@@ -13,12 +13,11 @@
 namespace bespoke {
 namespace {
 
-double number_in(std::string_view word, int& decimals) {
+PlyNumber number_in(std::string_view word) {
   NumberText number;
   if (!read_number(word.data(), word.data() + word.size(), number))
-    return std::numeric_limits<double>::quiet_NaN();
-  decimals = number.decimals;
-  return number.value;
+    return {std::numeric_limits<double>::quiet_NaN(), 0, word};
+  return {number.value, number.decimals, word};
 }
 
 PlyValues read_line(const PlyElement& element, std::string_view line) {
@@ -31,7 +30,7 @@ PlyValues read_line(const PlyElement& element, std::string_view line) {
   for (const PlyProperty& property : element.properties) {
     const long long count = property.count ? words.integer("length of a list") : 1;
     values.emplace_back(static_cast<std::size_t>(count));
-    for (PlyNumber& number : values.back()) number.value = number_in(words.word(), number.decimals);
+    for (PlyNumber& number : values.back()) number = number_in(words.word());
   }
   return values;
 }
@@ -137,9 +136,11 @@ PlyValues PlyRecords::values(std::size_t element, std::size_t record) const {
                    : read_bytes(header_, header_.elements[element], found);
 }
 
-void PlyRecords::append_number_of(std::string& to, PlyScalar type, const PlyNumber& number) const {
+void PlyRecords::append_value(std::string& to, PlyScalar type, const PlyNumber& number) const {
   if (!is_text()) return append_bytes(to, header_, type, number.value);
-  if (!is_real(type))
+  if (!number.word.empty())
+    to += number.word;
+  else if (!is_real(type))
     to += std::to_string(std::llround(number.value));
   else if (std::isfinite(number.value))
     append_number(to, number.value, number.decimals);
@@ -162,11 +163,11 @@ void PlyRecords::append(std::string& to, std::size_t element, const PlyValues& v
     if (property.count) {
       const auto length = static_cast<double>(values[i].size());
       require(*property.count, length, property);
-      append_number_of(to, *property.count, {length, 0});
+      append_value(to, *property.count, {length, 0, {}});
     }
     for (const PlyNumber& number : values[i]) {
-      require(property.type, number.value, property);
-      append_number_of(to, property.type, number);
+      if (number.word.empty()) require(property.type, number.value, property);
+      append_value(to, property.type, number);
     }
   }
   if (!is_text()) return;

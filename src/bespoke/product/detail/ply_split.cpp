@@ -33,7 +33,8 @@ std::vector<PlyNumber> middle_values(const PlyProperty& property, const std::vec
   for (std::size_t k = 0; k < a.size(); ++k) {
     const double mean = 0.5 * (a[k].value + b[k].value);
     middle[k] = {is_real(property.type) ? mean : std::floor(mean + 0.5),
-                 std::max({a[k].decimals, b[k].decimals, least_real_decimals})};
+                 std::max({a[k].decimals, b[k].decimals, least_real_decimals}),
+                 {}};
   }
   return middle;
 }
