@@ -5,6 +5,7 @@
 
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/lattice/detail/looked_up_points.h"
 
 namespace bespoke {
 

@@ -5,6 +5,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/instruction_set.h"
+#include "bespoke/lattice/detail/looked_up_points.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {

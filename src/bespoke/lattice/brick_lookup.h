@@ -6,15 +6,6 @@
 
 namespace bespoke {
 
-/// What one task of a parallel look-up takes.
-inline constexpr std::size_t points_per_chunk = 4096;
-
-/// The coordinates of points, point after point.
-inline std::span<const double> as_span(const Points& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-inline std::span<double> as_span(Points& x) { return {x.data(), static_cast<std::size_t>(x.size())}; }
-
 /// u at points: `x` and `u` hold three doubles a point, mesh units, and may be the same; NaN where x is not
 /// finite, zero outside all bricks. The same bits with every instruction set and at any number of threads.
 /// Throws InvalidInput when the sizes differ or are no multiple of three.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/lattice/detail/looked_up_points.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {

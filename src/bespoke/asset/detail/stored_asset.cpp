@@ -2,6 +2,7 @@
 
 #include <new>
 
+#include "bespoke/asset/detail/require_format.h"
 #include "bespoke/error.h"
 
 namespace bespoke {
@@ -47,10 +48,6 @@ std::string record_of(const Metadata& metadata) {
 }
 
 }  // namespace
-
-void require_format(bool holds, const std::string& what) {
-  if (!holds) throw FormatError(what);
-}
 
 std::string level_name(std::size_t step, std::size_t level) {
   return step_prefix(step) + "u_" + std::to_string(level);

@@ -30,9 +30,6 @@ void require_level(const StoredGrid& grid, const std::string& name, const Pyrami
                    double voxel_size);
 void require_leaf_count(std::size_t leaves, const std::string& name, const LevelRecord& record);
 
-/// Throws FormatError(what) unless it holds.
-void require_format(bool holds, const std::string& what);
-
 /// A path of no more than a line.
 std::string name_for_message(const std::filesystem::path& path);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "bespoke/asset/detail/stored_asset.h"
+#include "bespoke/asset/detail/require_format.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/sha256.h"
