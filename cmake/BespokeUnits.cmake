@@ -1,8 +1,9 @@
 option(BESPOKE_UNITY "Compile each directory of a target as one unit" OFF)
 
 # bespoke_units(TARGET): with BESPOKE_UNITY, the sources of each of the target's directories are compiled as one unit,
-# so that headers are read once a room: from nothing in a third of the time, after one edit in twice as long. Names in
-# anonymous namespaces must therefore differ within a directory; a source that has options of its own stays alone.
+# so that headers are read once a room: from nothing in half of the time. An edit compiles its room, 7 to 55 s in
+# place of 1 to 11. Names in anonymous namespaces must therefore differ within a directory; a source that has options
+# of its own stays alone.
 function(bespoke_units target)
   if(NOT BESPOKE_UNITY)
     return()
