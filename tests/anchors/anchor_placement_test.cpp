@@ -13,37 +13,37 @@
 namespace bespoke {
 namespace {
 
-const TriangleMesh placed_on = shapes::icosphere(3);
+const TriangleMesh model = shapes::icosphere(3);
 
 TEST(AnchorPlacement, MeasuresTheDistanceFromTheSurface) {
-  const AnchorPlacement on = anchor_placement(placed_on, placed_on.vertices.leftCols(20));
+  const AnchorPlacement on = anchor_placement(model, model.vertices.leftCols(20));
   EXPECT_EQ(on.median_distance, 0);
   EXPECT_FALSE(on.is_far());
-  const AnchorPlacement off = anchor_placement(placed_on, 1.5 * placed_on.vertices.leftCols(20));
+  const AnchorPlacement off = anchor_placement(model, 1.5 * model.vertices.leftCols(20));
   EXPECT_NEAR(off.median_distance, 0.5, 1e-6);  // the mesh is read in floats
   EXPECT_THAT(to_string(off), testing::HasSubstr("half of the anchors lie 0.5 or more from the model"));
 }
 
 TEST(AnchorPlacement, TellsOtherUnitsFromAnchorsOffTheSurface) {
-  const Points anchors = placed_on.vertices.leftCols(40);
+  const Points anchors = model.vertices.leftCols(40);
   for (const double unit : {0.001, 0.01, 0.1, 1 / 2.54, 2.54, 10.0, 100.0, 1000.0})
-    EXPECT_TRUE(anchor_placement(placed_on, unit * anchors).is_far()) << unit;
+    EXPECT_TRUE(anchor_placement(model, unit * anchors).is_far()) << unit;
   // The corners of the bounding box, as the paper adds them, lie as far off as any anchors that are meant.
-  EXPECT_FALSE(anchor_placement(placed_on, shapes::cube(2).vertices.array() - 1).is_far());
+  EXPECT_FALSE(anchor_placement(model, shapes::cube(2).vertices.array() - 1).is_far());
   // A few that lie close together on the surface.
-  EXPECT_FALSE(anchor_placement(placed_on, anchors.leftCols(4)).is_far());
+  EXPECT_FALSE(anchor_placement(model, anchors.leftCols(4)).is_far());
 }
 
 TEST(AnchorPlacement, OfASingleAnchorIsMeasuredByTheModel) {
-  const Points anchor = placed_on.vertices.leftCols(1);
-  EXPECT_FALSE(anchor_placement(placed_on, (1 + 1e-6) * anchor).is_far());
-  EXPECT_TRUE(anchor_placement(placed_on, 2.54 * anchor).is_far());
+  const Points anchor = model.vertices.leftCols(1);
+  EXPECT_FALSE(anchor_placement(model, (1 + 1e-6) * anchor).is_far());
+  EXPECT_TRUE(anchor_placement(model, 2.54 * anchor).is_far());
 }
 
 TEST(AnchorPlacement, OfNothingIsNothing) {
-  EXPECT_FALSE(anchor_placement(placed_on, Points(3, 0)).is_far());
+  EXPECT_FALSE(anchor_placement(model, Points(3, 0)).is_far());
   EXPECT_THROW(anchor_placement({}, Points::Zero(3, 1)), InvalidInput);
-  EXPECT_THROW(anchor_placement(placed_on, Points::Constant(3, 1, std::nan(""))), InvalidInput);
+  EXPECT_THROW(anchor_placement(model, Points::Constant(3, 1, std::nan(""))), InvalidInput);
 }
 
 }  // namespace

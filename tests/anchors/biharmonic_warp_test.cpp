@@ -7,11 +7,11 @@
 namespace bespoke {
 namespace {
 
-const Points from = test::random_points(15, 1), onto = test::random_points(15, 2);
+const Points warped_sources = test::random_points(15, 1), warped_targets = test::random_points(15, 2);
 
 TEST(BiharmonicWarp, BendsNothingUnderAnAffineMap) {
-  const Points image = (test::random_rotation(3) * 1.3 * from).colwise() + Vector3(2, 0, 1);
-  const BiharmonicWarp warp(from, image);
+  const Points image = (test::random_rotation(3) * 1.3 * warped_sources).colwise() + Vector3(2, 0, 1);
+  const BiharmonicWarp warp(warped_sources, image);
   EXPECT_NEAR(warp.energy(), 0, 1e-9);
   EXPECT_LT((warp(Vector3(5, 6, 7)) - (test::random_rotation(3) * 1.3 * Vector3(5, 6, 7) + Vector3(2, 0, 1)))
                 .norm(),
@@ -19,18 +19,18 @@ TEST(BiharmonicWarp, BendsNothingUnderAnAffineMap) {
 }
 
 TEST(BiharmonicWarp, PredictsAPairByTheOthers) {
-  const BiharmonicWarp warp(from, onto);
-  const BiharmonicWarp others(from.leftCols(14), onto.leftCols(14));
-  // The smoothing is relative to the from' box, which the last of them does not span.
-  EXPECT_NEAR(warp.left_out(14), (others(from.col(14)) - onto.col(14)).norm(), 1e-2);
+  const BiharmonicWarp warp(warped_sources, warped_targets);
+  const BiharmonicWarp others(warped_sources.leftCols(14), warped_targets.leftCols(14));
+  // The smoothing is relative to the sources' box, which the last of them does not span.
+  EXPECT_NEAR(warp.left_out(14), (others(warped_sources.col(14)) - warped_targets.col(14)).norm(), 1e-2);
 }
 
 TEST(BiharmonicWarp, KnowsTheEnergyOfInterchangedTargets) {
-  const BiharmonicWarp warp(from, onto);
+  const BiharmonicWarp warp(warped_sources, warped_targets);
   EXPECT_GT(warp.energy(), 0);
-  Points changed = onto;
+  Points changed = warped_targets;
   changed.col(3).swap(changed.col(9));
-  const double expected = BiharmonicWarp(from, changed).energy();
+  const double expected = BiharmonicWarp(warped_sources, changed).energy();
   EXPECT_NEAR(warp.energy_interchanged(3, 9), expected, 1e-9 * expected);
 }
 

@@ -22,7 +22,7 @@ FittedMapping carried_to(const TriangleMesh& source, const Points& fitted, Elast
   return fit_mapping_to_fitted(source, {fitted, source.faces}, {}, options);
 }
 
-/// Every vertex beyond the met_within is listed with its residual, and no other.
+/// Every vertex beyond the tolerance is listed with its residual, and no other.
 void expect_complete(const FittedMapping& fit, const TriangleMesh& source) {
   const Points offset = (*fit.elastic)(source.vertices) - fit.fitted_vertices;
   std::size_t listed = 0;

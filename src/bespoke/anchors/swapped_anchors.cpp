@@ -8,7 +8,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t min_remaining_pairs = 6;  // four are met by the affine tail alone
+constexpr std::size_t min_pairs_to_swap = 6;  // four are met by the affine tail alone
 
 /// Of the energy. On 29 pairs of models with 13 to 36 anchors no interchange of right ones lowered it below
 /// 0.95, with 1 % of noise 0.82; changing a swapped pair back left less than 0.42 in all but two.
@@ -36,7 +36,7 @@ std::vector<SwappedAnchors> swapped_anchors(const Anchors& anchors) {
     throw InvalidInput("an anchor has a coordinate that is not finite");
   std::vector<SwappedAnchors> swapped;
   const std::size_t count = anchors.pairs.size();
-  if (count < min_remaining_pairs) return swapped;
+  if (count < min_pairs_to_swap) return swapped;
   while (2 * swapped.size() < count / 3) {  // most pairs must be right for the others to be seen
     const SwappedAnchors best = best_interchange(BiharmonicWarp(sources, targets), count);
     if (!(best.energy_ratio <= largest_ratio)) break;

@@ -12,7 +12,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t points_per_exact_chunk = 1 << 14;
+constexpr std::size_t points_per_mapping_chunk = 1 << 14;
 
 void require_finite(const Points& x, const std::vector<double>& times) {
   if (!x.allFinite())
@@ -82,14 +82,14 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
   applied.frames.assign(times.size(), Points(3, x.cols()));
   const AffineMap affine = elastic.affine();
   const auto count = static_cast<std::size_t>(x.cols());
-  std::vector<std::size_t> in_band((count + points_per_exact_chunk - 1) / points_per_exact_chunk);
-  parallel_for(count, points_per_exact_chunk, [&](std::size_t begin, std::size_t end) {
+  std::vector<std::size_t> in_band((count + points_per_mapping_chunk - 1) / points_per_mapping_chunk);
+  parallel_for(count, points_per_mapping_chunk, [&](std::size_t begin, std::size_t end) {
     const auto first = static_cast<Eigen::Index>(begin);
     const auto size = static_cast<Eigen::Index>(end - begin);
     const Points chunk = x.middleCols(first, size);
     const Points u_chunk = u.middleCols(first, size);
     const Points image = affine * chunk + u_chunk;
-    in_band[begin / points_per_exact_chunk] = count_nonzero(u_chunk);
+    in_band[begin / points_per_mapping_chunk] = count_nonzero(u_chunk);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
       if (is_asked_at_rest(times[frame], motion))
         applied.frames[frame].middleCols(first, size) =

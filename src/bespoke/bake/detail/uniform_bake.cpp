@@ -29,7 +29,7 @@ constexpr std::size_t uniform_bytes_per_leaf = leaf_floats * sizeof(float) + 400
 constexpr std::size_t uniform_fixed_bytes = std::size_t{24} << 20;
 
 constexpr std::size_t error_probes = 4096;
-// The largest of a few thousand error_probes falls short of the largest of all cells.
+// The largest of a few thousand probes falls short of the largest of all cells.
 constexpr double probe_margin = 1.5;
 
 double smallest_radius(const Support& support) {
