@@ -93,5 +93,44 @@ TEST(ElasticSteps, CanBeDivided) {
   EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
 }
 
+/// Three tubes side by side, the middle one moved along the others by `slide`.
+TriangleMesh tubes(double slide) {
+  constexpr double between = 0.02;
+  const TriangleMesh tube = test::tube();
+  const Eigen::Index points = tube.vertices.cols(), faces = tube.faces.cols();
+  TriangleMesh three{Points(3, 3 * points), Faces(3, 3 * faces)};
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 place(i == 1 ? slide : 0, i * (2 * test::tube_radius + between), 0);
+    three.vertices.middleCols(i * points, points) = tube.vertices.colwise() + place;
+    three.faces.middleCols(i * faces, faces) = tube.faces.array() + static_cast<int>(i * points);
+  }
+  return three;
+}
+
+// Between tubes that slide along each other space is sheared too steeply for the voxels of one step.
+TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.08);
+  MakeMapOptions options = default_options(diagonal(source.vertices));
+  options.bake.max_leaves = 1500;
+  options.fit.steps = 1;
+  const MadeMap one = make_map({source, fitted, {}, &fitted}, options);
+  ASSERT_GT(one.asset.steps.front().certificate.folded, 0u);
+  EXPECT_GT(one.fit.summary.bake->folded_cells, 0u);
+
+  options.fit.steps.reset();
+  const MadeMap chain = make_map({source, fitted, {}, &fitted}, options);
+  EXPECT_GT(chain.asset.steps.size(), 1u);
+  std::size_t levels = 0;
+  for (const MapStep& step : chain.asset.steps) {
+    EXPECT_TRUE(step.certificate.is_bijection());
+    levels += step.pyramid.levels.size();
+  }
+  EXPECT_EQ(chain.fit.summary.elastic.divided_steps, chain.asset.steps.size() - 1);
+  EXPECT_LE(chain.fit.summary.elastic.vertex_residuals.max, 2 * options.fit.fit_tolerance);
+  // Nothing of the bake that was given up is told.
+  EXPECT_EQ(chain.fit.summary.bake->levels.size(), levels);
+  EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
+}
+
 }  // namespace
 }  // namespace bespoke

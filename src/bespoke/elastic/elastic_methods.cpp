@@ -43,13 +43,13 @@ ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const 
 }  // namespace
 
 constinit const std::array<ElasticMethodRow, 5> elastic_methods{
-    {{"csrbf", ElasticMethod::csrbf, csrbf, true, stored<CsrbfMap, read_csrbf>(1)},
-     {"multiscale", ElasticMethod::multiscale, multiscale<false>, true,
+    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, stored<CsrbfMap, read_csrbf>(1)},
+     {"multiscale", ElasticMethod::multiscale, multiscale<false>, true, false,
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"diffeomorphic", ElasticMethod::diffeomorphic, multiscale<true>, true,
+     {"diffeomorphic", ElasticMethod::diffeomorphic, multiscale<true>, true, true,
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, stored<PffdMap, read_pffd>(4)},
-     {"pffd-smooth", ElasticMethod::pffd_smooth, pffd<SmoothPffdMap>, false,
+     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, stored<PffdMap, read_pffd>(4)},
+     {"pffd-smooth", ElasticMethod::pffd_smooth, pffd<SmoothPffdMap>, false, false,
       stored<SmoothPffdMap, read_pffd_smooth>(3)}}};
 
 const ElasticMethodRow& elastic_method(ElasticMethod method) {

@@ -47,6 +47,8 @@ struct ElasticMethodRow {
   ElasticFit (*fit)(const ElasticInput& input, const ElasticOptions& options, const Progress& progress);
   /// Whether it meets points that are no vertices: ElasticInput::sources may hold any others.
   bool meets_points;
+  /// Whether its maps fold nowhere, so that a bake's folds are those of its voxels.
+  bool keeps_orientation;
   StoredMapType stored;
 };
 

@@ -137,7 +137,7 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
                       const Progress& progress) {
   if (exact.steps().size() == 1) {
     BakedSteps baked = bake_all(exact, surfaces, faces, options, divisible, std::move(done), progress);
-    baked.whole = baked.summaries.front();
+    if (!is_to_be_divided(baked, divisible)) baked.whole = baked.summaries.front();
     return baked;
   }
   const Stopwatch watch;

@@ -294,9 +294,10 @@ void judge_lines(FittedMapping& result, const TriangleMesh& source, const Triang
 
 void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
                  const FitOptions& options, std::size_t step, const Progress& progress) {
-  if (!fitted.plan || step >= fitted.plan->steps()) throw InvalidInput("there is no such step to divide");
+  if (step >= fitted.elastic->steps().size()) throw InvalidInput("there is no such step to divide");
   const Stopwatch watch;
   const std::vector<std::shared_ptr<const ElasticMap>>& maps = fitted.elastic->steps();
+  if (!fitted.plan) fitted.plan = plan_steps(source, fitted.fitted_vertices, fitted.pairs, 1);
   fitted.plan = halved(*fitted.plan, step);
   ElasticSteps halves = fit_halves(source, fitted.pairs, *fitted.plan, *fitted.elastic, step, options.elastic,
                                    elastic_options(options), progress);
@@ -314,6 +315,7 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
     steps.sources.push_back(fitted.step_sources[k]);
   }
   take_steps(fitted, std::move(steps));
+  ++summary.divided_steps;
   judge(fitted, source, anchors, options);
   summary.seconds += watch.seconds();
 }

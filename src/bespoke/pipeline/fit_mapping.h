@@ -35,11 +35,11 @@ struct FittedMapping {
   std::vector<double> anchor_sigma;     ///< as the fit took it, mesh units, one per pair; empty without
   FitSummary summary;
   ElasticPairs pairs;            ///< what E was fitted to
-  std::optional<StepPlan> plan;  ///< of a chain of several steps
+  std::optional<StepPlan> plan;  ///< of a chain of several steps; empty for one
 };
 
-/// A chain with a step, by index, halved; the others stay as they are. `fitted` must have a plan; options as
-/// before.
+/// A map with a step, by index, halved; the others stay as they are. Options as before. Throws InvalidInput
+/// where there is no such step, and as fit_mapping.
 void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
                  const FitOptions& options, std::size_t step, const Progress& progress = {});
 

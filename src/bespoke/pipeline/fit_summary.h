@@ -38,6 +38,7 @@ struct ElasticSummary {
   ElasticFindings found;                     ///< what the method says itself (of a chain's first step)
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
+  std::size_t divided_steps = 0;             ///< halved as their bakes folded
   double lambda = 0;                         ///< effective distance, mesh units
   Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units
   Statistics anchor_residuals;               ///< |Γ(E(q)) − q'|, mesh units

@@ -67,20 +67,28 @@ RotationPath path_of(const FittedMapping& fit, const MakeMapOptions& options) {
   return path == RotationPath::flow ? RotationPath::geodesic : path;
 }
 
-/// Bakes the fitted map; a step of a chain that folds although it was mended is halved once, and the steps
-/// after it kept.
+/// Whether a single step that folds may become a chain: where nobody asked for one step or its voxels, and
+/// the map itself does not fold.
+bool may_become_chain(const MakeMapOptions& options) {
+  return !options.fit.steps && !options.bake.voxel_size &&
+         elastic_method(options.fit.elastic).keeps_orientation;
+}
+
+/// Bakes the fitted map; a step that folds although it was mended is halved, and the steps after it kept. The
+/// steps of a chain are halved once; a single step may become four.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  std::vector<bool> divisible(fit.elastic->steps().size(), fit.plan.has_value());
+  std::vector<bool> divisible(fit.elastic->steps().size(), fit.plan || may_become_chain(options));
   BakedSteps last;
   for (;;) {
     BakedSteps baked = bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, divisible,
                                   std::move(last), progress);
     if (!is_to_be_divided(baked, divisible)) return baked;
     const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
+    const bool once_more = divisible.size() == 1;
     divide_step(fit, input.source, input.anchors, options.fit, folded, progress);
-    divisible[folded] = false;
-    divisible.insert(divisible.begin() + static_cast<std::ptrdiff_t>(folded), false);
+    divisible[folded] = once_more;
+    divisible.insert(divisible.begin() + static_cast<std::ptrdiff_t>(folded), once_more);
     baked.steps.erase(baked.steps.begin());
     baked.summaries.erase(baked.summaries.begin());
     last = std::move(baked);
