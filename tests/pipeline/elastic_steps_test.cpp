@@ -132,5 +132,20 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
 }
 
+TEST(ElasticSteps, BecomeMoreWherePartsSlideAlongEachOther) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.6);
+  FitOptions options = default_options(diagonal(source.vertices)).fit;
+  options.steps = 1;
+  const FittedMapping one = fit_mapping_to_fitted(source, fitted, {}, options);
+  EXPECT_GT(one.summary.elastic.vertex_residuals.p99, 100 * options.fit_tolerance);
+  EXPECT_FALSE(one.summary.elastic.divided_where_missed);
+
+  options.steps.reset();
+  const FittedMapping chain = fit_mapping_to_fitted(source, fitted, {}, options);
+  EXPECT_GT(chain.elastic->steps().size(), 1u);
+  EXPECT_TRUE(chain.summary.elastic.divided_where_missed);
+  EXPECT_LE(chain.summary.elastic.vertex_residuals.p99, options.fit_tolerance);
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -30,18 +30,21 @@ std::string to_string(const ElasticFindings& found) {
   return std::visit([](const auto& summary) { return bespoke::to_string(summary); }, found);
 }
 
-std::string reason_for_steps(const ElasticSummary& summary, std::size_t steps) {
-  if (steps == summary.divided_steps + 1) return "since a single one folds when it is baked";
+std::string motion_text(const RegionalMotion& motion) {
   char text[120];
-  std::snprintf(text, sizeof text, "since parts turn by %.3g degrees and stretch by %.3g",
-                summary.motion.turn * 180 / std::numbers::pi, summary.motion.stretch);
-  if (summary.divided_steps == 0) return text;
-  return text + (" and " + std::to_string(summary.divided_steps)) + " folded when baked";
+  std::snprintf(text, sizeof text, "parts turn by %.3g degrees and stretch by %.3g",
+                motion.turn * 180 / std::numbers::pi, motion.stretch);
+  return text;
 }
 
 std::string steps_text(const ElasticSummary& summary) {
-  const std::size_t steps = summary.later_steps.size() + 1;
-  std::string line = std::to_string(steps) + " steps, " + reason_for_steps(summary, steps);
+  std::vector<std::string> reasons;
+  if (step_count(summary.motion) > 1) reasons.push_back(motion_text(summary.motion));
+  if (summary.divided_where_missed) reasons.emplace_back("fewer miss vertices");
+  if (summary.divided_steps > 0)
+    reasons.push_back(std::to_string(summary.divided_steps) + " folded when baked");
+  std::string line = std::to_string(summary.later_steps.size() + 1) + " steps";
+  for (std::size_t i = 0; i < reasons.size(); ++i) line += (i == 0 ? ", since " : " and ") + reasons[i];
   line += "; 1: " + to_string(summary.found);
   for (std::size_t k = 0; k < summary.later_steps.size(); ++k)
     line += "; " + std::to_string(k + 2) + ": " + to_string(summary.later_steps[k]);
