@@ -55,6 +55,17 @@ TEST_F(FitRefusals, RefusesWhatIsNotALength) {
                      "'" + text + "' is not a positive length");
 }
 
+TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnits) {
+  TriangleMesh target = read_triangle_mesh(pair_.file("target.obj"));
+  target.vertices *= 100;
+  write_triangle_mesh(pair_.file("target.obj"), target);
+  json anchors = read_json("anchors.json");
+  for (json& pair : anchors["pairs"])
+    for (json& coordinate : pair["b"]) coordinate = 100 * coordinate.get<double>();
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  expect_refusal(pair_.fit("map.vdb"), 2, "times as large as the source by their anchors");
+}
+
 TEST_F(FitRefusals, RefusesAFittedSourceOfOtherConnectivity) {
   write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2, "642");

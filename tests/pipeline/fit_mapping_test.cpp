@@ -204,6 +204,21 @@ TEST(FitMapping, StopsWhenAsked) {
   EXPECT_THROW(fit_mapping(pair.source, pair.target, pair.anchors, pair.options, progress), Interrupted);
 }
 
+TEST(FitMapping, RefusesModelsInTwoUnits) {
+  for (const double unit : {0.01, 0.1, 10.0, 25.4, 1000.0}) {
+    Pair pair;
+    TriangleMesh fitted = pair.source;
+    fitted.vertices *= unit;
+    pair.target.vertices *= unit;
+    for (AnchorPair& anchor : pair.anchors.pairs) anchor.b *= unit;
+    const auto names_the_factor = testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("two units"));
+    const Anchors none;
+    EXPECT_THAT([&] { fit_mapping(pair.source, pair.target, pair.anchors, pair.options); }, names_the_factor);
+    EXPECT_THAT([&] { fit_mapping(pair.source, pair.target, none, pair.options); }, names_the_factor);
+    EXPECT_THAT([&] { fit_mapping_to_fitted(pair.source, fitted, none, pair.options); }, names_the_factor);
+  }
+}
+
 TEST(FitMappingToFitted, TakesTheFittedMeshAsItIs) {
   Pair pair;
   TriangleMesh fitted = pair.source;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bespoke/anchors/anchor_curves.h"
+#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/elastic_pairs.h"
@@ -45,6 +46,20 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
     if (!(pair.a.allFinite() && pair.b.allFinite() && pair.weight > 0 && pair.sigma.value_or(0) >= 0))
       throw InvalidInput("anchor \"" + pair.name +
                          "\" is not finite, its weight is not above 0, or its sigma below 0");
+}
+
+/// Files of meshes name no unit. Beyond this factor the models are in two: a doll is a sixth of a person, a
+/// centimetre a tenth of a decimetre.
+constexpr double largest_size_ratio = 8;
+
+/// source and target: places that correspond, or all of either model.
+void require_one_unit(const Points& source, const Points& target, const std::string& what) {
+  const double a = diagonal(source), b = diagonal(target);
+  if (std::max(a, b) <= largest_size_ratio * std::min(a, b)) return;
+  if (!(a > 0 && b > 0)) return;  // what is wrong with these is told where they are used
+  throw InvalidInput("the target is " + in_digits(b / a, 3) + " times as large as the source by " + what +
+                     ", as if they were in two units; bring one of them, and its anchors, to the unit of the "
+                     "other");
 }
 
 void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted) {
@@ -283,6 +298,10 @@ Anchors lay(FittedMapping& result, const TriangleMesh& source, const TriangleMes
             const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   require_usable(source, anchors, options);
   require_valid(target, "target");
+  if (anchors.pairs.size() > 2)
+    require_one_unit(source_points(anchors), target_points(anchors), "their anchors");
+  else
+    require_one_unit(source.vertices, target.vertices, "their bounding boxes");
   const FitPatches patches = fit_patches(anchors, source, target);
   result.summary.patches = patches.found;
   const LayInput input{source, target, patches, anchors, options};
@@ -370,6 +389,7 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   require_usable(source, anchors, options);
   require_valid(fitted, "fitted source");
   require_same_connectivity(source, fitted);
+  require_one_unit(source.vertices, fitted.vertices, "their vertices");
   if (!anchors.curves.empty())
     throw InvalidInput("curves lead the surface fitting, but the fitted source is given; leave them out");
   if (!anchors.patches.empty())

@@ -74,21 +74,24 @@ bool may_become_chain(const MakeMapOptions& options) {
          elastic_method(options.fit.elastic).keeps_orientation;
 }
 
-/// Bakes the fitted map; a step that folds although it was mended is halved, and the steps after it kept. The
-/// steps of a chain are halved once; a single step may become four.
+/// Bakes the fitted map; a step that folds although it was mended is halved, its halves once more, and the
+/// steps after it kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  std::vector<bool> divisible(fit.elastic->steps().size(), fit.plan || may_become_chain(options));
+  constexpr int most_halvings = 2;  // of a step
+  std::vector<int> halvings(fit.elastic->steps().size(),
+                            fit.plan || may_become_chain(options) ? most_halvings : 0);
   BakedSteps last;
   for (;;) {
+    std::vector<bool> divisible;
+    for (const int left : halvings) divisible.push_back(left > 0);
     BakedSteps baked = bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, divisible,
                                   std::move(last), progress);
     if (!is_to_be_divided(baked, divisible)) return baked;
     const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
-    const bool once_more = divisible.size() == 1;
     divide_step(fit, input.source, input.anchors, options.fit, folded, progress);
-    divisible[folded] = once_more;
-    divisible.insert(divisible.begin() + static_cast<std::ptrdiff_t>(folded), once_more);
+    const int left = --halvings[folded];
+    halvings.insert(halvings.begin() + static_cast<std::ptrdiff_t>(folded), left);
     baked.steps.erase(baked.steps.begin());
     baked.summaries.erase(baked.summaries.begin());
     last = std::move(baked);

@@ -14,10 +14,9 @@ namespace {
 constexpr std::size_t most_places = 100;  // of a kind: nobody visits more
 constexpr double group_radius = 0.03;     // of the diagonal: about what a flight to a place shows
 
-std::string figure(double value) { return in_digits(value, 4); }
-
-std::string tuple(const Vector3& x) {
-  return "(" + figure(x.x()) + ", " + figure(x.y()) + ", " + figure(x.z()) + ")";
+template <class Figure>
+std::string figure(const Figure& value) {
+  return in_digits(value, 4);
 }
 
 Vector3 nearest_column(const Points& points, const Points& answers, const Vector3& x) {
@@ -35,7 +34,7 @@ void add_folds(const Asset& asset, const TriangleMesh& source, std::vector<Place
               [](const FoldedCell& a, const FoldedCell& b) { return a.determinant < b.determinant; });
     cells.resize(std::min(cells.size(), most_places));
     for (const FoldedCell& cell : cells)
-      places.push_back({"folded cells", "det " + figure(cell.determinant) + " at " + tuple(cell.center),
+      places.push_back({"folded cells", "det " + figure(cell.determinant) + " at " + figure(cell.center),
                         k == 0 ? cell.center : nearest_column(at_step, source.vertices, cell.center)});
     if (k + 1 < asset.steps.size()) at_step = (*chain.steps()[k])(at_step);
   }
@@ -58,7 +57,7 @@ void add_relaxed(const Json& bake, std::vector<Place>& places) {
   regions.resize(std::min(regions.size(), most_places));
   for (const auto& [error, centre] : regions)
     places.push_back(
-        {"regions that miss the tolerance", "error " + figure(error) + " around " + tuple(centre), centre});
+        {"regions that miss the tolerance", "error " + figure(error) + " around " + figure(centre), centre});
 }
 
 struct RatedVertex {
@@ -90,7 +89,7 @@ void add_vertices(const std::string& kind, std::vector<RatedVertex> vertices, co
     const Vector3 x = source.vertices.col(first.vertex);
     places.push_back({kind,
                       std::to_string(count) + (count == 1 ? " vertex" : " vertices") +
-                          (says_value ? ", up to " + figure(first.value) : "") + " around " + tuple(x),
+                          (says_value ? ", up to " + figure(first.value) : "") + " around " + figure(x),
                       x});
   }
 }
