@@ -74,11 +74,11 @@ bool may_become_chain(const MakeMapOptions& options) {
          elastic_method(options.fit.elastic).keeps_orientation;
 }
 
-/// Bakes the fitted map; a step that folds although it was mended is halved, its halves once more, and the
-/// steps after it kept.
+/// Bakes the fitted map; a step that folds although it was mended is halved, as are its halves, and the steps
+/// after it kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  constexpr int most_halvings = 2;  // of a step
+  constexpr int most_halvings = 3;  // of a step and its parts
   std::vector<int> halvings(fit.elastic->steps().size(),
                             fit.plan || may_become_chain(options) ? most_halvings : 0);
   BakedSteps last;
