@@ -87,13 +87,35 @@ TEST_F(SplitProduct, RefusesFreeFormStatements) {
 }
 
 TEST_F(SplitProduct, KnowsWhichKindsItCanSplit) {
-  EXPECT_TRUE(can_split_product("a.OBJ"));
-  EXPECT_FALSE(can_split_product("a.stl"));
-  const std::string off = file("a.off", "OFF\n3 1 0\n0 0 0\n4 0 0\n4 1 0\n3 0 1 2\n");
+  for (const char* name : {"a.OBJ", "a.ply", "a.stl", "a.off"})
+    EXPECT_TRUE(can_split_product(name)) << name;
+  EXPECT_FALSE(can_split_product("a.xyz"));
+  split("a.obj", everything, 1.1);
+  const std::string points = file("a.xyz", "0 0 0\n4 0 0\n");
   EXPECT_THAT(test::error_message<InvalidInput>([&] {
-                carry_product(off, {directory_ / "b.off"}, identity_motion(), {{}, {}, &refined_.splits});
+                carry_product(points, {directory_ / "b.xyz"}, identity_motion(), {{}, {}, &refined_.splits});
               }),
-              StartsWith(off));
+              StartsWith(points));
+}
+
+// Splits belong to the faces that they were found for.
+TEST_F(SplitProduct, RefusesSplitsOfOtherFaces) {
+  split("a.obj", everything, 1.1);
+  const std::vector<std::pair<std::string, std::string>> others{
+      {"b.obj", "v 0 0 0\nv 4 0 0\nv 4 1 0\nf 1 2 3\n"},
+      {"b.off", "OFF\n3 1 0\n0 0 0\n4 0 0\n4 1 0\n3 0 1 2\n"},
+      {"b.stl",
+       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 1 0\nendloop\n"
+       "endfacet\nendsolid\n"}};
+  for (const auto& [name, content] : others) {
+    const std::string path = file(name, content);
+    EXPECT_THAT(
+        test::error_message<InvalidInput>([&] {
+          carry_product(path, {directory_ / ("out_" + name)}, identity_motion(), {{}, {}, &refined_.splits});
+        }),
+        HasSubstr("it has other faces"))
+        << name;
+  }
 }
 
 /// Objects with vertices of their own between their elements; numbers of both signs; corners of every form.

@@ -25,8 +25,8 @@ struct Format {
 
 constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj},
                              Format{".ply", carry_ply, find_ply_parts, split_ply},
-                             Format{".stl", carry_stl},
-                             Format{".off", carry_off},
+                             Format{".stl", carry_stl, nullptr, split_stl},
+                             Format{".off", carry_off, nullptr, split_off},
                              Format{".gltf", carry_gltf, find_gltf_parts},
                              Format{".glb", carry_gltf, find_gltf_parts},
                              Format{".xyz", carry_xyz},

@@ -26,6 +26,12 @@ Points moved_normals(const Points& normals, const Points& jacobians) {
   return moved;
 }
 
+Vector3 middle_direction(const Vector3& a, const Vector3& b) {
+  const Vector3 mean = 0.5 * (a + b);
+  const double length = mean.norm();
+  return length > 0 ? Vector3(mean * (0.5 * (a.norm() + b.norm()) / length)) : a;
+}
+
 Points moved_tangents(const Points& tangents, const Points& jacobians) {
   Points moved(3, tangents.cols());
   for (Eigen::Index i = 0; i < tangents.cols(); ++i)

@@ -12,6 +12,9 @@ inline constexpr double direction_resolution = 1e-7;
 /// seen counter-clockwise. A normal that is zero or not finite stays as it is.
 Points moved_normals(const Points& normals, const Points& jacobians);
 
+/// The mean's direction, as long as they are in the mean; the first one where they cancel.
+Vector3 middle_direction(const Vector3& a, const Vector3& b);
+
 /// Tangents: J t, as long as t.
 Points moved_tangents(const Points& tangents, const Points& jacobians);
 

@@ -87,16 +87,24 @@ Product GatheredFaces::product(bool has_normals) {
   return product;
 }
 
+std::vector<std::size_t> kept_triangles(const Points& corners) {
+  std::vector<std::size_t> kept;
+  for (Eigen::Index i = 0; i + 2 < corners.cols(); i += 3) {
+    const auto a = corners.col(i), b = corners.col(i + 1), c = corners.col(i + 2);
+    if (a != b && b != c && c != a) kept.push_back(static_cast<std::size_t>(i / 3));
+  }
+  return kept;
+}
+
 Product joined_triangles(const Points& corners) {
   const std::vector<int> first = first_at_equal_position(corners);
   Product product;
   product.polygon_start.push_back(0);
   std::vector<int> vertex(first.size(), -1);
   std::vector<int> used;
-  for (std::size_t facet = 0; facet + 2 < first.size(); facet += 3) {
-    const int a = first[facet], b = first[facet + 1], c = first[facet + 2];
-    if (a == b || b == c || c == a) continue;
-    for (const int corner : {a, b, c}) {
+  for (const std::size_t triangle : kept_triangles(corners)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int corner = first[3 * triangle + k];
       int& number = vertex[static_cast<std::size_t>(corner)];
       if (number < 0) {
         number = static_cast<int>(used.size());

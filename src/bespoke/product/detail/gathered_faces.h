@@ -44,6 +44,9 @@ GatheredFaces gather_text(const InputFile& file, const TextFormat& format,
 /// triangles of which two corners coincide are left out.
 Product joined_triangles(const Points& corners);
 
+/// The numbers of the triangles that joined_triangles keeps, ascending.
+std::vector<std::size_t> kept_triangles(const Points& corners);
+
 /// What is wrong with a face: fewer than three corners, or one that occurs twice, numbered from `first`.
 /// Empty when nothing is.
 std::string face_fault(const int* corners, std::size_t count, int first);

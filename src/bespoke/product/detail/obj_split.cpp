@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/product/detail/directions.h"
+#include "bespoke/product/detail/face_parts.h"
 #include "bespoke/product/detail/obj_check.h"
 #include "bespoke/product/detail/obj_statements.h"
 #include "bespoke/product/detail/obj_text.h"
@@ -24,16 +25,12 @@ std::vector<ObjVertexData::Number> middle_numbers(std::size_t kind,
                                                   const std::vector<ObjVertexData::Number>& a,
                                                   const std::vector<ObjVertexData::Number>& b) {
   std::vector<ObjVertexData::Number> middle;
-  double length_a = 0, length_b = 0, length = 0;
-  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k)
     middle.push_back({0.5 * (a[k].value + b[k].value), std::max(a[k].decimals, b[k].decimals)});
-    length_a += a[k].value * a[k].value;
-    length_b += b[k].value * b[k].value;
-    length += middle[k].value * middle[k].value;
-  }
-  if (kind == obj_normal && length > 0)
-    for (ObjVertexData::Number& number : middle)
-      number.value *= 0.5 * (std::sqrt(length_a) + std::sqrt(length_b)) / std::sqrt(length);
+  if (kind != obj_normal) return middle;
+  const Vector3 normal =
+      middle_direction({a[0].value, a[1].value, a[2].value}, {b[0].value, b[1].value, b[2].value});
+  for (std::size_t axis = 0; axis < 3; ++axis) middle[axis].value = normal[static_cast<Eigen::Index>(axis)];
   return middle;
 }
 
@@ -41,10 +38,10 @@ std::vector<ObjVertexData::Number> middle_numbers(std::size_t kind,
 /// faces share gets one middle, and so do texture coordinates and normals that they share along it.
 class CornerMaker {
  public:
-  CornerMaker(ObjText& obj, const FaceSplits& splits)
+  CornerMaker(ObjText& obj, const FaceSplits& splits, const FaceParts& parts)
       : obj_(obj),
         splits_(splits),
-        faces_corners_(obj.faces.size()),
+        parts_(parts),
         middles_(splits.vertices.size(), no_obj_data),
         pairs_normals_(obj.data[obj_normal].of_file() == obj.data[obj_position].of_file() &&
                        std::all_of(obj.faces.begin(), obj.faces.end(),
@@ -56,7 +53,7 @@ class CornerMaker {
                        })) {}
 
   void run() {
-    obj_.faces.resize(faces_corners_ + splits_.corners.size());
+    obj_.faces.resize(obj_.faces.size() + splits_.corners.size());
     std::size_t polygon = 0;
     for (ObjElement& element : obj_.elements) {
       element.made_before = made();
@@ -73,25 +70,16 @@ class CornerMaker {
   }
 
   void make(std::size_t polygon, const ObjElement& element) {
-    const auto begin = splits_.part_corners.begin();
-    std::vector<int> corners(begin + splits_.part_start[first_part(polygon)],
-                             begin + splits_.part_start[first_part(polygon + 1)]);
-    std::sort(corners.begin(), corners.end());  // what a corner lies between has smaller numbers
-    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-    for (const int number : corners) {
+    for (const int number : parts_.corners(polygon)) {
+      const FaceSplits::Corner* const split = parts_.between(number);
+      if (!split) continue;
       const auto corner = static_cast<std::size_t>(number);
-      if (corner < faces_corners_) continue;
-      const FaceSplits::Corner& split = splits_.corners[corner - faces_corners_];
       ObjKinds& data = obj_.faces[corner].data;
-      data[obj_position] = middle_of_edge(split.vertex - obj_.data[obj_position].of_file(), element);
+      data[obj_position] = middle_of_edge(split->vertex - obj_.data[obj_position].of_file(), element);
       for (std::size_t kind = obj_texture; kind < obj_kinds; ++kind)
-        data[kind] = middle_of(kind, obj_.faces[static_cast<std::size_t>(split.before)].data[kind],
-                               obj_.faces[static_cast<std::size_t>(split.behind)].data[kind], element);
+        data[kind] = middle_of(kind, obj_.faces[static_cast<std::size_t>(split->before)].data[kind],
+                               obj_.faces[static_cast<std::size_t>(split->behind)].data[kind], element);
     }
-  }
-
-  std::size_t first_part(std::size_t polygon) const {
-    return static_cast<std::size_t>(splits_.first_part[polygon]);
   }
 
   int middle_of_edge(int edge, const ObjElement& element) {
@@ -122,8 +110,8 @@ class CornerMaker {
 
   ObjText& obj_;
   const FaceSplits& splits_;
-  std::size_t faces_corners_;  // of the file
-  std::vector<int> middles_;   // of the splits' edges
+  const FaceParts& parts_;
+  std::vector<int> middles_;  // of the splits' edges
   std::array<std::map<std::pair<int, int>, int>, obj_kinds> shared_;
   bool pairs_normals_;  // no corner names any, and as many as positions stand in front of every element
 };
@@ -131,10 +119,10 @@ class CornerMaker {
 /// Writes the faces that are split, and the others anew where their numbers change.
 class Writer {
  public:
-  Writer(std::string_view text, const ObjText& obj, const FaceSplits& splits, const ObjContent& found)
+  Writer(std::string_view text, const ObjText& obj, const FaceParts& parts, const ObjContent& found)
       : text_(text),
         obj_(obj),
-        splits_(splits),
+        parts_(parts),
         position_decimals_(position_decimals(found.box, found.position_decimals)),
         normal_decimals_(std::max(least_decimals, found.normal_decimals.decimals())) {}
 
@@ -142,7 +130,7 @@ class Writer {
     std::vector<TextEdit> edits;
     std::size_t polygon = 0;
     for (const ObjElement& element : obj_.elements) {
-      if (element.is_face && is_split(polygon, element))
+      if (element.is_face && parts_.is_split(polygon))
         edits.push_back({element.text, with_parts(polygon, element)});
       else
         renumber(element, edits);
@@ -152,14 +140,6 @@ class Writer {
   }
 
  private:
-  int part_start(std::size_t polygon) const {
-    return splits_.part_start[static_cast<std::size_t>(splits_.first_part[polygon])];
-  }
-
-  bool is_split(std::size_t polygon, const ObjElement& element) const {
-    return part_start(polygon + 1) - part_start(polygon) > static_cast<int>(element.last - element.first);
-  }
-
   /// The new vertex data that stand in front of a face, and its parts.
   std::string with_parts(std::size_t polygon, const ObjElement& element) const {
     const std::string line_break = line_break_behind(element);
@@ -175,14 +155,11 @@ class Writer {
         }
         text += line_break;
       }
-    for (int part = splits_.first_part[polygon]; part < splits_.first_part[polygon + 1]; ++part) {
-      if (part > splits_.first_part[polygon]) text += line_break;
+    for (int part = parts_.first(polygon); part < parts_.first(polygon + 1); ++part) {
+      if (part > parts_.first(polygon)) text += line_break;
       text += element.keyword;
-      for (int k = splits_.part_start[static_cast<std::size_t>(part)];
-           k < splits_.part_start[static_cast<std::size_t>(part) + 1]; ++k) {
-        const auto corner = static_cast<std::size_t>(splits_.part_corners[static_cast<std::size_t>(k)]);
-        text.append(" ").append(word(obj_.faces[corner].data, {}));
-      }
+      for (const int corner : parts_.corners_of_part(part))
+        text.append(" ").append(word(obj_.faces[static_cast<std::size_t>(corner)].data, {}));
     }
     return text;
   }
@@ -234,7 +211,7 @@ class Writer {
 
   std::string_view text_;
   const ObjText& obj_;
-  const FaceSplits& splits_;
+  const FaceParts& parts_;
   int position_decimals_, normal_decimals_;
 };
 
@@ -247,11 +224,13 @@ void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& outp
     throw InvalidInput(file.path().string() +
                        ": has free-form statements (vp, curv, surf), whose vertices cannot be renumbered; it "
                        "can be refined without them");
-  std::string text(file.size(), '\0');
-  file.read(0, text.data(), text.size());
+  const std::string text = file.content();
   ObjText obj = read_obj_text(text, file.path());
-  CornerMaker(obj, splits).run();
-  output.write(Writer(text, obj, splits, found).run());
+  const auto polygons = std::count_if(obj.elements.begin(), obj.elements.end(),
+                                      [](const ObjElement& element) { return element.is_face; });
+  const FaceParts parts(splits, static_cast<std::size_t>(polygons), file.path());
+  CornerMaker(obj, splits, parts).run();
+  output.write(Writer(text, obj, parts, found).run());
 }
 
 }  // namespace bespoke

@@ -20,7 +20,7 @@ bool read_keyword(TextWords& words, OffHeader& header) {
     if (found) word.remove_prefix(prefix.size());
     return found;
   };
-  skip("ST");
+  header.has_texture = skip("ST");
   skip("C");
   header.has_normals = skip("N");
   if (word != "OFF") words.fail("an OFF file begins with OFF; other dimensions than three are not read");
@@ -42,6 +42,8 @@ OffHeader read_off_header(const InputFile& file) {
     TextWords ahead = words;
     if (ahead.word().empty() && !words.next_line()) words.fail("missing number of vertices");
   }
+  TextWords counts = words;
+  header.counts = static_cast<std::uint64_t>(counts.word().data() - head.data());
   const long long vertices = words.integer("number of vertices");
   const long long faces = words.integer("number of faces");
   if (!(vertices > 0)) words.fail("the file has no vertices");

@@ -5,9 +5,10 @@
 namespace bespoke {
 
 struct OffHeader {
-  bool has_normals = false;
+  bool has_normals = false, has_texture = false;
   std::uint64_t vertices = 0, faces = 0;
-  std::uint64_t size = 0;  ///< bytes
+  std::uint64_t counts = 0;  ///< byte at which the number of vertices begins
+  std::uint64_t size = 0;    ///< bytes
   std::size_t lines = 0;
 };
 

@@ -13,13 +13,6 @@
 namespace bespoke {
 namespace {
 
-PlyNumber number_in(std::string_view word) {
-  NumberText number;
-  if (!read_number(word.data(), word.data() + word.size(), number))
-    return {std::numeric_limits<double>::quiet_NaN(), 0, word};
-  return {number.value, number.decimals, word};
-}
-
 PlyValues read_line(const PlyElement& element, std::string_view line) {
   TextBlock block;
   block.bytes = line;
@@ -30,7 +23,7 @@ PlyValues read_line(const PlyElement& element, std::string_view line) {
   for (const PlyProperty& property : element.properties) {
     const long long count = property.count ? words.integer("length of a list") : 1;
     values.emplace_back(static_cast<std::size_t>(count));
-    for (PlyNumber& number : values.back()) number = number_in(words.word());
+    for (SplitNumber& number : values.back()) number = split_number(words.word());
   }
   return values;
 }
@@ -43,7 +36,7 @@ PlyValues read_bytes(const PlyHeader& header, const PlyElement& element, std::st
     values.emplace_back(static_cast<std::size_t>(count));
     const char* from = record.data() + at - count * size(property.type);
     with_type(property.type, [&](auto zero) {
-      for (PlyNumber& number : values.back()) {
+      for (SplitNumber& number : values.back()) {
         number.value = static_cast<double>(load_scalar<decltype(zero)>(from, is_big(header)));
         from += sizeof zero;
       }
@@ -67,14 +60,6 @@ void append_bytes(std::string& to, const PlyHeader& header, PlyScalar type, doub
   with_type(type, [&](auto zero) { store_scalar<decltype(zero)>(to.data() + at, value, is_big(header)); });
 }
 
-int decimals_of(const std::vector<NumberTriple>& points) {
-  CarriedDecimals carried;
-  for (const NumberTriple& point : points)
-    for (const NumberText& coordinate : point) carried.add(coordinate);
-  const Points x = values(points);
-  return position_decimals(Box(Vector3(x.rowwise().minCoeff()), Vector3(x.rowwise().maxCoeff())), carried);
-}
-
 }  // namespace
 
 PlyRecords::PlyRecords(const InputFile& file, std::string_view text, const PlyHeader& header)
@@ -94,7 +79,7 @@ void PlyRecords::find_lines(const InputFile& file) {
   block.bytes = text_.substr(header_.size);
   block.line = header_.lines + 1;
   const PlyText body(file.path(), header_);
-  position_decimals_ = decimals_of(body.records(block).points);
+  position_decimals_ = bespoke::position_decimals(body.records(block).points);
   std::array<std::uint64_t, 3> sums{};
   line_counter(ply_body_syntax)(block.bytes, sums);
   body.require_complete(sums);
@@ -136,16 +121,9 @@ PlyValues PlyRecords::values(std::size_t element, std::size_t record) const {
                    : read_bytes(header_, header_.elements[element], found);
 }
 
-void PlyRecords::append_value(std::string& to, PlyScalar type, const PlyNumber& number) const {
+void PlyRecords::append_value(std::string& to, PlyScalar type, const SplitNumber& number) const {
   if (!is_text()) return append_bytes(to, header_, type, number.value);
-  if (!number.word.empty())
-    to += number.word;
-  else if (!is_real(type))
-    to += std::to_string(std::llround(number.value));
-  else if (std::isfinite(number.value))
-    append_number(to, number.value, number.decimals);
-  else
-    to += "nan";
+  append_number(to, number, !is_real(type));
   to += ' ';
 }
 
@@ -165,7 +143,7 @@ void PlyRecords::append(std::string& to, std::size_t element, const PlyValues& v
       require(*property.count, length, property);
       append_value(to, *property.count, {length, 0, {}});
     }
-    for (const PlyNumber& number : values[i]) {
+    for (const SplitNumber& number : values[i]) {
       if (number.word.empty()) require(property.type, number.value, property);
       append_value(to, property.type, number);
     }

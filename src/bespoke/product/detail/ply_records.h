@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "bespoke/product/detail/ply_header.h"
+#include "bespoke/product/detail/split_numbers.h"
 
 namespace bespoke {
 
-struct PlyNumber {
-  double value = 0;       ///< NaN for a word that is no finite number
-  int decimals = 0;       ///< of a text
-  std::string_view word;  ///< in the file's text, which stands as it is; empty for a new number
-};
-
 /// Of every property of a record its values: one, or those of a list.
-using PlyValues = std::vector<std::vector<PlyNumber>>;
+using PlyValues = std::vector<std::vector<SplitNumber>>;
 
 /// The records of a PLY file, of any encoding, that is in memory.
 class PlyRecords {
@@ -44,7 +39,7 @@ class PlyRecords {
   bool is_text() const { return header_.encoding == PlyHeader::Encoding::ascii; }
   void find_lines(const InputFile& file);
   void find_records(const InputFile& file);
-  void append_value(std::string& to, PlyScalar type, const PlyNumber& number) const;
+  void append_value(std::string& to, PlyScalar type, const SplitNumber& number) const;
 
   std::string name_;
   std::string_view text_;

@@ -82,6 +82,12 @@ void InputFile::read(std::uint64_t offset, char* to, std::size_t size) const {
   }
 }
 
+std::string InputFile::content() const {
+  std::string bytes(size_, '\0');
+  read(0, bytes.data(), bytes.size());
+  return bytes;
+}
+
 std::unique_ptr<InputFile> InputFile::of_written(const fs::path& directory, fs::path name,
                                                  const std::function<void(OutputFile&)>& write) {
   OutputFile output(open_unnamed(directory.empty() ? "." : directory), name);

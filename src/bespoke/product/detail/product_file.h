@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ class InputFile {
 
   /// Throws FileError, also when the file has become shorter.
   void read(std::uint64_t offset, char* to, std::size_t size) const;
+  std::string content() const;  ///< of all the file
 
   /// What `write` writes, as a file without a name in this directory, which messages call `name`. Throws
   /// FileError, and what `write` throws.

@@ -28,6 +28,8 @@ CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs,
 /// for what cannot be told of split faces.
 void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 void split_ply(const InputFile& file, const FaceSplits& splits, OutputFile& output);
+void split_stl(const InputFile& file, const FaceSplits& splits, OutputFile& output);
+void split_off(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 
 /// The points of parts that keep their shape. Throws InvalidInput, listing the names that are known, for one
 /// that is not, and what the reading of the file throws.

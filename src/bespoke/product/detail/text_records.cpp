@@ -79,6 +79,16 @@ int position_decimals(const Box& box, const CarriedDecimals& carried) {
   return std::max(carried.decimals(), decimals_for(position_resolution * extent));
 }
 
+int position_decimals(const std::vector<NumberTriple>& points) {
+  Box box;
+  CarriedDecimals carried;
+  for (const NumberTriple& point : points) {
+    for (const NumberText& number : point) carried.add(number);
+    box.extend(Vector3(point[0].value, point[1].value, point[2].value));
+  }
+  return position_decimals(box, carried);
+}
+
 void require_finite(const Points& images, const std::filesystem::path& path) {
   if (images.allFinite()) return;
   throw InvalidInput(path.string() + ": a point goes to a place that is not finite");

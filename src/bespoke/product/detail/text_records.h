@@ -41,6 +41,7 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
 /// Decimals that positions in this box are written with: those that the file carries, and no fewer than keep
 /// 1e-7 of the box's diagonal.
 int position_decimals(const Box& box, const CarriedDecimals& carried);
+int position_decimals(const std::vector<NumberTriple>& points);
 
 /// Throws InvalidInput, naming the file, unless all images are finite.
 void require_finite(const Points& images, const std::filesystem::path& path);

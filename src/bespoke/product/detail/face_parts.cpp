@@ -1,0 +1,35 @@
+#include "bespoke/product/detail/face_parts.h"
+
+#include <algorithm>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+
+FaceParts::FaceParts(const FaceSplits& splits, std::size_t polygons, const std::filesystem::path& path)
+    : splits_(splits) {
+  if (splits.first_part.size() != polygons + 1 || splits.part_corners.empty())
+    throw InvalidInput(path.string() + ": it has other faces than those whose edges were split");
+  const int last = *std::max_element(splits.part_corners.begin(), splits.part_corners.end());
+  first_made_ = last + 1 - static_cast<int>(splits.corners.size());
+}
+
+bool FaceParts::is_split(std::size_t polygon) const {
+  return std::any_of(begin(first(polygon)), begin(first(polygon + 1)),
+                     [&](int corner) { return corner >= first_made_; });
+}
+
+std::vector<int> FaceParts::corners(std::size_t polygon) const {
+  std::vector<int> corners(begin(first(polygon)), begin(first(polygon + 1)));
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+const FaceSplits::Corner* FaceParts::between(int corner) const {
+  return corner < first_made_ ? nullptr : &splits_.corners[static_cast<std::size_t>(corner - first_made_)];
+}
+
+std::vector<int> FaceParts::corners_of_part(int part) const { return {begin(part), begin(part + 1)}; }
+
+}  // namespace bespoke
