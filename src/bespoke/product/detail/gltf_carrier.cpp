@@ -21,6 +21,13 @@ std::optional<std::size_t> first_not_finite(const Eigen::Ref<const GltfValues>& 
   return static_cast<std::size_t>(i);
 }
 
+/// Directions that have changed, of which whole numbers have rounded the length: rounding them once more
+/// would take them further from one.
+void make_unit(const GltfValues& before, Eigen::Ref<GltfValues> now) {
+  for (Eigen::Index i = 0; i < now.cols(); ++i)
+    if (now.col(i) != before.col(i)) now.col(i).head<3>().normalize();
+}
+
 }  // namespace
 
 std::vector<GltfCarried> GltfCarrier::carry(const GltfTask& task) const {
@@ -30,6 +37,8 @@ std::vector<GltfCarried> GltfCarrier::carry(const GltfTask& task) const {
     frame.values.resize(static_cast<Eigen::Index>(source.components),
                         static_cast<Eigen::Index>(source.count));
   std::vector<std::atomic<bool>> is_changed(motion_.frames);
+  const bool is_rounded =
+      task.role != GltfRole::position && !task.difference && source.component != GltfComponent::real;
   parallel_for(source.count, points_at_a_time, [&](std::size_t begin, std::size_t end) {
     const GltfValues before = read_values(source, file_.buffers, begin, end - begin);
     const std::vector<Points> moved = carry_block(task, before, begin);
@@ -37,6 +46,7 @@ std::vector<GltfCarried> GltfCarrier::carry(const GltfTask& task) const {
       auto block = result[frame].values.middleCols(static_cast<Eigen::Index>(begin), before.cols());
       block = before;
       block.topRows<3>() = moved[frame].cast<float>();
+      if (is_rounded) make_unit(before, block);
       if (const auto vector = first_not_finite(block))
         throw InvalidInput(file_.path.string() + ": " + source.pointer + ": vector " +
                            std::to_string(begin + *vector) +
