@@ -87,7 +87,7 @@ TEST_F(SplitProduct, RefusesFreeFormStatements) {
 }
 
 TEST_F(SplitProduct, KnowsWhichKindsItCanSplit) {
-  for (const char* name : {"a.OBJ", "a.ply", "a.stl", "a.off"})
+  for (const char* name : {"a.OBJ", "a.ply", "a.stl", "a.off", "a.gltf", "a.glb"})
     EXPECT_TRUE(can_split_product(name)) << name;
   EXPECT_FALSE(can_split_product("a.xyz"));
   split("a.obj", everything, 1.1);

@@ -27,8 +27,8 @@ constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj
                              Format{".ply", carry_ply, find_ply_parts, split_ply},
                              Format{".stl", carry_stl, nullptr, split_stl},
                              Format{".off", carry_off, nullptr, split_off},
-                             Format{".gltf", carry_gltf, find_gltf_parts},
-                             Format{".glb", carry_gltf, find_gltf_parts},
+                             Format{".gltf", carry_gltf, find_gltf_parts, split_gltf},
+                             Format{".glb", carry_gltf, find_gltf_parts, split_gltf},
                              Format{".xyz", carry_xyz},
                              Format{".csv", carry_csv}};
 

@@ -2,33 +2,32 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/product/detail/gltf_additions.h"
 #include "bespoke/product/detail/gltf_carrier.h"
 #include "bespoke/product/morph_track.h"
 
 namespace bespoke {
 namespace {
 
-constexpr std::size_t alignment = 4;
-constexpr int vertex_attributes = 34962;
 constexpr const char* roles[] = {"POSITION", "NORMAL", "TANGENT"};
 
 /// What is appended to a file: values behind its buffer, and their accessors.
 class Additions {
  public:
-  Additions(GltfJson& json, std::string& buffer) : json_(json), buffer_(buffer) {}
+  Additions(GltfJson& json, std::vector<std::string>& buffers) : json_(json), buffers_(buffers) {}
 
   /// Vectors of three, or numbers, with their bounds where these are asked for.
   std::size_t add(const GltfValues& values, bool has_bounds, bool is_of_vertices) {
-    buffer_.resize((buffer_.size() + alignment - 1) / alignment * alignment);
-    const std::size_t bytes = static_cast<std::size_t>(values.size()) * sizeof(float);
-    GltfJson view = {{"buffer", 0}, {"byteOffset", buffer_.size()}, {"byteLength", bytes}};
-    if (is_of_vertices) view["target"] = vertex_attributes;
-    json_["bufferViews"].push_back(std::move(view));
-    buffer_.append(reinterpret_cast<const char*>(values.data()), bytes);
-    json_["buffers"][0]["byteLength"] = buffer_.size();
+    GltfPlace room;
+    room.components = static_cast<std::size_t>(values.rows());
+    room.count = static_cast<std::size_t>(values.cols());
+    const GltfPlace place =
+        add_view(json_, buffers_, room, is_of_vertices ? std::optional(GltfTarget::vertices) : std::nullopt);
+    store_values(place, 0, values, buffers_.front());
     GltfJson accessor = {{"bufferView", json_["bufferViews"].size() - 1},
                          {"componentType", static_cast<int>(GltfComponent::real)},
                          {"count", values.cols()},
@@ -48,7 +47,7 @@ class Additions {
 
  private:
   GltfJson& json_;
-  std::string& buffer_;
+  std::vector<std::string>& buffers_;
 };
 
 class Morpher {
@@ -72,7 +71,7 @@ class Morpher {
   MorphSummary run(double seconds, const Progress& progress) {
     MorphSummary summary;
     summary.warnings = plan_.warnings;
-    Additions additions(json_, file_.buffers.front());
+    Additions additions(json_, file_.buffers);
     for (const GltfTask& task : plan_.tasks) {
       progress.check();
       targets_.push_back(add_targets(task, additions, summary));

@@ -34,8 +34,6 @@ class GltfFrame {
   void store_in(const GltfPlace& place, const GltfValues& values);
   bool store_sparse(const GltfAccessor& accessor, const GltfValues& values);
   void append(std::size_t accessor, const GltfValues& values);
-  void update_bounds(std::size_t accessor, GltfComponent component, bool is_normalized,
-                     const GltfValues& values);
 
   const GltfFile& file_;
   const std::vector<GltfAccessor>& accessors_;

@@ -55,9 +55,10 @@ class JsonEditor {
       replace(now.dump());
   }
 
-  /// The same keys with other values; false, with nothing done, where the keys differ.
+  /// The same keys with other values, and new ones behind them; false, with nothing done, where it had
+  /// others.
   bool object(const GltfJson& before, const GltfJson& now) {
-    if (before.size() != now.size()) return false;
+    if (before.empty()) return false;
     for (const auto& [key, unused] : before.items())
       if (!now.contains(key)) return false;
     // A text may give a key twice, of which the last holds.
@@ -74,23 +75,34 @@ class JsonEditor {
       ++at_;  // the colon
       skip_blanks();
       value(before[key], now[key]);
+      if (--members == 0) insert(new_members(before, now));
     }
     return true;
+  }
+
+  static std::string new_members(const GltfJson& before, const GltfJson& now) {
+    std::string members;
+    for (const auto& [key, value] : now.items())
+      if (!before.contains(key))
+        members.append(",").append(GltfJson(key).dump()).append(":").append(value.dump());
+    return members;
   }
 
   /// New elements stand behind the old ones.
   void array(const GltfJson& before, const GltfJson& now) {
     std::size_t i = 0;
-    bool more = enter(']');
-    for (std::size_t end = at_; more; more = next(']'), ++i) {
+    for (bool more = enter(']'); more; more = next(']'), ++i) {
       value(before[i], now[i]);
-      if (i + 1 < before.size() || now.size() == before.size()) continue;
-      end = at_;
+      if (i + 1 < before.size()) continue;
       std::string behind;
       for (std::size_t k = before.size(); k < now.size(); ++k) behind.append(",").append(now[k].dump());
-      result_.append(text_.substr(kept_, end - kept_)).append(behind);
-      kept_ = end;
+      insert(behind);
     }
+  }
+
+  void insert(const std::string& text) {
+    result_.append(text_.substr(kept_, at_ - kept_)).append(text);
+    kept_ = at_;
   }
 
   void replace(const std::string& with) {

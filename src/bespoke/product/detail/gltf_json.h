@@ -16,8 +16,8 @@ using GltfJson = nlohmann::ordered_json;
 /// Parses the JSON object of a glTF file. Throws FormatError naming the byte at fault.
 GltfJson parse_gltf_json(std::string_view text, const std::filesystem::path& path);
 
-/// `text`, which says `before`, with the values replaced in which `now` differs; all else keeps its
-/// characters.
+/// `text`, which says `before`, with the values replaced in which `now` differs, and new elements and
+/// members behind the old ones; all else keeps its characters.
 std::string edited_json(std::string_view text, const GltfJson& before, const GltfJson& now);
 
 /// An object of a glTF file's JSON, and its JSON pointer. Every function throws FormatError "path: pointer:

@@ -30,6 +30,7 @@ void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& outp
 void split_ply(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 void split_stl(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 void split_off(const InputFile& file, const FaceSplits& splits, OutputFile& output);
+void split_gltf(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 
 /// The points of parts that keep their shape. Throws InvalidInput, listing the names that are known, for one
 /// that is not, and what the reading of the file throws.

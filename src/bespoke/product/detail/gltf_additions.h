@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bespoke/product/detail/gltf_accessor.h"
+
+namespace bespoke {
+
+/// What a buffer's view is for, by its number in the file.
+enum class GltfTarget { vertices = 34962, indices = 34963 };
+
+/// Makes room behind the bytes of `room.buffer` for vectors as `room` says, and appends a view of them to the
+/// JSON. Returns where they go: each vector of a vertex attribute at a multiple of four bytes.
+GltfPlace add_view(GltfJson& json, std::vector<std::string>& buffers, GltfPlace room,
+                   std::optional<GltfTarget> target);
+
+/// Gives the JSON of an accessor that has bounds those of its values as they are stored.
+void update_bounds(GltfJson& accessor, GltfComponent component, bool is_normalized, const GltfValues& values);
+
+}  // namespace bespoke

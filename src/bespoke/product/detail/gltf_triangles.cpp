@@ -1,0 +1,109 @@
+#include "bespoke/product/detail/gltf_triangles.h"
+
+#include <cstring>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bespoke/error.h"
+
+namespace bespoke {
+namespace {
+
+// A primitive's `mode`; 5 is a strip, and points and lines below have no faces.
+constexpr std::uint64_t triangles_mode = 4, fan_mode = 6;
+
+std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor, const GltfFile& file) {
+  std::vector<std::uint32_t> indices(accessor.count, 0);
+  const bool is_whole = accessor.component == GltfComponent::uint8 ||
+                        accessor.component == GltfComponent::uint16 ||
+                        accessor.component == GltfComponent::uint32;
+  if (accessor.components != 1 || !is_whole || accessor.sparse)
+    throw FormatError(file.path.string() + ": " + accessor.pointer +
+                      ": indices of triangles must be whole numbers without a sign, and not sparse");
+  if (!accessor.dense) return indices;
+  const GltfPlace& place = *accessor.dense;
+  const char* bytes = file.buffers[place.buffer].data() + place.offset;
+  for (std::uint32_t& index : indices) {
+    std::memcpy(&index, bytes, place.vector_size());  // the rest of the number is 0
+    bytes += place.stride;
+  }
+  return indices;
+}
+
+/// Three indices a triangle.
+std::vector<std::uint32_t> triangles(const std::vector<std::uint32_t>& indices, std::uint64_t mode) {
+  if (mode == triangles_mode) return indices;
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 2; i < indices.size(); ++i) {
+    if (mode == fan_mode)
+      result.insert(result.end(), {indices[0], indices[i - 1], indices[i]});
+    else if (i % 2 == 0)
+      result.insert(result.end(), {indices[i - 2], indices[i - 1], indices[i]});
+    else
+      result.insert(result.end(), {indices[i - 1], indices[i - 2], indices[i]});
+  }
+  return result;
+}
+
+void require_values(const GltfPart& primitive, const GltfAccessor& positions, const GltfFile& file) {
+  if (positions.components != 3) primitive.fail("its positions are no VEC3");
+  const bool has_values = positions.dense || positions.sparse;
+  if (!has_values && primitive.has("extensions") &&
+      primitive.member("extensions").has("KHR_draco_mesh_compression"))
+    throw InvalidInput(file.path.string() + ": " + primitive.pointer() +
+                       ": is compressed (KHR_draco_mesh_compression); decompress it first");
+}
+
+/// In the primitive's own order; none for points, lines and what has no positions.
+std::vector<std::uint32_t> read_triangles(const GltfPart& primitive, const GltfFile& file,
+                                          const std::vector<GltfAccessor>& accessors, std::size_t vertices) {
+  const std::uint64_t mode = primitive.whole_or("mode", triangles_mode);
+  if (mode < triangles_mode || mode > fan_mode) return {};
+  std::vector<std::uint32_t> indices(vertices);
+  std::iota(indices.begin(), indices.end(), 0u);
+  if (const auto own = primitive.index("indices", accessors.size()))
+    indices = read_indices(accessors[*own], file);
+  for (const std::uint32_t index : indices)
+    if (index >= vertices)
+      primitive.fail("names vertex " + std::to_string(index) + " of " + std::to_string(vertices));
+  indices = triangles(indices, mode);
+  if (indices.size() % 3 != 0)
+    primitive.fail(std::to_string(indices.size()) + " indices are no whole number of triangles");
+  return indices;
+}
+
+}  // namespace
+
+bool is_mirrored(const AffineMap& scene_from_mesh) { return scene_from_mesh.linear.determinant() < 0; }
+
+void turn_over(std::vector<std::uint32_t>& corners) {
+  for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i + 1], corners[i + 2]);
+}
+
+std::vector<GltfTriangles> shown_triangles(const GltfFile& file, const std::vector<GltfAccessor>& accessors,
+                                           const GltfScene& scene) {
+  std::vector<GltfTriangles> result;
+  const std::vector<GltfPart> meshes = file.root().elements("meshes");
+  for (std::size_t shown = 0; shown < scene.shown.size(); ++shown) {
+    const AffineMap& scene_from_mesh = scene.shown[shown].scene_from_mesh;
+    const std::vector<GltfPart> primitives = meshes[scene.shown[shown].mesh].elements("primitives");
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const auto positions = primitives[p].member("attributes").index("POSITION", accessors.size());
+      if (!positions) continue;
+      const GltfAccessor& vertices = accessors[*positions];
+      std::vector<std::uint32_t> corners = read_triangles(primitives[p], file, accessors, vertices.count);
+      if (corners.empty()) continue;
+      require_values(primitives[p], vertices, file);
+      if (is_mirrored(scene_from_mesh)) turn_over(corners);
+      const Points x =
+          in_scene(scene_from_mesh, read_values(vertices, file.buffers, 0, vertices.count).cast<double>());
+      Points places = x(Eigen::all, corners);
+      result.push_back({shown, p, std::move(corners), std::move(places)});
+    }
+  }
+  return result;
+}
+
+}  // namespace bespoke

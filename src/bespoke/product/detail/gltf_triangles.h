@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bespoke/product/detail/gltf_nodes.h"
+
+namespace bespoke {
+
+/// The triangles of a primitive where a node shows its mesh.
+struct GltfTriangles {
+  std::size_t shown = 0;               ///< in the scene
+  std::size_t primitive = 0;           ///< of the mesh
+  std::vector<std::uint32_t> corners;  ///< three vertices a triangle, as the scene shows their front
+  Points places;                       ///< of the corners, in the scene
+};
+
+/// Whether a mesh's triangles are shown from behind.
+bool is_mirrored(const AffineMap& scene_from_mesh);
+
+/// The triangles from behind: their last two corners change places.
+void turn_over(std::vector<std::uint32_t>& corners);
+
+/// All triangles that the scene shows, in the order of what it shows and of the primitives; those of strips
+/// and fans as lists. Throws FormatError naming the JSON pointer at fault, and InvalidInput for triangles
+/// that are compressed only.
+std::vector<GltfTriangles> shown_triangles(const GltfFile& file, const std::vector<GltfAccessor>& accessors,
+                                           const GltfScene& scene);
+
+}  // namespace bespoke
