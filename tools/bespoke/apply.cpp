@@ -241,8 +241,8 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
   add_length_option(
       apply, "--refine", arguments.refine,
       "Split straight edges where the map bends them until the middle of an edge's image is no farther "
-      "than this from the image of its middle; OBJ and PLY files keep all that they say, others their faces "
-      "(default: none is split)");
+      "than this from the image of its middle; what the file says of vertices is interpolated, and all else "
+      "stays (default: none is split)");
 }
 
 /// The arguments, with products in their place: where the map is found, the first stands in that of the map.

@@ -24,7 +24,9 @@ struct CarryOptions {
   std::vector<RigidPart> parts;  ///< that keep their shape
   Progress progress;
   /// Edges that are split first, of the faces as read_product reads them. What the file says of the ends is
-  /// said of the middle too, as their mean. Only where can_split_product.
+  /// said of the middle too, as their mean. Only where can_split_product. A glTF mesh that is not split alike
+  /// wherever nodes show it becomes several; strips and fans become lists. Values that nothing refers to any
+  /// longer leave the buffers that are in the file.
   const FaceSplits* splits = nullptr;
 };
 

@@ -48,7 +48,52 @@ struct SplitTriangles {
 struct SplitMesh {
   std::vector<SplitVertices> vertices;
   std::vector<SplitTriangles> triangles;
-  bool operator==(const SplitMesh&) const = default;
+  std::size_t result = 0;  ///< the mesh that is written
+
+  bool operator==(const SplitMesh& other) const {
+    return vertices == other.vertices && triangles == other.triangles;
+  }
+};
+
+/// How often a file refers to its accessors and, under "bufferView", to its views.
+struct GltfUses {
+  std::vector<std::size_t> accessors, views;
+
+  explicit GltfUses(const GltfFile& file)
+      : accessors(file.root().elements("accessors").size()),
+        views(file.root().elements("bufferViews").size()) {
+    for (const GltfPart& mesh : file.root().elements("meshes"))
+      for (const GltfPart& primitive : mesh.elements("primitives")) {
+        add(primitive, "indices");
+        for (const GltfPart& list : lists_of(primitive))
+          for (const std::string& name : list.names()) add(list, name.c_str());
+      }
+    for (const GltfPart& skin : file.root().elements("skins")) add(skin, "inverseBindMatrices");
+    for (const GltfPart& animation : file.root().elements("animations"))
+      for (const GltfPart& sampler : animation.elements("samplers"))
+        for (const char* key : {"input", "output"}) add(sampler, key);
+    add_views(file.json);
+  }
+
+  /// The attributes and the morph targets.
+  static std::vector<GltfPart> lists_of(const GltfPart& primitive) {
+    std::vector<GltfPart> lists = primitive.elements("targets");
+    lists.push_back(primitive.member("attributes"));
+    return lists;
+  }
+
+ private:
+  void add(const GltfPart& part, const char* key) {
+    if (const auto index = part.index(key, accessors.size())) ++accessors[*index];
+  }
+  void add_views(const GltfJson& value) {
+    if (!value.is_structured()) return;
+    for (const auto& [key, member] : value.items()) {
+      const bool is_view = value.is_object() && key == "bufferView" && member.is_number_unsigned();
+      if (is_view && member.get<std::size_t>() < views.size()) ++views[member.get<std::size_t>()];
+      add_views(member);
+    }
+  }
 };
 
 class GltfSplitter {
@@ -60,24 +105,29 @@ class GltfSplitter {
         triangles_(shown_triangles(file, accessors_, scene_)),
         parts_(splits, count_polygons(), file.path),
         meshes_(file.root().elements("meshes")),
+        uses_(file),
+        is_ours_(accessors_.size()),
         json_(file.json) {}
 
   /// A mesh that is shown at several places becomes several where it is not split alike at all of them.
   void run() {
-    std::vector<std::vector<std::pair<SplitMesh, std::size_t>>> known(meshes_.size());  // and where it is
+    std::vector<std::vector<SplitMesh>> known(meshes_.size());
     for (std::size_t shown = 0; shown < scene_.shown.size(); ++shown) {
       const std::size_t mesh = scene_.shown[shown].mesh;
       SplitMesh split = split_mesh(shown);
       auto& own = known[mesh];
-      auto found =
-          std::find_if(own.begin(), own.end(), [&](const auto& pair) { return pair.first == split; });
+      auto found = std::find(own.begin(), own.end(), split);
       if (found == own.end()) {
-        own.emplace_back(std::move(split), own.empty() ? mesh : copy(mesh));
-        found = own.end() - 1;
-        write(found->first, mesh, found->second);
+        split.result = own.empty() ? mesh : copy(mesh);
+        found = own.insert(own.end(), std::move(split));
       }
-      if (found->second != mesh) json_["nodes"][scene_.shown[shown].node]["mesh"] = found->second;
+      if (found->result != mesh) json_["nodes"][scene_.shown[shown].node]["mesh"] = found->result;
     }
+    for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
+      if (known[mesh].size() == 1) claim(known[mesh].front(), mesh);
+      for (const SplitMesh& split : known[mesh]) write(split, mesh);
+    }
+    if (buffer_) drop_bytes_without_view(file_, json_, *buffer_);
     if (buffer_ && json_["buffers"][*buffer_].contains("uri")) {
       GltfJson& uri = json_["buffers"][*buffer_]["uri"];
       uri = data_uri_of(uri.get<std::string>(), file_.buffers[*buffer_]);
@@ -153,42 +203,59 @@ class GltfSplitter {
     return json_["meshes"].size() - 1;
   }
 
-  void write(const SplitMesh& split, std::size_t mesh, std::size_t result) {
+  /// Notes the accessors that nothing but the split primitives of the mesh uses.
+  void claim(const SplitMesh& split, std::size_t mesh) {
+    const std::vector<GltfPart> primitives = meshes_[mesh].elements("primitives");
+    const auto claim_of = [&](const GltfPart& part, const std::string& key, std::size_t uses) {
+      const auto index = part.index(key.c_str(), accessors_.size());
+      if (index && uses_.accessors[*index] == uses) is_ours_[*index] = true;
+    };
+    for (const SplitTriangles& triangles : split.triangles) {
+      const auto shares = [&](const SplitTriangles& other) { return other.vertices == triangles.vertices; };
+      const auto users = std::count_if(split.triangles.begin(), split.triangles.end(), shares);
+      const GltfPart& primitive = primitives[triangles.primitive];
+      claim_of(primitive, "indices", 1);
+      for (const GltfPart& list : GltfUses::lists_of(primitive))
+        for (const std::string& name : list.names()) claim_of(list, name, static_cast<std::size_t>(users));
+    }
+  }
+
+  void write(const SplitMesh& split, std::size_t mesh) {
     const std::vector<GltfPart> primitives = meshes_[mesh].elements("primitives");
     std::vector<GltfJson> lists;
     for (const SplitVertices& vertices : split.vertices)
-      lists.push_back(added_lists(primitives[vertices.primitive], vertices.middles));
+      lists.push_back(stored_lists(primitives[vertices.primitive], vertices.middles));
     for (const SplitTriangles& triangles : split.triangles) {
       GltfJson now = file_.json["meshes"][mesh]["primitives"][triangles.primitive];
       now.update(lists[triangles.vertices]);
-      now["indices"] =
-          add_indices(primitives[triangles.primitive].index("indices", accessors_.size()), triangles.corners);
+      now["indices"] = store_indices(primitives[triangles.primitive].index("indices", accessors_.size()),
+                                     triangles.corners);
       if (now.contains("mode")) now["mode"] = list_of_triangles;
-      json_["meshes"][result]["primitives"][triangles.primitive] = std::move(now);
+      json_["meshes"][split.result]["primitives"][triangles.primitive] = std::move(now);
     }
   }
 
   /// The attributes and morph targets with values of the middles as well.
-  GltfJson added_lists(const GltfPart& primitive, const GltfMiddles& middles) {
+  GltfJson stored_lists(const GltfPart& primitive, const GltfMiddles& middles) {
     const GltfPart attributes = primitive.member("attributes");
     const GltfSaidByName said = middle_attributes(attributes, accessors_, file_.buffers, middles);
     GltfJson lists;
-    lists["attributes"] = added_list(attributes, said);
+    lists["attributes"] = stored_list(attributes, said);
     for (const GltfPart& target : primitive.elements("targets"))
       lists["targets"].push_back(
-          added_list(target, middle_differences(target, said, accessors_, file_.buffers, middles)));
+          stored_list(target, middle_differences(target, said, accessors_, file_.buffers, middles)));
     return lists;
   }
 
-  GltfJson added_list(const GltfPart& list, const GltfSaidByName& said) {
-    GltfJson result;
+  GltfJson stored_list(const GltfPart& list, const GltfSaidByName& said) {
+    GltfJson result = GltfJson::object();
     for (const std::string& name : list.names())
-      result[name] = add_accessor(*list.index(name.c_str(), accessors_.size()), said.at(name));
+      result[name] = store(*list.index(name.c_str(), accessors_.size()), said.at(name));
     return result;
   }
 
   /// As the accessor `source` but for its values.
-  std::size_t add_accessor(std::size_t source, const GltfSaid& said) {
+  std::size_t store(std::size_t source, const GltfSaid& said) {
     const bool is_normalized = said.is_normalized && said.component != GltfComponent::real;
     const GltfPlace place = add_view(json_, file_.buffers,
                                      {said.component, is_normalized, accessors_[source].components,
@@ -198,10 +265,10 @@ class GltfSplitter {
     GltfJson accessor = file_.json["accessors"][source];
     if (!is_normalized) accessor.erase("normalized");
     update_bounds(accessor, said.component, is_normalized, said.values);
-    return add_accessor(std::move(accessor), place);
+    return store(source, std::move(accessor), place);
   }
 
-  std::size_t add_indices(std::optional<std::size_t> source, const std::vector<std::uint32_t>& corners) {
+  std::size_t store_indices(std::optional<std::size_t> source, const std::vector<std::uint32_t>& corners) {
     // The largest number of a type restarts strips.
     const std::uint32_t largest = *std::max_element(corners.begin(), corners.end());
     const GltfComponent least = largest < 255     ? GltfComponent::uint8
@@ -218,17 +285,36 @@ class GltfSplitter {
     }
     GltfJson accessor = source ? file_.json["accessors"][*source] : GltfJson{{"type", "SCALAR"}};
     for (const char* key : {"min", "max"}) accessor.erase(key);
-    return add_accessor(std::move(accessor), place);
+    return store(source, std::move(accessor), place);
   }
 
-  /// Of the values in the view that was added last.
-  std::size_t add_accessor(GltfJson accessor, const GltfPlace& place) {
-    for (const char* key : {"sparse", "byteOffset"}) accessor.erase(key);
-    accessor["bufferView"] = json_["bufferViews"].size() - 1;
+  /// Gives the accessor the values in the view that was added last: `source` itself, or a further one.
+  std::size_t store(std::optional<std::size_t> source, GltfJson accessor, const GltfPlace& place) {
+    const bool is_ours = source && is_ours_[*source];
+    accessor.erase("sparse");
+    if (accessor.contains("byteOffset")) accessor["byteOffset"] = 0;
+    accessor["bufferView"] = is_ours ? view_instead_of(accessors_[*source]) : json_["bufferViews"].size() - 1;
     accessor["componentType"] = static_cast<int>(place.component);
     accessor["count"] = place.count;
+    if (is_ours) {
+      json_["accessors"][*source] = std::move(accessor);
+      return *source;
+    }
     json_["accessors"].push_back(std::move(accessor));
     return json_["accessors"].size() - 1;
+  }
+
+  /// The view that was added last takes the place of the accessor's, unless that still has other uses.
+  std::size_t view_instead_of(const GltfAccessor& accessor) {
+    GltfJson& views = json_["bufferViews"];
+    if (!accessor.dense) return views.size() - 1;
+    const std::size_t own = file_.json[GltfJson::json_pointer(accessor.pointer)]["bufferView"];
+    if (--uses_.views[own] > 0) return views.size() - 1;
+    const GltfJson added = views.back();
+    views.erase(views.size() - 1);
+    if (!added.contains("byteStride")) views[own].erase("byteStride");
+    views[own].update(added);
+    return own;
   }
 
   /// The one that new values go to: the first, or one in the JSON where that is a file of its own.
@@ -251,6 +337,8 @@ class GltfSplitter {
   std::vector<std::vector<std::size_t>> kept_;  ///< of these, by their places, those that are polygons
   FaceParts parts_;
   std::vector<GltfPart> meshes_;
+  GltfUses uses_;
+  std::vector<bool> is_ours_;  ///< of every accessor: whether what is written now is its only use
   GltfJson json_;
   std::size_t at_ = 0, polygon_ = 0;   ///< the next of the triangles and of the polygons
   std::optional<std::size_t> buffer_;  ///< once there are new values
