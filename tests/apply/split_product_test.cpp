@@ -104,6 +104,7 @@ TEST_F(SplitProduct, RefusesSplitsOfOtherFaces) {
   const std::vector<std::pair<std::string, std::string>> others{
       {"b.obj", "v 0 0 0\nv 4 0 0\nv 4 1 0\nf 1 2 3\n"},
       {"b.off", "OFF\n3 1 0\n0 0 0\n4 0 0\n4 1 0\n3 0 1 2\n"},
+      {"c.off", "OFF\n4 3 0\n0 0 0\n4 0 0\n4 1 0\n0 1 0\n4 0 1 2 3\n3 0 1 2\n3 0 1 3\n"},
       {"b.stl",
        "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 1 0\nendloop\n"
        "endfacet\nendsolid\n"}};

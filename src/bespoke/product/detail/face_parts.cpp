@@ -7,9 +7,8 @@
 namespace bespoke {
 
 FaceParts::FaceParts(const FaceSplits& splits, std::size_t polygons, const std::filesystem::path& path)
-    : splits_(splits) {
-  if (splits.first_part.size() != polygons + 1 || splits.part_corners.empty())
-    throw InvalidInput(path.string() + ": it has other faces than those whose edges were split");
+    : splits_(splits), path_(path.string()) {
+  if (splits.first_part.size() != polygons + 1 || splits.part_corners.empty()) refuse();
   const int last = *std::max_element(splits.part_corners.begin(), splits.part_corners.end());
   first_made_ = last + 1 - static_cast<int>(splits.corners.size());
 }
@@ -28,6 +27,16 @@ std::vector<int> FaceParts::corners(std::size_t polygon) const {
 
 const FaceSplits::Corner* FaceParts::between(int corner) const {
   return corner < first_made_ ? nullptr : &splits_.corners[static_cast<std::size_t>(corner - first_made_)];
+}
+
+void FaceParts::require_own_corners(std::size_t polygon, std::size_t count) const {
+  const std::vector<int> all = corners(polygon);
+  const auto own = std::count_if(all.begin(), all.end(), [&](int corner) { return corner < first_made_; });
+  if (static_cast<std::size_t>(own) != count) refuse();
+}
+
+void FaceParts::refuse() const {
+  throw InvalidInput(path_ + ": it has other faces than those whose edges were split");
 }
 
 std::vector<int> FaceParts::corners_of_part(int part) const { return {begin(part), begin(part + 1)}; }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "bespoke/product/face_splits.h"
@@ -29,16 +30,18 @@ class FaceParts {
   std::vector<int> corners_of_part(int part) const;
 
   /// The corners of every part of a polygon, out of what the file says of the polygon's own corners, in their
-  /// order, and of `middle(before, behind, vertex)` for what is between.
+  /// order, and of `middle(before, behind, vertex)` for what is between. Throws InvalidInput unless the split
+  /// polygon has as many of its own.
   template <class Corner, class Middle>
   std::vector<std::vector<Corner>> parts(std::size_t polygon, const std::vector<Corner>& own,
                                          const Middle& middle) const {
+    require_own_corners(polygon, own.size());
     std::map<int, Corner> said;
     std::size_t of_file = 0;
     for (const int number : corners(polygon)) {
       const FaceSplits::Corner* const made = between(number);
-      said.emplace(number, made ? middle(said.at(made->before), said.at(made->behind), made->vertex)
-                                : own.at(of_file++));
+      said.emplace(
+          number, made ? middle(said.at(made->before), said.at(made->behind), made->vertex) : own[of_file++]);
     }
     std::vector<std::vector<Corner>> result;
     for (int part = first(polygon); part < first(polygon + 1); ++part) {
@@ -53,7 +56,11 @@ class FaceParts {
     return splits_.part_corners.begin() + splits_.part_start[static_cast<std::size_t>(part)];
   }
 
+  void require_own_corners(std::size_t polygon, std::size_t count) const;
+  [[noreturn]] void refuse() const;
+
   const FaceSplits& splits_;
+  std::string path_;
   int first_made_ = 0;  // number of the first corner that the file does not have
 };
 

@@ -21,41 +21,43 @@ std::size_t aligned_to_attributes(std::size_t size) {
 /// Bytes [first, second) of a buffer.
 using ByteRange = std::pair<std::size_t, std::size_t>;
 
-/// Those of the views of a buffer, ascending.
-std::vector<ByteRange> ranges_of_views(const GltfPart& root, const std::vector<std::string>& buffers,
-                                       std::size_t buffer) {
-  std::vector<ByteRange> ranges;
-  for (const GltfPart& view : root.elements("bufferViews")) {
-    if (view.index("buffer", buffers.size()) != buffer) continue;
-    const std::uint64_t begin = view.whole_or("byteOffset", 0), length = view.whole("byteLength");
+/// The views of a buffer, by their bytes, and their numbers.
+std::vector<std::pair<ByteRange, std::size_t>> views_of(const GltfPart& root,
+                                                        const std::vector<std::string>& buffers,
+                                                        std::size_t buffer) {
+  std::vector<std::pair<ByteRange, std::size_t>> result;
+  const std::vector<GltfPart> views = root.elements("bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (views[i].index("buffer", buffers.size()) != buffer) continue;
+    const std::uint64_t begin = views[i].whole_or("byteOffset", 0), length = views[i].whole("byteLength");
     const std::uint64_t size = buffers[buffer].size();
-    if (begin > size || length > size - begin) view.fail("ends behind its buffer");
-    ranges.emplace_back(begin, begin + length);
+    if (begin > size || length > size - begin) views[i].fail("ends behind its buffer");
+    result.push_back({{begin, begin + length}, i});
   }
-  std::sort(ranges.begin(), ranges.end());
-  return ranges;
+  std::sort(result.begin(), result.end());
+  return result;
 }
 
-/// The parts of `ranges`, whole words of four bytes, that are in none of `used`; ascending, none in another.
-std::vector<ByteRange> ranges_without(const std::vector<ByteRange>& ranges,
-                                      const std::vector<ByteRange>& used) {
+/// What `views` have and `others` have not, whole words of four bytes; ascending, none in another.
+std::vector<ByteRange> bytes_without(const std::vector<std::pair<ByteRange, std::size_t>>& views,
+                                     const std::vector<std::pair<ByteRange, std::size_t>>& others) {
   std::vector<ByteRange> result;
-  std::size_t done = 0;
   const auto add = [&](std::size_t begin, std::size_t end) {
     begin = aligned_to_attributes(begin);
     end -= end % attribute_alignment;
     if (begin < end) result.emplace_back(begin, end);
   };
-  for (const auto& [begin, end] : ranges) {
-    std::size_t at = std::max(begin, done);
-    for (const auto& [used_begin, used_end] : used) {
-      if (used_begin >= end) break;
-      if (used_end <= at) continue;
-      if (used_begin > at) add(at, used_begin);
-      at = used_end;
+  std::size_t done = 0;
+  for (const auto& [view, number] : views) {
+    std::size_t at = std::max(view.first, done);
+    done = std::max(done, view.second);
+    for (auto other = others.begin(); other != others.end() && other->first.first < view.second; ++other) {
+      const auto& [begin, end] = other->first;
+      if (end <= at) continue;
+      if (begin > at) add(at, begin);
+      at = end;
     }
-    if (at < end) add(at, end);
-    done = std::max(done, end);
+    if (at < view.second) add(at, view.second);
   }
   return result;
 }
@@ -94,15 +96,13 @@ GltfPlace add_view(GltfJson& json, std::vector<std::string>& buffers, GltfPlace 
 
 void drop_bytes_without_view(GltfFile& file, GltfJson& json, std::size_t buffer) {
   std::string& bytes = file.buffers[buffer];
-  const std::vector<ByteRange> dropped =
-      ranges_without(ranges_of_views(file.root(), file.buffers, buffer),
-                     ranges_of_views({file.path, json, ""}, file.buffers, buffer));
-  for (GltfJson& view : json["bufferViews"]) {
-    const std::size_t begin = view.value("byteOffset", std::size_t{0});
+  const auto views = views_of({file.path, json, ""}, file.buffers, buffer);
+  const std::vector<ByteRange> dropped = bytes_without(views_of(file.root(), file.buffers, buffer), views);
+  for (const auto& [range, view] : views) {
     std::size_t earlier = 0;
     for (const auto& [first, end] : dropped)
-      if (end <= begin) earlier += end - first;
-    if (earlier > 0 && view["buffer"] == buffer) view["byteOffset"] = begin - earlier;
+      if (end <= range.first) earlier += end - first;
+    if (earlier > 0) json["bufferViews"][view]["byteOffset"] = range.first - earlier;
   }
   std::string kept;
   std::size_t at = 0;
