@@ -35,10 +35,11 @@ struct CarryOptions {
 /// (`product_endings`); the outputs are files of the same kind, one a frame.
 ///
 /// A normal n becomes cof(J) n, a tangent t becomes J t, both as long as they were, with J the Jacobian at
-/// their vertex; an OBJ normal of several vertices becomes several where these differ. Text is written with
-/// as many digits as the file has, never fewer than 1e-7 of its diagonal needs; a number that would be read
-/// back as it was keeps its characters. The vertices of a glTF mesh move where its node shows it; a mesh that
-/// nodes show in several places becomes several.
+/// their vertex (those that a glTF file rounds to whole numbers become unit vectors); an OBJ normal of
+/// several vertices becomes several where these differ. Text is written with as many digits as the file has,
+/// never fewer than 1e-7 of its diagonal needs; a number that would be read back as it was keeps its
+/// characters. The vertices of a glTF mesh move where its node shows it; a mesh that nodes show in several
+/// places becomes several.
 ///
 /// Points of the options' parts move with their part, and so does what lies at the same places; no two parts
 /// may have a place in common.
