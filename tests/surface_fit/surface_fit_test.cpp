@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bespoke/error.h"
+#include "bespoke/surface_fit/surface_fit_methods.h"
 #include "support/fitting_scene.h"
 #include "support/shapes.h"
 
@@ -33,6 +34,24 @@ TEST(FitSurface, RejectsWhatDoesNotBelongTogether) {
   EXPECT_THROW(scene.fit(options), InvalidInput);
   scene.target.faces.resize(3, 0);
   EXPECT_THROW(scene.fit(), InvalidInput);
+}
+
+// Files of meshes are written inside out now and then; what nearest points say of either side settles it.
+TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
+  TriangleMesh target = shapes::icosphere(3);
+  target.vertices.row(1) *= 1.2;
+  TriangleMesh inside_out = target;
+  inside_out.faces.row(1).swap(inside_out.faces.row(2));
+  for (const SurfaceFitEntry& entry : surface_fits) {
+    SurfaceFitOptions options;
+    options.method = entry.value;
+    const SurfaceFit expected = Scene{shapes::icosphere(3), target}.fit(options);
+    const SurfaceFit fit = Scene{shapes::icosphere(3), inside_out}.fit(options);
+    EXPECT_FALSE(expected.summary.target_turned_over) << entry.name;
+    EXPECT_TRUE(fit.summary.target_turned_over) << entry.name;
+    EXPECT_EQ(fit.vertices, expected.vertices) << entry.name;
+    EXPECT_NE(to_string(fit.summary).find("turned over"), std::string::npos);
+  }
 }
 
 TEST(FitSurface, StopsWhenAsked) {

@@ -167,6 +167,7 @@ Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
                {"mended_vertices", summary.mended_vertices}};
   // Only where there are any: the records of all other fits stay as they were.
   if (!summary.excluded_vertices.empty()) json["excluded_vertices"] = summary.excluded_vertices;
+  if (summary.target_turned_over) json["target_turned_over"] = true;
   if (summary.rigidity > 1) json["rigidity"] = summary.rigidity;
   if (summary.posed_by_anchors) json["posed_by_anchors_degrees"] = summary.anchor_turn_degrees;
   return json;

@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
+#include "bespoke/surface_fit/detail/facing.h"
 
 namespace bespoke {
 namespace {
@@ -85,6 +86,7 @@ std::string to_string(const SurfaceFitSummary& summary) {
   std::string line = text;
   if (summary.off_surface_anchors > 0)
     line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
+  if (summary.target_turned_over) line += ", the target's faces turned over to face as the source's do";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.posed_by_anchors) {
     char turn[80];
@@ -115,7 +117,16 @@ std::string to_string(const SurfaceFitSummary& summary) {
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress) {
   require_consistent(input, options);
-  return entry_of(options.method).fit(input, options, progress);
+  const auto& entry = entry_of(options.method);
+  if (!faces_away({input.warped_vertices, input.source.faces}, input.target))
+    return entry.fit(input, options, progress);
+  const TriangleMesh target = turned_over(input.target);
+  SurfaceFit fit =
+      entry.fit({input.source, input.warped_vertices, target, input.anchor_sources, input.anchor_targets,
+                 input.anchor_weights, input.anchor_sigmas, input.source_patches, input.target_patches},
+                options, progress);
+  fit.summary.target_turned_over = true;
+  return fit;
 }
 
 }  // namespace bespoke

@@ -77,8 +77,9 @@ struct SurfaceFitSummary {
   int iterations = 0;
   StopReason stop_reason = StopReason::iteration_cap;
   std::size_t unmatched_vertices =
-      0;                 ///< no compatible point in the last iteration: moved by the smoothness term alone
-  double stiffness = 0;  ///< laplacian: s of Eq. 11
+      0;  ///< no compatible point in the last iteration: moved by the smoothness term alone
+  bool target_turned_over = false;  ///< its faces, since one of the models is inside out
+  double stiffness = 0;             ///< laplacian: s of Eq. 11
   // deformation-graph:
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
   /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn.
@@ -126,8 +127,9 @@ struct SurfaceFitInput {
   FacePatches target_patches = {};
 };
 
-/// Throws InvalidInput for unusable meshes, sizes that differ and patches that the method does not know,
-/// SolverError when the factorisation fails.
+/// A target whose faces look the other way than the source's, as of a file that is inside out, is turned over
+/// first, and the summary says so. Throws InvalidInput for unusable meshes, sizes that differ and patches
+/// that the method does not know, SolverError when the factorisation fails.
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress = {});
 
