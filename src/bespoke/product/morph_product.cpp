@@ -18,7 +18,7 @@ constexpr const char* roles[] = {"POSITION", "NORMAL", "TANGENT"};
 /// What is appended to a file: values behind its buffer, and their accessors.
 class Additions {
  public:
-  Additions(GltfJson& json, std::vector<std::string>& buffers) : json_(json), buffers_(buffers) {}
+  Additions(GltfJson& json, std::vector<GltfBuffer>& buffers) : json_(json), buffers_(buffers) {}
 
   /// Vectors of three, or numbers, with their bounds where these are asked for.
   std::size_t add(const GltfValues& values, bool has_bounds, bool is_of_vertices) {
@@ -27,7 +27,7 @@ class Additions {
     room.count = static_cast<std::size_t>(values.cols());
     const GltfPlace place =
         add_view(json_, buffers_, room, is_of_vertices ? std::optional(GltfTarget::vertices) : std::nullopt);
-    store_values(place, 0, values, buffers_.front());
+    buffers_.front().replace(rows_of_values(place, values));
     GltfJson accessor = {{"bufferView", json_["bufferViews"].size() - 1},
                          {"componentType", static_cast<int>(GltfComponent::real)},
                          {"count", values.cols()},
@@ -47,7 +47,7 @@ class Additions {
 
  private:
   GltfJson& json_;
-  std::vector<std::string>& buffers_;
+  std::vector<GltfBuffer>& buffers_;
 };
 
 class Morpher {
@@ -160,7 +160,8 @@ MorphSummary morph_product(const std::filesystem::path& input, const std::filesy
   if (motion.frames == 0 || motion.frames % 2 != 0)
     throw InvalidInput("a motion of " + std::to_string(motion.frames) +
                        " frames; morphing needs two a target, the first half way");
-  GltfFile file = read_gltf(InputFile(input));
+  const InputFile glb(input);
+  GltfFile file = read_gltf(glb);
   if (!file.has_binary_chunk() || file.buffers.size() != 1)
     throw InvalidInput(input.string() + ": has buffers that are not in the file; pack them into the .glb");
   Morpher morpher(file, motion);

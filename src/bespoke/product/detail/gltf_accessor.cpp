@@ -5,14 +5,19 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
 
 // Without bytes that bound it, a count is taken for a mistake beyond this.
 constexpr std::uint64_t most_zeros = std::uint64_t{1} << 28;
+
+constexpr std::size_t vectors_at_a_time = std::size_t{1} << 16;
 
 std::size_t size_of(GltfComponent component) {
   switch (component) {
@@ -61,6 +66,14 @@ std::size_t read_components(const GltfPart& part) {
   for (const auto& [name, count] : types)
     if (type == name) return count;
   part.fail_at("type", "is unknown");
+}
+
+/// From the first byte of vector `first` to the last of `count` vectors, of which there is one.
+std::string read_places(const GltfPlace& place, std::size_t first, std::size_t count,
+                        const GltfBuffer& buffer) {
+  std::string bytes((count - 1) * place.stride + place.vector_size(), '\0');
+  buffer.read(place.offset + first * place.stride, bytes.data(), bytes.size());
+  return bytes;
 }
 
 class AccessorReader {
@@ -136,8 +149,9 @@ class AccessorReader {
   std::vector<std::uint32_t> read_indices(const GltfPlace& at) const {
     std::vector<std::uint32_t> indices(at.count, 0);
     // Little-endian, so the low bytes are those of the smaller types.
+    const std::string bytes = read_places(at, 0, at.count, file_.buffers[at.buffer]);
     for (std::size_t i = 0; i < at.count; ++i)
-      std::memcpy(&indices[i], file_.buffers[at.buffer].data() + at.offset + i * at.stride, at.vector_size());
+      std::memcpy(&indices[i], bytes.data() + i * at.stride, at.vector_size());
     return indices;
   }
 
@@ -146,12 +160,13 @@ class AccessorReader {
 };
 
 template <class Stored>
-void load(const GltfPlace& place, std::size_t first, const std::string& buffer, GltfValues& values) {
-  const char* bytes = buffer.data() + place.offset + first * place.stride;
-  if (std::is_same_v<Stored, float> && place.stride == place.vector_size()) {
-    std::memcpy(values.data(), bytes, static_cast<std::size_t>(values.size()) * sizeof(float));
-    return;
-  }
+void load(const GltfPlace& place, std::size_t first, const GltfBuffer& buffer, GltfValues& values) {
+  if (values.cols() == 0) return;
+  if (std::is_same_v<Stored, float> && place.stride == place.vector_size())
+    return buffer.read(place.offset + first * place.stride, reinterpret_cast<char*>(values.data()),
+                       static_cast<std::size_t>(values.size()) * sizeof(float));
+  const std::string places = read_places(place, first, static_cast<std::size_t>(values.cols()), buffer);
+  const char* bytes = places.data();
   const double limit = range_of(place.component).most;
   for (Eigen::Index i = 0; i < values.cols(); ++i, bytes += place.stride)
     for (Eigen::Index k = 0; k < values.rows(); ++k) {
@@ -164,7 +179,7 @@ void load(const GltfPlace& place, std::size_t first, const std::string& buffer, 
     }
 }
 
-void load(const GltfPlace& place, std::size_t first, const std::string& buffer, GltfValues& values) {
+void load(const GltfPlace& place, std::size_t first, const GltfBuffer& buffer, GltfValues& values) {
   switch (place.component) {
     case GltfComponent::int8:
       return load<std::int8_t>(place, first, buffer, values);
@@ -203,7 +218,7 @@ std::vector<GltfAccessor> read_accessors(const GltfFile& file) {
   return accessors;
 }
 
-GltfValues read_values(const GltfAccessor& accessor, const std::vector<std::string>& buffers,
+GltfValues read_values(const GltfAccessor& accessor, const std::vector<GltfBuffer>& buffers,
                        std::size_t first, std::size_t count) {
   GltfValues values =
       GltfValues::Zero(static_cast<Eigen::Index>(accessor.components), static_cast<Eigen::Index>(count));
@@ -227,24 +242,29 @@ double stored_number(GltfComponent component, bool is_normalized, float value) {
   return std::nearbyint(std::clamp(number, range.least, range.most));
 }
 
-void store_values(const GltfPlace& place, std::size_t first, const GltfValues& values, std::string& buffer) {
-  const std::size_t size = size_of(place.component);
-  char* bytes = buffer.data() + place.offset + first * place.stride;
-  if (place.component == GltfComponent::real && place.stride == place.vector_size()) {
-    std::memcpy(bytes, values.data(), static_cast<std::size_t>(values.size()) * sizeof(float));
-    return;
+GltfRows GltfPlace::rows(std::string packed) const {
+  const auto owner = std::make_shared<const std::string>(std::move(packed));
+  return {offset, stride, vector_size(), count, std::shared_ptr<const char>(owner, owner->data())};
+}
+
+GltfRows rows_of_values(const GltfPlace& place, GltfValues values) {
+  if (place.component == GltfComponent::real) {
+    const auto owner = std::make_shared<const GltfValues>(std::move(values));
+    return {place.offset, place.stride, place.vector_size(), place.count,
+            std::shared_ptr<const char>(owner, reinterpret_cast<const char*>(owner->data()))};
   }
-  for (Eigen::Index i = 0; i < values.cols(); ++i, bytes += place.stride)
-    for (Eigen::Index k = 0; k < values.rows(); ++k) {
-      char* const to = bytes + static_cast<std::size_t>(k) * size;
-      if (place.component == GltfComponent::real) {
-        std::memcpy(to, &values(k, i), size);
-        continue;
+  const std::size_t size = size_of(place.component);
+  std::string packed(place.count * place.vector_size(), '\0');
+  parallel_for(place.count, vectors_at_a_time, [&](std::size_t begin, std::size_t end) {
+    char* to = packed.data() + begin * place.vector_size();
+    for (std::size_t i = begin; i < end; ++i)
+      for (Eigen::Index k = 0; k < values.rows(); ++k, to += size) {
+        const auto number = static_cast<long long>(
+            stored_number(place.component, place.is_normalized, values(k, static_cast<Eigen::Index>(i))));
+        std::memcpy(to, &number, size);  // the low bytes come first
       }
-      const auto stored =
-          static_cast<long long>(stored_number(place.component, place.is_normalized, values(k, i)));
-      std::memcpy(to, &stored, size);
-    }
+  });
+  return place.rows(std::move(packed));
 }
 
 std::vector<bool> shares_bytes(const std::vector<GltfAccessor>& accessors) {

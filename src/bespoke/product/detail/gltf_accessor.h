@@ -23,6 +23,8 @@ struct GltfPlace {
   std::size_t offset = 0, stride = 0;  ///< bytes, in the buffer
 
   std::size_t vector_size() const;
+  /// Rows of bytes, one a vector, where the vectors are.
+  GltfRows rows(std::string packed) const;
   std::size_t end() const { return count == 0 ? offset : offset + (count - 1) * stride + vector_size(); }
 };
 
@@ -50,14 +52,14 @@ std::vector<GltfAccessor> read_accessors(const GltfFile& file);
 
 /// Vectors [first, first + count) of an accessor in these bytes of the buffers. Floats hold whole numbers of
 /// up to 24 bits exactly.
-GltfValues read_values(const GltfAccessor& accessor, const std::vector<std::string>& buffers,
+GltfValues read_values(const GltfAccessor& accessor, const std::vector<GltfBuffer>& buffers,
                        std::size_t first, std::size_t count);
 
 /// The number that stands for a value: itself, or the nearest whole number of the component's type.
 double stored_number(GltfComponent component, bool is_normalized, float value);
 
-/// Stores vectors from number `first` on.
-void store_values(const GltfPlace& place, std::size_t first, const GltfValues& values, std::string& buffer);
+/// The bytes of all vectors of a place. Floats stay where they are.
+GltfRows rows_of_values(const GltfPlace& place, GltfValues values);
 
 /// For every accessor, whether bytes of its own values belong to another accessor as well.
 std::vector<bool> shares_bytes(const std::vector<GltfAccessor>& accessors);

@@ -23,7 +23,7 @@ using ByteRange = std::pair<std::size_t, std::size_t>;
 
 /// The views of a buffer, by their bytes, and their numbers.
 std::vector<std::pair<ByteRange, std::size_t>> views_of(const GltfPart& root,
-                                                        const std::vector<std::string>& buffers,
+                                                        const std::vector<GltfBuffer>& buffers,
                                                         std::size_t buffer) {
   std::vector<std::pair<ByteRange, std::size_t>> result;
   const std::vector<GltfPart> views = root.elements("bufferViews");
@@ -78,13 +78,13 @@ bool is_same(const GltfJson& old, const GltfJson& bounds) {
 
 }  // namespace
 
-GltfPlace add_view(GltfJson& json, std::vector<std::string>& buffers, GltfPlace room,
+GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace room,
                    std::optional<GltfTarget> target) {
-  std::string& buffer = buffers[room.buffer];
+  GltfBuffer& buffer = buffers[room.buffer];
   room.offset = aligned_to_attributes(buffer.size());
   room.stride =
       target == GltfTarget::vertices ? aligned_to_attributes(room.vector_size()) : room.vector_size();
-  buffer.resize(room.offset + room.count * room.stride);
+  buffer.grow(room.offset + room.count * room.stride);
   GltfJson view = {
       {"buffer", room.buffer}, {"byteOffset", room.offset}, {"byteLength", buffer.size() - room.offset}};
   if (room.stride != room.vector_size()) view["byteStride"] = room.stride;
@@ -95,7 +95,6 @@ GltfPlace add_view(GltfJson& json, std::vector<std::string>& buffers, GltfPlace 
 }
 
 void drop_bytes_without_view(GltfFile& file, GltfJson& json, std::size_t buffer) {
-  std::string& bytes = file.buffers[buffer];
   const auto views = views_of({file.path, json, ""}, file.buffers, buffer);
   const std::vector<ByteRange> dropped = bytes_without(views_of(file.root(), file.buffers, buffer), views);
   for (const auto& [range, view] : views) {
@@ -104,14 +103,16 @@ void drop_bytes_without_view(GltfFile& file, GltfJson& json, std::size_t buffer)
       if (end <= range.first) earlier += end - first;
     if (earlier > 0) json["bufferViews"][view]["byteOffset"] = range.first - earlier;
   }
+  const std::string bytes = file.buffers[buffer].content();
   std::string kept;
   std::size_t at = 0;
   for (const auto& [first, end] : dropped) {
     kept.append(bytes, at, first - at);
     at = end;
   }
-  bytes = kept.append(bytes, at);
-  json["buffers"][buffer]["byteLength"] = bytes.size();
+  kept.append(bytes, at);
+  json["buffers"][buffer]["byteLength"] = kept.size();
+  file.buffers[buffer] = GltfBuffer(std::move(kept));
 }
 
 void update_bounds(GltfJson& accessor, GltfComponent component, bool is_normalized,

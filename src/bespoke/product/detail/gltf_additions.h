@@ -13,7 +13,7 @@ enum class GltfTarget { vertices = 34962, indices = 34963 };
 
 /// Makes room behind the bytes of `room.buffer` for vectors as `room` says, and appends a view of them to the
 /// JSON. Returns where they go: each vector of a vertex attribute at a multiple of four bytes.
-GltfPlace add_view(GltfJson& json, std::vector<std::string>& buffers, GltfPlace room,
+GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace room,
                    std::optional<GltfTarget> target);
 
 /// Takes bytes out of a buffer of the file that its views have and those of `json`, what the file becomes,

@@ -43,9 +43,9 @@ void require_no_input(const GltfFile& file, const std::vector<fs::path>& compani
 void write_frame(const GltfFile& file, GltfFrame& frame, OutputFile& output, OutputFile* companions) {
   for (const std::size_t buffer : buffers_beside(file)) {
     frame.name_buffer(buffer, buffer_path(output.name(), buffer, frame.buffers().size()).filename());
-    (companions++)->write(frame.buffers()[buffer]);
+    frame.buffers()[buffer].write(*companions++);
   }
-  write_gltf(file, frame.text(), frame.buffers().empty() ? "" : frame.buffers().front(), output);
+  write_gltf(file, frame.text(), frame.buffers().empty() ? GltfBuffer() : frame.buffers().front(), output);
 }
 
 /// Textures keep their names, which are relative to the file.
@@ -64,7 +64,7 @@ void warn_of_textures(const GltfFile& file, const fs::path& output, CarrySummary
 
 CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs, const PointMotion& motion,
                         const Progress& progress) {
-  GltfFile file = read_gltf(input);
+  const GltfFile file = read_gltf(input);
   const std::vector<GltfAccessor> accessors = read_accessors(file);
   const GltfPlan plan = plan_gltf(file, accessors);
   if (plan.tasks.empty()) throw FormatError(input.path().string() + ": the file shows no vertices");
@@ -90,11 +90,10 @@ CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs
       bool is_changed = false;
       for (const std::vector<GltfCarried>& frames : carried) is_changed = is_changed || frames[i].is_changed;
       // Where nothing moves, nothing needs copies either.
-      GltfFrame frame(file, accessors, is_changed ? plan.json : file.json,
-                      i + 1 < outputs.size() ? file.buffers : std::move(file.buffers));
+      GltfFrame frame(file, accessors, is_changed ? plan.json : file.json);
       for (std::size_t k = 0; is_changed && k < plan.tasks.size(); ++k)
         if (carried[k][i].is_changed || plan.tasks[k].is_copy())
-          frame.store(plan.tasks[k], carried[k][i].values);
+          frame.store(plan.tasks[k], std::move(carried[k][i].values));
       write_frame(file, frame, outputs[i], companions.data() + i * beside.size());
     }
   });

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -50,7 +51,7 @@ std::size_t aligned(std::size_t size) {
 }
 
 /// Reads the chunks; the second one, where it is binary, becomes `binary`.
-void read_chunks(const InputFile& file, GltfFile& gltf, std::optional<std::string>& binary) {
+void read_chunks(const InputFile& file, GltfFile& gltf, std::optional<GltfBuffer>& binary) {
   const auto fail = [&](std::size_t byte, const std::string& what) {
     throw FormatError(file.path().string() + ": byte " + std::to_string(byte) + ": " + what);
   };
@@ -69,12 +70,12 @@ void read_chunks(const InputFile& file, GltfFile& gltf, std::optional<std::strin
     const std::uint32_t type = word_at(file, at + 4);
     if (chunk == 0 && type != json_chunk) fail(at + 4, "the first chunk is not JSON");
     if (chunk == 1 && type != binary_chunk) break;
-    std::string bytes = read_bytes(file, at + chunk_header_size, length);
-    at += chunk_header_size + length;
+    at += chunk_header_size;
     if (chunk == 0)
-      gltf.text = std::move(bytes);
+      gltf.text = read_bytes(file, at, length);
     else
-      binary = std::move(bytes);
+      binary.emplace(file, at, length);
+    at += length;
   }
   gltf.chunks_behind = read_bytes(file, at, file.size() - at);
 }
@@ -113,33 +114,34 @@ std::string encode_base64(std::string_view bytes) {
   return text;
 }
 
-std::string buffer_beside(const GltfPart& part, const std::string& uri, const std::filesystem::path& path) {
+GltfBuffer read_uri(const GltfPart& part, GltfFile& gltf) {
+  const std::string uri = part.text("uri");
+  if (is_data_uri(uri)) {
+    std::string bytes;
+    if (!decode_base64(std::string_view(uri).substr(uri.find(base64_mark) + base64_mark.size()), bytes))
+      part.fail_at("uri", "is not base64");
+    return GltfBuffer(std::move(bytes));
+  }
   if (uri.starts_with("data:") || uri.find("://") != std::string::npos)
     part.fail_at("uri", "is neither base64 data nor the name of a file beside this one");
-  const InputFile file(path.parent_path() / file_name_of_uri(uri));
-  return read_bytes(file, 0, file.size());
+  const InputFile& file = gltf.beside.emplace_back(gltf.path.parent_path() / file_name_of_uri(uri));
+  return GltfBuffer(file, 0, file.size());
 }
 
-void read_buffers(GltfFile& gltf, std::optional<std::string>&& binary) {
+void read_buffers(GltfFile& gltf, std::optional<GltfBuffer>&& binary) {
   for (const GltfPart& part : gltf.root().elements("buffers")) {
-    std::string bytes;
-    if (!part.has("uri")) {
+    if (part.has("uri")) {
+      gltf.buffers.push_back(read_uri(part, gltf));
+    } else {
       if (!gltf.buffers.empty() || !binary) part.fail("has no uri, and the file no binary chunk for it");
-      bytes = std::move(*binary);
-      binary.reset();
-    } else if (const std::string uri = part.text("uri"); !is_data_uri(uri)) {
-      bytes = buffer_beside(part, uri, gltf.path);
-    } else if (!decode_base64(std::string_view(uri).substr(uri.find(base64_mark) + base64_mark.size()),
-                              bytes)) {
-      part.fail_at("uri", "is not base64");
+      gltf.buffers.push_back(*std::exchange(binary, std::nullopt));
     }
     const std::uint64_t length = part.whole("byteLength");
-    if (bytes.size() < length)
-      part.fail("has " + std::to_string(bytes.size()) + " of " + std::to_string(length) + " bytes");
-    gltf.buffers.push_back(std::move(bytes));
+    const std::size_t size = gltf.buffers.back().size();
+    if (size < length) part.fail("has " + std::to_string(size) + " of " + std::to_string(length) + " bytes");
   }
   // A binary chunk that no buffer names.
-  if (binary) gltf.chunks_behind.insert(0, words({binary->size(), binary_chunk}) + *binary);
+  if (binary) gltf.chunks_behind.insert(0, words({binary->size(), binary_chunk}) + binary->content());
 }
 
 }  // namespace
@@ -153,7 +155,7 @@ GltfFile read_gltf(const InputFile& file) {
   GltfFile gltf;
   gltf.path = file.path();
   gltf.is_binary = file.size() >= sizeof magic && word_at(file, 0) == magic;
-  std::optional<std::string> binary;
+  std::optional<GltfBuffer> binary;
   if (gltf.is_binary)
     read_chunks(file, gltf, binary);
   else
@@ -163,7 +165,7 @@ GltfFile read_gltf(const InputFile& file) {
   return gltf;
 }
 
-void write_gltf(const GltfFile& file, std::string_view text, std::string_view binary, OutputFile& output) {
+void write_gltf(const GltfFile& file, std::string_view text, const GltfBuffer& binary, OutputFile& output) {
   if (!file.is_binary) return output.write(text);
   const std::string blanks(aligned(text.size()) - text.size(), ' ');
   const std::string zeros(aligned(binary.size()) - binary.size(), '\0');
@@ -178,7 +180,7 @@ void write_gltf(const GltfFile& file, std::string_view text, std::string_view bi
   output.write(blanks);
   if (has_binary) {
     output.write(words({binary.size() + zeros.size(), binary_chunk}));
-    output.write(binary);
+    binary.write(output);
     output.write(zeros);
   }
   output.write(file.chunks_behind);

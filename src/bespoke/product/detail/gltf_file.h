@@ -1,22 +1,25 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bespoke/product/detail/gltf_buffer.h"
 #include "bespoke/product/detail/gltf_json.h"
 #include "bespoke/product/detail/product_file.h"
 
 namespace bespoke {
 
-/// A glTF file, .gltf or .glb, with the bytes of its buffers.
+/// A glTF file, .gltf or .glb, and where the bytes of its buffers are.
 struct GltfFile {
   std::filesystem::path path;
   bool is_binary = false;
   std::string text;  ///< the JSON, as it stands in the file
   GltfJson json;
-  std::vector<std::string> buffers;
+  std::deque<InputFile> beside;  ///< the files that are buffers
+  std::vector<GltfBuffer> buffers;
   std::string chunks_behind;  ///< of a .glb, behind its JSON and the first buffer
 
   GltfPart root() const { return {path, json, ""}; }
@@ -24,11 +27,12 @@ struct GltfFile {
   bool has_binary_chunk() const;
 };
 
-/// Throws FileError, also for a buffer beside the file, and FormatError naming the byte or the JSON pointer.
+/// `file` must outlive the result, whose buffers read it. Throws FileError, also for a buffer beside the
+/// file, and FormatError naming the byte or the JSON pointer.
 GltfFile read_gltf(const InputFile& file);
 
 /// Writes the file with this JSON text and these bytes of its binary chunk, if it has one.
-void write_gltf(const GltfFile& file, std::string_view text, std::string_view binary, OutputFile& output);
+void write_gltf(const GltfFile& file, std::string_view text, const GltfBuffer& binary, OutputFile& output);
 
 /// Whether a buffer's uri holds its bytes.
 bool is_data_uri(std::string_view uri);

@@ -1,35 +1,29 @@
 #include "bespoke/product/detail/gltf_frame.h"
 
-#include "bespoke/parallel.h"
+#include <utility>
+
 #include "bespoke/product/detail/gltf_additions.h"
 
 namespace bespoke {
-namespace {
 
-constexpr std::size_t vectors_at_a_time = std::size_t{1} << 16;
-
-}  // namespace
-
-void GltfFrame::store(const GltfTask& task, const GltfValues& values) {
+void GltfFrame::store(const GltfTask& task, GltfValues values) {
   const GltfAccessor& accessor = accessors_[task.source()];
   const bool is_real = accessor.component == GltfComponent::real;
   // Whole numbers are too coarse for positions, and too small for differences.
   const bool is_fine = is_real || (task.role != GltfRole::position && !task.difference);
+  GltfJson& json = json_["accessors"][task.result];
   if (!task.is_copy() && accessor.dense && !accessor.sparse && is_fine) {
-    store_in(*accessor.dense, values);
-    return update_bounds(json_["accessors"][task.result], accessor.component, accessor.is_normalized, values);
+    update_bounds(json, accessor.component, accessor.is_normalized, values);
+    return store_in(*accessor.dense, std::move(values));
   }
+  update_bounds(json, GltfComponent::real, false, values);
   if (task.is_copy() || !accessor.sparse || !is_real || !store_sparse(accessor, values))
-    append(task.result, values);
-  update_bounds(json_["accessors"][task.result], GltfComponent::real, false, values);
+    append(task.result, std::move(values));
 }
 
-void GltfFrame::store_in(const GltfPlace& place, const GltfValues& values) {
+void GltfFrame::store_in(const GltfPlace& place, GltfValues values) {
   is_changed_[place.buffer] = true;
-  parallel_for(place.count, vectors_at_a_time, [&](std::size_t begin, std::size_t end) {
-    const auto first = static_cast<Eigen::Index>(begin), size = static_cast<Eigen::Index>(end - begin);
-    store_values(place, begin, values.middleCols(first, size), buffers_[place.buffer]);
-  });
+  buffers_[place.buffer].replace(rows_of_values(place, std::move(values)));
 }
 
 // Returns false where values change that are not among the sparse ones.
@@ -41,16 +35,16 @@ bool GltfFrame::store_sparse(const GltfAccessor& accessor, const GltfValues& val
     expected.col(at) = own.col(i) = values.col(at);
   }
   if (expected != values) return false;
-  store_in(accessor.sparse->values, own);
+  store_in(accessor.sparse->values, std::move(own));
   return true;
 }
 
-void GltfFrame::append(std::size_t index, const GltfValues& values) {
+void GltfFrame::append(std::size_t index, GltfValues values) {
   if (buffers_.empty()) file_.root().fail("has no buffer for values that change");
   GltfPlace room;
   room.components = static_cast<std::size_t>(values.rows());
   room.count = static_cast<std::size_t>(values.cols());
-  store_in(add_view(json_, buffers_, room, GltfTarget::vertices), values);
+  store_in(add_view(json_, buffers_, room, GltfTarget::vertices), std::move(values));
   GltfJson& accessor = json_["accessors"][index];
   for (const char* key : {"sparse", "normalized", "byteOffset"}) accessor.erase(key);
   accessor["bufferView"] = json_["bufferViews"].size() - 1;
@@ -67,7 +61,7 @@ std::string GltfFrame::text() {
     GltfJson& buffer = json_["buffers"][i];
     if (!is_changed_[i] || !buffer.contains("uri")) continue;
     const std::string uri = buffer["uri"].get<std::string>();
-    if (is_data_uri(uri)) buffer["uri"] = data_uri_of(uri, buffers_[i]);
+    if (is_data_uri(uri)) buffer["uri"] = data_uri_of(uri, buffers_[i].content());
   }
   return edited_json(file_.text, file_.json, json_);
 }

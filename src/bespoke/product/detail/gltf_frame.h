@@ -10,35 +10,33 @@ namespace bespoke {
 /// A glTF file that is being made: what stays of another one, and values that were carried.
 class GltfFrame {
  public:
-  /// `json` and `buffers` begin as those of the file, which need not keep its buffers. File and accessors
-  /// must outlive the frame.
-  GltfFrame(const GltfFile& file, const std::vector<GltfAccessor>& accessors, GltfJson json,
-            std::vector<std::string> buffers)
+  /// File and accessors must outlive the frame.
+  GltfFrame(const GltfFile& file, const std::vector<GltfAccessor>& accessors, GltfJson json)
       : file_(file),
         accessors_(accessors),
         json_(std::move(json)),
-        buffers_(std::move(buffers)),
+        buffers_(file.buffers),
         is_changed_(buffers_.size()) {}
 
   /// Values of the task's accessor: in place of the old ones where these are floats, or directions in fewer
   /// bits, or sparse with changes only where the file names vectors; else as floats behind the first buffer.
-  void store(const GltfTask& task, const GltfValues& values);
+  void store(const GltfTask& task, GltfValues values);
 
-  const std::vector<std::string>& buffers() const { return buffers_; }
+  const std::vector<GltfBuffer>& buffers() const { return buffers_; }
   void name_buffer(std::size_t buffer, const std::string& file_name);
 
   /// The JSON, with the characters of the file where it says the same.
   std::string text();
 
  private:
-  void store_in(const GltfPlace& place, const GltfValues& values);
+  void store_in(const GltfPlace& place, GltfValues values);
   bool store_sparse(const GltfAccessor& accessor, const GltfValues& values);
-  void append(std::size_t accessor, const GltfValues& values);
+  void append(std::size_t accessor, GltfValues values);
 
   const GltfFile& file_;
   const std::vector<GltfAccessor>& accessors_;
   GltfJson json_;
-  std::vector<std::string> buffers_;
+  std::vector<GltfBuffer> buffers_;
   std::vector<bool> is_changed_;  ///< of every buffer
 };
 

@@ -20,7 +20,7 @@ bool is_name(const std::string& name, const GltfAccessor& accessor) {
 
 /// The values of the vertices of the file, with room for the others.
 GltfSaid read_said(const GltfPart& list, const std::string& name, const std::vector<GltfAccessor>& accessors,
-                   const std::vector<std::string>& buffers, const GltfMiddles& middles) {
+                   const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
   const GltfAccessor& accessor = accessors[*list.index(name.c_str(), accessors.size())];
   if (accessor.count != middles.own)
     list.fail_at(name.c_str(), "has " + std::to_string(accessor.count) + " values, but there are " +
@@ -144,7 +144,7 @@ class SkinMiddles {
 }  // namespace
 
 GltfSaidByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
-                                 const std::vector<std::string>& buffers, const GltfMiddles& middles) {
+                                 const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
   GltfSaidByName result;
   for (const std::string& name : attributes.names()) {
     GltfSaid& said = result[name] = read_said(attributes, name, accessors, buffers, middles);
@@ -158,7 +158,7 @@ GltfSaidByName middle_attributes(const GltfPart& attributes, const std::vector<G
 
 GltfSaidByName middle_differences(const GltfPart& target, const GltfSaidByName& attributes,
                                   const std::vector<GltfAccessor>& accessors,
-                                  const std::vector<std::string>& buffers, const GltfMiddles& middles) {
+                                  const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
   GltfSaidByName result;
   for (const std::string& name : target.names()) {
     GltfSaid& said = result[name] = read_said(target, name, accessors, buffers, middles);

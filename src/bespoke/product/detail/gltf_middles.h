@@ -34,11 +34,11 @@ using GltfSaidByName = std::map<std::string, GltfSaid>;
 /// its first end's. Types of components stay, but positions become floats. Throws FormatError naming the JSON
 /// pointer of an attribute that has not one value a vertex.
 GltfSaidByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
-                                 const std::vector<std::string>& buffers, const GltfMiddles& middles);
+                                 const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
 
 /// The same of a morph target, whose differences from these attributes become floats.
 GltfSaidByName middle_differences(const GltfPart& target, const GltfSaidByName& attributes,
                                   const std::vector<GltfAccessor>& accessors,
-                                  const std::vector<std::string>& buffers, const GltfMiddles& middles);
+                                  const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
 
 }  // namespace bespoke

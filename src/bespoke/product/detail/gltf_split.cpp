@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <optional>
 #include <string>
@@ -130,7 +129,7 @@ class GltfSplitter {
     if (buffer_) drop_bytes_without_view(file_, json_, *buffer_);
     if (buffer_ && json_["buffers"][*buffer_].contains("uri")) {
       GltfJson& uri = json_["buffers"][*buffer_]["uri"];
-      uri = data_uri_of(uri.get<std::string>(), file_.buffers[*buffer_]);
+      uri = data_uri_of(uri.get<std::string>(), file_.buffers[*buffer_].content());
     }
   }
 
@@ -261,7 +260,7 @@ class GltfSplitter {
                                      {said.component, is_normalized, accessors_[source].components,
                                       static_cast<std::size_t>(said.values.cols()), buffer()},
                                      GltfTarget::vertices);
-    store_values(place, 0, said.values, file_.buffers[place.buffer]);
+    file_.buffers[place.buffer].replace(rows_of_values(place, said.values));
     GltfJson accessor = file_.json["accessors"][source];
     if (!is_normalized) accessor.erase("normalized");
     update_bounds(accessor, said.component, is_normalized, said.values);
@@ -278,11 +277,11 @@ class GltfSplitter {
     const GltfPlace place =
         add_view(json_, file_.buffers, {std::max(own, least), false, 1, corners.size(), buffer()},
                  GltfTarget::indices);
-    char* to = file_.buffers[place.buffer].data() + place.offset;
-    for (const std::uint32_t corner : corners) {
-      std::memcpy(to, &corner, place.vector_size());  // the low bytes come first
-      to += place.stride;
-    }
+    std::string packed;
+    packed.reserve(corners.size() * place.vector_size());
+    for (const std::uint32_t corner : corners)  // the low bytes come first
+      packed.append(reinterpret_cast<const char*>(&corner), place.vector_size());
+    file_.buffers[place.buffer].replace(place.rows(std::move(packed)));
     GltfJson accessor = source ? file_.json["accessors"][*source] : GltfJson{{"type", "SCALAR"}};
     for (const char* key : {"min", "max"}) accessor.erase(key);
     return store(source, std::move(accessor), place);

@@ -24,7 +24,9 @@ std::vector<std::uint32_t> read_indices(const GltfAccessor& accessor, const Gltf
                       ": indices of triangles must be whole numbers without a sign, and not sparse");
   if (!accessor.dense) return indices;
   const GltfPlace& place = *accessor.dense;
-  const char* bytes = file.buffers[place.buffer].data() + place.offset;
+  std::string places(place.end() - place.offset, '\0');
+  file.buffers[place.buffer].read(place.offset, places.data(), places.size());
+  const char* bytes = places.data();
   for (std::uint32_t& index : indices) {
     std::memcpy(&index, bytes, place.vector_size());  // the rest of the number is 0
     bytes += place.stride;
