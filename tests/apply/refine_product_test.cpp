@@ -143,7 +143,7 @@ TEST(RefineProduct, LeavesWhatStaysStraight) {
 
 TEST(RefineProduct, RefusesWhatTakesTooMuch) {
   const auto refusal = [](double length, const ImageOfPoints& image) {
-    return test::error_message<InvalidInput>([&] { refine_product(fan(), image, length, 1000); });
+    return test::error_message<InvalidInput>([&] { refine_product(fan(), image, length, {}, 1000); });
   };
   EXPECT_THAT(refusal(0, bend), HasSubstr("must be positive"));
   EXPECT_THAT(refusal(1e-6, bend), HasSubstr("more than 1000 vertices"));

@@ -69,7 +69,7 @@ bool is_carried(const ApplyArguments& arguments, const fs::path& product, const 
 
 void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
   const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
-  if (is_carried(arguments, product, output) && !(has_parts && arguments.refine)) {
+  if (is_carried(arguments, product, output)) {
     if (!has_product_ending(output))
       throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
     return;
@@ -78,8 +78,7 @@ void require_known_endings(const ApplyArguments& arguments, const fs::path& prod
     throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
   if (has_parts)
     throw CLI::ValidationError("apply",
-                               "parts that keep their shape are known only in a file that keeps its kind and "
-                               "its edges");
+                               "parts that keep their shape are known only in a file that keeps its kind");
   require_mesh_ending("apply", output);
   if (!can_read_product(product))
     throw CLI::ValidationError("apply", product.string() + " must end in " + read_product_endings());

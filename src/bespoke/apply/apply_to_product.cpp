@@ -32,17 +32,34 @@ class Written {
   std::vector<std::filesystem::path> paths_;
 };
 
-RefinedProduct refined(const std::filesystem::path& input, const ImageOfPoints& image, double length) {
+/// A product's faces, and the parts of its vertices.
+struct ReadProduct {
+  Product product;
+  VertexParts parts;
+};
+
+ReadProduct read(const std::filesystem::path& input, const ApplyToProductOptions& options) {
+  ReadProduct read{read_product(input), {}};
+  if (!options.parts.empty())
+    read.parts = parts_of_places(input, options.parts, read.product.vertices, options.progress);
+  return read;
+}
+
+RefinedProduct refined(const std::filesystem::path& input, const ImageOfPoints& image,
+                       const ApplyToProductOptions& options) {
+  ReadProduct found = read(input, options);
   try {
-    return refine_product(read_product(input), image, length);
+    return refine_product(std::move(found.product), image, *options.refine, std::move(found.parts));
   } catch (const InvalidInput& error) {
     throw InvalidInput(input.string() + ": " + error.what());
   }
 }
 
-void measure_chords(const std::filesystem::path& input, const ImageOfPoints& image, ProductSummary& summary) {
+void measure_chords(const std::filesystem::path& input, const ImageOfPoints& image,
+                    const ApplyToProductOptions& options, ProductSummary& summary) {
   try {
-    summary.chord = worst_chord(read_product(input), image);
+    const ReadProduct found = read(input, options);
+    summary.chord = worst_chord(found.product, image, found.parts);
   } catch (const FormatError& error) {
     summary.warnings.push_back(std::string("the chord error is not known: ") + error.what());
   }
@@ -57,14 +74,12 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
   if (outputs.size() != times.size() || times.empty())
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
                        " times; the numbers must be equal, and not zero");
-  if (options.refine && !options.parts.empty())
-    throw InvalidInput("parts that keep their shape are known only in a product that keeps its edges");
   const Stopwatch watch;
   ProductSummary summary;
   const ImageOfPoints last_image = image_at(elastic, target_from_source, times.back(), options.motion);
   std::optional<FaceSplits> splits;
   if (options.refine) {
-    RefinedProduct found = refined(input, last_image, *options.refine);
+    RefinedProduct found = refined(input, last_image, options);
     summary.chord = found.chord;
     summary.splits = found.splits.vertices.size();
     if (summary.splits > 0) splits = std::move(found.splits);
@@ -100,7 +115,7 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     summary.points.points = points;
     summary.points.in_band = in_band;
   }
-  if (options.measure_chords && !options.refine) measure_chords(input, last_image, summary);
+  if (options.measure_chords && !options.refine) measure_chords(input, last_image, options, summary);
   written.keep();
   summary.points.affine_only = summary.points.points - summary.points.in_band;
   summary.points.seconds = watch.seconds();

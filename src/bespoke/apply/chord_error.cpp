@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "bespoke/mesh/equal_positions.h"
+
 namespace bespoke {
 namespace {
 
@@ -42,19 +44,51 @@ Eigen::Matrix2Xi product_edges(const Product& product) {
   return edges;
 }
 
-Eigen::VectorXd chord_errors(const Points& vertices, const Points& images, const Eigen::Matrix2Xi& edges,
-                             const ImageOfPoints& image) {
-  if (edges.cols() == 0) return {};
-  return (middles(images, edges) - image(middles(vertices, edges))).colwise().norm();
+std::vector<bool> stiff_edges(const Product& product, const Eigen::Matrix2Xi& edges,
+                              const VertexParts& parts) {
+  std::vector<bool> is_stiff(static_cast<std::size_t>(edges.cols()));
+  if (parts.empty()) return is_stiff;
+  const std::vector<int> place = first_at_equal_position(product.vertices);
+  const auto key = [&](int a, int b) -> std::pair<int, int> {
+    return std::minmax(place[static_cast<std::size_t>(a)], place[static_cast<std::size_t>(b)]);
+  };
+  std::vector<std::pair<int, int>> stiff;
+  for (std::size_t p = 0; p + 1 < product.polygon_start.size(); ++p) {
+    const std::vector<int> polygon(product.corners.begin() + product.polygon_start[p],
+                                   product.corners.begin() + product.polygon_start[p + 1]);
+    if (polygon.empty()) continue;
+    const auto part_of = [&](int vertex) { return parts[static_cast<std::size_t>(vertex)]; };
+    const int part = part_of(polygon.front());
+    if (part < 0 || !std::all_of(polygon.begin(), polygon.end(), [&](int v) { return part_of(v) == part; }))
+      continue;
+    for (std::size_t k = 0; k < polygon.size(); ++k)
+      stiff.emplace_back(key(polygon[k], polygon[(k + 1) % polygon.size()]));
+  }
+  std::sort(stiff.begin(), stiff.end());
+  for (Eigen::Index i = 0; i < edges.cols(); ++i)
+    is_stiff[static_cast<std::size_t>(i)] =
+        std::binary_search(stiff.begin(), stiff.end(), key(edges(0, i), edges(1, i)));
+  return is_stiff;
 }
 
-ChordError worst_chord(const Product& product, const ImageOfPoints& image) {
+Eigen::VectorXd chord_errors(const Points& vertices, const Eigen::Matrix2Xi& edges,
+                             const std::vector<bool>& is_stiff, const ImageOfPoints& image) {
+  if (edges.cols() == 0) return {};
+  Eigen::VectorXd errors =
+      (middles(image(vertices), edges) - image(middles(vertices, edges))).colwise().norm();
+  for (std::size_t i = 0; i < is_stiff.size(); ++i)
+    if (is_stiff[i]) errors[static_cast<Eigen::Index>(i)] = 0;
+  return errors;
+}
+
+ChordError worst_chord(const Product& product, const ImageOfPoints& image, const VertexParts& parts) {
   const Eigen::Matrix2Xi edges = product_edges(product);
   ChordError worst;
   worst.edges = static_cast<std::size_t>(edges.cols());
   if (edges.cols() == 0) return worst;
   Eigen::Index at = 0;
-  worst.length = chord_errors(product.vertices, image(product.vertices), edges, image).maxCoeff(&at);
+  worst.length =
+      chord_errors(product.vertices, edges, stiff_edges(product, edges, parts), image).maxCoeff(&at);
   worst.place = 0.5 * (product.vertices.col(edges(0, at)) + product.vertices.col(edges(1, at)));
   return worst;
 }

@@ -23,11 +23,20 @@ std::string to_string(const ChordError& error);
 /// Every edge of the polygons once: 2×m vertex numbers, the smaller one first, ascending.
 Eigen::Matrix2Xi product_edges(const Product& product);
 
-/// Of each edge (2×m), with `images` those of the vertices.
-Eigen::VectorXd chord_errors(const Points& vertices, const Points& images, const Eigen::Matrix2Xi& edges,
-                             const ImageOfPoints& image);
+/// For every vertex of a product the number of the part that it belongs to and that keeps its shape, or -1.
+/// Empty: there are no parts.
+using VertexParts = std::vector<int>;
+
+/// For every edge (2×m) whether it lies, by its place, on a polygon all of whose corners are of one part: it
+/// keeps straight.
+std::vector<bool> stiff_edges(const Product& product, const Eigen::Matrix2Xi& edges,
+                              const VertexParts& parts);
+
+/// Of each edge (2×m), under the map alone, but zero where it is stiff.
+Eigen::VectorXd chord_errors(const Points& vertices, const Eigen::Matrix2Xi& edges,
+                             const std::vector<bool>& is_stiff, const ImageOfPoints& image);
 
 /// Of all edges of a product's polygons; zero without any.
-ChordError worst_chord(const Product& product, const ImageOfPoints& image);
+ChordError worst_chord(const Product& product, const ImageOfPoints& image, const VertexParts& parts = {});
 
 }  // namespace bespoke

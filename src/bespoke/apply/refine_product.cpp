@@ -222,6 +222,16 @@ Middles chosen_edges(const Product& product, const Eigen::Matrix2Xi& edges, cons
   return middles;
 }
 
+/// The middle of a stiff edge belongs to the edge's part. Both edges and middles ascend.
+void add_parts_of_middles(const Eigen::Matrix2Xi& edges, const std::vector<bool>& is_stiff,
+                          const Middles& middles, VertexParts& parts) {
+  Eigen::Index i = 0;
+  for (const auto& [a, b] : middles.edges()) {
+    while (edges(0, i) != a || edges(1, i) != b) ++i;
+    parts.push_back(is_stiff[static_cast<std::size_t>(i)] ? parts[static_cast<std::size_t>(a)] : -1);
+  }
+}
+
 /// Vertices that the edges end with where the map is smooth: as many pieces divide a chord error by their
 /// number's square.
 double expected_vertices(Eigen::Index vertices, const Eigen::VectorXd& errors, double length) {
@@ -233,7 +243,7 @@ std::string in_short(double value) { return in_digits(value, 4); }
 
 }  // namespace
 
-RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length,
+RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length, VertexParts parts,
                               std::size_t most_vertices) {
   if (!(length > 0))
     throw InvalidInput("a product cannot be refined to a chord error of " + in_short(length) +
@@ -242,7 +252,8 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
   for (int round = 0;; ++round) {
     const Points& vertices = splitting.faces().vertices;
     const Eigen::Matrix2Xi edges = product_edges(splitting.faces());
-    const Eigen::VectorXd errors = chord_errors(vertices, image(vertices), edges, image);
+    const std::vector<bool> is_stiff = stiff_edges(splitting.faces(), edges, parts);
+    const Eigen::VectorXd errors = chord_errors(vertices, edges, is_stiff, image);
     const Middles middles = chosen_edges(splitting.faces(), edges, errors, length);
     if (middles.size() == 0) break;
     if (round == most_rounds)
@@ -255,10 +266,11 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
       throw InvalidInput("a chord error of " + in_short(length) + " would take more than " +
                          std::to_string(most_vertices) + " vertices; the largest is " +
                          in_short(errors.maxCoeff()) + ", ask for less");
+    if (!parts.empty()) add_parts_of_middles(edges, is_stiff, middles, parts);
     splitting.split(middles);
   }
   RefinedProduct refined = splitting.finish();
-  refined.chord = worst_chord(refined.product, image);
+  refined.chord = worst_chord(refined.product, image, parts);
   return refined;
 }
 

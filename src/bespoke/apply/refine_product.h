@@ -16,7 +16,9 @@ struct RefinedProduct {
 /// corners. Texture coordinates are interpolated. What polygons share stays shared, and edges at the same
 /// places are split alike, so that no gaps open. Throws InvalidInput unless the length is positive, and for
 /// one that would take more than `most_vertices`, or that does not suffice after twenty rounds.
+///
+/// Edges of parts that keep their shape are straight; a neighbour's longest edge is split all the same.
 RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length,
-                              std::size_t most_vertices = std::size_t{1} << 26);
+                              VertexParts parts = {}, std::size_t most_vertices = std::size_t{1} << 26);
 
 }  // namespace bespoke

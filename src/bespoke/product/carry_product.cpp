@@ -39,6 +39,20 @@ const Format* find_format(const fs::path& path) {
   return at == formats.end() ? nullptr : at;
 }
 
+const Format& known_format(const fs::path& path) {
+  if (const Format* const format = find_format(path)) return *format;
+  throw InvalidInput(path.string() + ": the name must end in " + product_endings());
+}
+
+std::vector<PartPoints> find_parts(const Format& format, const InputFile& file,
+                                   const std::vector<RigidPart>& parts, const Progress& progress) {
+  if (parts.empty()) return {};
+  if (!format.find_parts)
+    throw InvalidInput(file.path().string() +
+                       ": only OBJ, PLY and glTF files have parts that can keep their shape");
+  return format.find_parts(file, parts, progress);
+}
+
 }  // namespace
 
 bool has_product_ending(const fs::path& path) { return find_format(path) != nullptr; }
@@ -59,32 +73,33 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   if (outputs.size() != motion.frames)
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for a motion of " +
                        std::to_string(motion.frames) + " frames; the numbers must be equal");
-  const Format* const format = find_format(input);
-  if (!format) throw InvalidInput(input.string() + ": the name must end in " + product_endings());
+  const Format& format = known_format(input);
   for (const fs::path& output : outputs)
-    if (find_format(output) != format)
+    if (find_format(output) != &format)
       throw InvalidInput(output.string() + ": must have the ending of " + input.string());
-  auto source = std::make_unique<InputFile>(input);
+  auto file = std::make_unique<InputFile>(input);
+  const std::vector<PartPoints> parts = find_parts(format, *file, options.parts, options.progress);
+  std::vector<PartPoints> places = parts;
   if (options.splits) {
-    if (!format->split) throw InvalidInput(input.string() + ": edges of such a file cannot be split");
-    source = InputFile::of_written(outputs.front().parent_path(), input, [&](OutputFile& split) {
-      format->split(*source, *options.splits, split);
-    });
+    if (!format.split) throw InvalidInput(input.string() + ": edges of such a file cannot be split");
+    file = InputFile::of_written(outputs.front().parent_path(), input,
+                                 [&](OutputFile& split) { format.split(*file, *options.splits, split); });
+    places = find_parts(format, *file, options.parts, options.progress);
   }
-  const InputFile& file = *source;
   MotionWithParts own{motion, {}};
-  if (!options.parts.empty()) {
-    if (!format->find_parts)
-      throw InvalidInput(input.string() +
-                         ": only OBJ, PLY and glTF files have parts that can keep their shape");
-    own = with_rigid_parts(motion, format->find_parts(file, options.parts, options.progress), input);
-  }
+  if (!parts.empty()) own = with_rigid_parts(motion, parts, places, input);
   CarrySummary summary;
   write_outputs(outputs, [&](std::vector<OutputFile>& open) {
-    summary = format->carry(file, open, own.motion, options.progress);
+    summary = format.carry(*file, open, own.motion, options.progress);
   });
   summary.parts = std::move(own.parts);
   return summary;
+}
+
+std::vector<int> parts_of_places(const fs::path& input, const std::vector<RigidPart>& parts,
+                                 const Points& places, const Progress& progress) {
+  const InputFile file(input);
+  return parts_at(places, find_parts(known_format(input), file, parts, progress), input);
 }
 
 }  // namespace bespoke

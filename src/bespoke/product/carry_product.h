@@ -42,7 +42,7 @@ struct CarryOptions {
 /// places becomes several.
 ///
 /// Points of the options' parts move with their part, and so does what lies at the same places; no two parts
-/// may have a place in common.
+/// may have a place in common. Points that splits add to a part move with it, but do not tell how.
 ///
 /// Blocks of a file are read, moved and written on all threads; memory does not grow with the file but for
 /// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending, an unknown
@@ -51,6 +51,11 @@ struct CarryOptions {
 CarrySummary carry_product(const std::filesystem::path& input,
                            const std::vector<std::filesystem::path>& outputs, const PointMotion& motion,
                            const CarryOptions& options = {});
+
+/// For each of the places (3×n) of points of the product in `input`, as read_product reads it, the number of
+/// the part that it belongs to, or -1. Throws as carry_product.
+std::vector<int> parts_of_places(const std::filesystem::path& input, const std::vector<RigidPart>& parts,
+                                 const Points& places, const Progress& progress = {});
 
 /// Whether the ending of the name is that of a kind of product.
 bool has_product_ending(const std::filesystem::path& path);

@@ -75,7 +75,7 @@ class Map:
         """Carries a product's file: positions and directions move, everything else is copied through.
 
         Parts named in `rigid` and `similar` keep their shape: groups, objects and materials of OBJ, nodes of glTF,
-        components of PLY. `refine` splits edges of an OBJ or PLY product until their middles lie no farther than this from
+        components of PLY. `refine` splits edges of a product until their middles lie no farther than this from
         where the map takes them.
         With several times, `output` names as many files, and they cost one look-up. All files are written or none.
         """

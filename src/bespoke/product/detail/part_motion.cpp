@@ -124,15 +124,26 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
+std::vector<int> parts_at(const Points& points, const std::vector<PartPoints>& parts,
+                          const std::filesystem::path& file) {
+  const PartTable table = part_table(parts, file);
+  std::vector<int> result;
+  for (const auto& point : points.colwise()) {
+    const auto found = table.find(place_of(point));
+    result.push_back(found == table.end() ? -1 : static_cast<int>(found->second));
+  }
+  return result;
+}
+
 MotionWithParts with_rigid_parts(const PointMotion& motion, const std::vector<PartPoints>& parts,
-                                 const std::filesystem::path& file) {
+                                 const std::vector<PartPoints>& places, const std::filesystem::path& file) {
   struct Parts {
     PartTable table;
     std::vector<std::vector<AffineMap>> maps;
   };
   const auto own = std::make_shared<Parts>();
   MotionWithParts result{motion, {}};
-  own->table = part_table(parts, file);
+  own->table = part_table(places, file);
   for (const PartPoints& part : parts) {
     FittedPart fitted = fit_part(part, motion, file);
     own->maps.push_back(std::move(fitted.frames));

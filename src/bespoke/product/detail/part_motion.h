@@ -43,10 +43,14 @@ struct MotionWithParts {
   std::vector<PartSummary> parts;
 };
 
-/// `motion`, but for the points of the parts, which move as fit_part says. What lies at the same place to the
-/// last bit moves alike, so that seams stay closed. Throws InvalidInput where two parts have a place in
-/// common.
+/// `motion`, but for the points of the parts, which move as fit_part says of `parts`. What lies at the same
+/// place as a point of `places` (the same parts, perhaps with more points), to the last bit, moves alike, so
+/// that seams stay closed. Throws InvalidInput where two parts have a place in common.
 MotionWithParts with_rigid_parts(const PointMotion& motion, const std::vector<PartPoints>& parts,
-                                 const std::filesystem::path& file);
+                                 const std::vector<PartPoints>& places, const std::filesystem::path& file);
+
+/// For each point (3×n), the number of the part that has its place, or -1. Throws as with_rigid_parts.
+std::vector<int> parts_at(const Points& points, const std::vector<PartPoints>& parts,
+                          const std::filesystem::path& file);
 
 }  // namespace bespoke
