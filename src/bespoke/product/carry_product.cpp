@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/words.h"
 
 namespace bespoke {
@@ -60,7 +61,9 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for a motion of " +
                        std::to_string(motion.frames) + " frames; the numbers must be equal");
   const Format* const format = find_format(input);
-  if (!format) throw InvalidInput(input.string() + ": the name must end in " + product_endings());
+  if (!format)
+    throw InvalidInput(input.string() + ": the name must end in " + product_endings() +
+                       conversion_advice(input));
   for (const fs::path& output : outputs)
     if (find_format(output) != format)
       throw InvalidInput(output.string() + ": must have the ending of " + input.string());
