@@ -139,6 +139,11 @@ TEST_F(BadModels, NotFilesAtAll) {
   expect_refusal(fit(pair_.file("none.obj")), 4, "none.obj: No such file");
   expect_refusal(fit(pair_.file("anchors.json")), 2,
                  "the name must end in .obj, .ply, .stl, .off, .gltf, .glb or .3mf");
+  write_text(pair_.file("scan.usdz"), "PK");
+  expect_refusal(fit(pair_.file("scan.usdz")), 2, "USD is not read: convert it to .glb");
+  const ProgramResult applied =
+      bespoke({"apply", pair_.file("map.vdb"), pair_.file("scan.usdz"), "-o", pair_.file("scan.obj")});
+  expect_refusal(applied, 1, "USD is not read: convert it to .glb");
 }
 
 }  // namespace

@@ -7,20 +7,43 @@ namespace bespoke::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::IsEmpty;
+
+class DebianPackage : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!is_installed("dpkg-shlibdeps") || !is_installed("help2man"))
+      GTEST_SKIP() << "dpkg-dev and help2man are not installed: tools/setup --package";
+  }
+
+  /// Where the new package lies.
+  static std::string packed(const std::string& directory) {
+    const ProgramResult pack =
+        run_program({BESPOKE_CPACK, "--config", BESPOKE_BINARY_DIR "/CPackConfig.cmake", "-B", directory});
+    EXPECT_EQ(pack.exit_code, 0) << pack.out << pack.err;
+    std::string package;
+    for (const auto& entry : std::filesystem::directory_iterator(directory))
+      if (entry.path().extension() == ".deb") package = entry.path().string();
+    EXPECT_THAT(package, HasSubstr("/bespoke_"));
+    return package;
+  }
+};
+
+// The tags that stay stand in cmake/debian/lintian_overrides, each with its reason.
+TEST_F(DebianPackage, LintianHasNoErrorsOrWarnings) {
+  if (!is_installed("lintian")) GTEST_SKIP() << "lintian is not installed: tools/setup --package";
+  const ScratchDirectory directory;
+  const ProgramResult check =
+      run_program({"lintian", "--no-cfg", "--fail-on", "error,warning", packed(directory.path())});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+  EXPECT_THAT(check.out, IsEmpty());
+}
 
 // The package is unpacked, not installed, so that the test needs no rights and shows that it may lie
 // anywhere.
-TEST(DebianPackage, HoldsACommandThatWorksWhereverItLies) {
-  if (!is_installed("dpkg-shlibdeps") || !is_installed("help2man"))
-    GTEST_SKIP() << "dpkg-dev and help2man are not installed: tools/setup --package";
+TEST_F(DebianPackage, HoldsACommandThatWorksWhereverItLies) {
   const ExamplePair pair;
-  const ProgramResult pack = run_program(
-      {BESPOKE_CPACK, "--config", BESPOKE_BINARY_DIR "/CPackConfig.cmake", "-B", pair.file("packages")});
-  ASSERT_EQ(pack.exit_code, 0) << pack.out << pack.err;
-  std::string package;
-  for (const auto& entry : std::filesystem::directory_iterator(pair.file("packages")))
-    if (entry.path().extension() == ".deb") package = entry.path().string();
-  EXPECT_THAT(package, HasSubstr("/bespoke_"));
+  const std::string package = packed(pair.file("packages"));
   EXPECT_THAT(run_program({"dpkg-deb", "--field", package, "Depends"}).out, HasSubstr("libopenvdb"));
 
   const std::string root = pair.file("root");

@@ -128,7 +128,10 @@ TEST_F(CarryProduct, NamesTheEndingsThatAreKnown) {
   const auto message = [&](const std::string& name) {
     return test::error_message<InvalidInput>([&] { carried(name, "v 1 2 3\n", identity_motion()); });
   };
-  EXPECT_THAT(message("a.step"), HasSubstr("a.step: the name must end in .obj, .ply"));
+  EXPECT_THAT(message("a.step"),
+              ::testing::AllOf(HasSubstr("a.step: the name must end in .obj, .ply"), Not(HasSubstr("USD"))));
+  for (const char* name : {"a.usd", "a.usda", "a.usdc", "a.USDZ"})
+    EXPECT_THAT(message(name), HasSubstr("USD is not read: convert it to .glb"));
   EXPECT_THROW(carry_product(file("a.obj", "v 1 2 3\n"), {directory_ / "b.ply"}, identity_motion()),
                InvalidInput);
   EXPECT_THROW(carry_product(directory_ / "absent.obj", {directory_ / "b.obj"}, identity_motion()),

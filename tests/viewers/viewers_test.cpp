@@ -107,5 +107,65 @@ pv.SaveScreenshot(sys.argv[3])
   EXPECT_GT(std::filesystem::file_size(pair_.file("again.png")), 10'000u);
 }
 
+/// The number after "max " in the line that begins with "error".
+double stated_error(const std::string& out) {
+  return std::stod(out.substr(out.find("max ", out.find("error")) + 4));
+}
+
+double largest_distance(const Points& some, const Points& others) {
+  return (some - others).colwise().norm().maxCoeff();
+}
+
+class Itk : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  void SetUp() override {
+    if (std::string(BESPOKE_ITK_PROGRAM).empty())
+      GTEST_SKIP() << "ITK (libinsighttoolkit5-dev) was not found when the tests were built";
+    ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  }
+
+  /// What ITK does with the image of the map is what `apply` does, to the error that export states.
+  void expect_agreement(const std::string& verb, const std::vector<std::string>& of_export,
+                        const std::vector<std::string>& of_apply) const {
+    const auto& [ending, space] = GetParam();
+    const std::string image = pair_.file("image" + ending);
+    std::vector<std::string> write{"export", pair_.file("map.vdb"), "--grid", "3%", "--space", space, "-o",
+                                   image};
+    write.insert(write.end(), of_export.begin(), of_export.end());
+    const ProgramResult written = bespoke(write);
+    ASSERT_EQ(written.exit_code, 0) << written.err;
+    const ProgramResult run = run_program(
+        {BESPOKE_ITK_PROGRAM, verb, image, space, pair_.file("places.obj"), pair_.file("found.obj")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    std::vector<std::string> carry{"apply", pair_.file("map.vdb"), pair_.file("places.obj"), "-o",
+                                   pair_.file("expected.obj")};
+    carry.insert(carry.end(), of_apply.begin(), of_apply.end());
+    ASSERT_EQ(bespoke(carry).exit_code, 0);
+
+    const Points places = read_obj_points(pair_.file("places.obj"));
+    const Points expected = read_obj_points(pair_.file("expected.obj"));
+    const double error = stated_error(written.out);
+    ASSERT_GT(places.cols(), 1000);
+    EXPECT_GT(largest_distance(places, expected), 10 * error) << "they would agree without moving";
+    EXPECT_LE(largest_distance(read_obj_points(pair_.file("found.obj")), expected), error);
+  }
+
+  ExamplePair pair_;
+};
+
+TEST_P(Itk, MovesPointsAsApplyDoes) { expect_agreement("move", {}, {}); }
+
+TEST_P(Itk, ResamplesByTheWayBack) { expect_agreement("resample", {"--pull"}, {"--inverse"}); }
+
+std::string in_words(const ::testing::TestParamInfo<Itk::ParamType>& image) {
+  const auto& [ending, space] = image.param;
+  return std::string(ending == ".nrrd" ? "Nrrd" : "Nifti") + (space == "lps" ? "InLps" : "InRas");
+}
+
+INSTANTIATE_TEST_SUITE_P(Images, Itk,
+                         ::testing::Combine(::testing::Values(".nrrd", ".nii.gz"),
+                                            ::testing::Values("lps", "ras")),
+                         in_words);
+
 }  // namespace
 }  // namespace bespoke::test

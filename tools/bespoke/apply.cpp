@@ -71,7 +71,8 @@ void require_known_endings(const ApplyArguments& arguments, const fs::path& prod
   const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
   if (is_carried(arguments, product, output)) {
     if (!has_product_ending(output))
-      throw CLI::ValidationError("apply", output.string() + " must end in " + product_endings());
+      throw CLI::ValidationError(
+          "apply", output.string() + " must end in " + product_endings() + conversion_advice(output));
     return;
   }
   if (has_product_ending(output) && !can_write_product(output))
@@ -81,7 +82,8 @@ void require_known_endings(const ApplyArguments& arguments, const fs::path& prod
                                "parts that keep their shape are known only in a file that keeps its kind");
   require_mesh_ending("apply", output);
   if (!can_read_product(product))
-    throw CLI::ValidationError("apply", product.string() + " must end in " + read_product_endings());
+    throw CLI::ValidationError(
+        "apply", product.string() + " must end in " + read_product_endings() + conversion_advice(product));
 }
 
 std::vector<RigidPart> parts(const ApplyArguments& arguments) {

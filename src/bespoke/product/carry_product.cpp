@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/words.h"
 
 namespace bespoke {
@@ -41,7 +42,7 @@ const Format* find_format(const fs::path& path) {
 
 const Format& known_format(const fs::path& path) {
   if (const Format* const format = find_format(path)) return *format;
-  throw InvalidInput(path.string() + ": the name must end in " + product_endings());
+  throw InvalidInput(path.string() + ": the name must end in " + product_endings() + conversion_advice(path));
 }
 
 std::vector<PartPoints> find_parts(const Format& format, const InputFile& file,

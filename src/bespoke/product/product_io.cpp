@@ -74,9 +74,17 @@ bool can_write_product(const std::filesystem::path& path) {
 std::string read_product_endings() { return endings(false); }
 std::string written_product_endings() { return endings(true); }
 
+std::string conversion_advice(const std::filesystem::path& path) {
+  constexpr std::array usd_endings{".usd", ".usda", ".usdc", ".usdz"};
+  if (std::find(usd_endings.begin(), usd_endings.end(), lower_ending(path)) == usd_endings.end()) return "";
+  return "; USD is not read: convert it to .glb, for instance with Blender from blender.org";
+}
+
 Product read_product(const std::filesystem::path& path) {
   const FaceFormat* const format = find_face_format(path);
-  if (!format) throw InvalidInput(path.string() + ": the name must end in " + read_product_endings());
+  if (!format)
+    throw InvalidInput(path.string() + ": the name must end in " + read_product_endings() +
+                       conversion_advice(path));
   return format->read(InputFile(path));
 }
 

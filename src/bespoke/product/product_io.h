@@ -45,6 +45,9 @@ bool can_write_product(const std::filesystem::path& path);
 std::string read_product_endings();
 std::string written_product_endings();
 
+/// What follows the endings in the message about a file of another ending: how to convert USD, else nothing.
+std::string conversion_advice(const std::filesystem::path& path);
+
 /// Polygons as triangle fans about their first corner, in place.
 Faces triangulated(const Product& product);
 
