@@ -7,6 +7,9 @@
 
 #ifdef BESPOKE_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
+
+#include <chrono>
+#include <thread>
 #endif
 
 namespace bespoke {
@@ -41,6 +44,20 @@ void parallel_for(std::size_t count, std::size_t grain,
   });
   happens_after(&ended);
 }
+
+#ifdef BESPOKE_THREAD_SANITIZER
+namespace {
+
+// A report about a thread that OpenVDB has created counts as one of OpenVDB's own, which are suppressed: the
+// workers are created here.
+[[maybe_unused]] const bool has_workers = [] {
+  parallel_for(16, 1,
+               [](std::size_t, std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+  return true;
+}();
+
+}  // namespace
+#endif
 
 void run_alone(const std::function<void()>& body) {
   tbb::task_arena arena(1);
