@@ -189,10 +189,14 @@ void flush_directory(const fs::path& target) {
     fail("cannot write the directory", directory, errno);
 }
 
+// Jobs of a batch run side by side, each on a thread of its own.
+thread_local HeldFiles* holder = nullptr;
+
 }  // namespace
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write,
                       TemporaryFile kind) {
+  if (holder) return holder->write(path, write, kind);
   const fs::path target = followed(path);
   std::error_code ignored;
   if (target.filename().empty() || fs::is_directory(target, ignored)) fail("cannot write", path, EISDIR);
@@ -201,6 +205,55 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   temporary.flush();
   temporary.put_into_place();
   flush_directory(target);
+}
+
+void remove_written(const fs::path& path) {
+  if (holder) return holder->remove(path);
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
+fs::path directory_of_temporaries(const fs::path& path) {
+  return holder ? holder->directory_ : directory_of(path);
+}
+
+bool writes_are_held() { return holder != nullptr; }
+
+struct HeldFiles::Content {
+  fs::path path;
+  Temporary file;
+};
+
+HeldFiles::HeldFiles(fs::path directory) : directory_(std::move(directory)) {}
+
+HeldFiles::~HeldFiles() = default;
+
+void HeldFiles::hold(const std::function<void()>& body) {
+  struct Restore {
+    HeldFiles* before;
+    ~Restore() { holder = before; }
+  };
+  const Restore restore{std::exchange(holder, this)};
+  body();
+}
+
+void HeldFiles::write(const fs::path& path, const std::function<void(const fs::path&)>& write,
+                      TemporaryFile kind) {
+  if (path.filename().empty()) fail("cannot write", path, EISDIR);
+  std::unique_ptr<Content> content(new Content{path, {directory_ / path.filename(), kind}});
+  write(content->file.path());
+  remove(path);
+  contents_.push_back(std::move(content));
+}
+
+void HeldFiles::remove(const fs::path& path) {
+  std::erase_if(contents_, [&](const auto& content) { return content->path == path; });
+}
+
+std::vector<HeldFiles::File> HeldFiles::files() const {
+  std::vector<File> files;
+  for (const auto& content : contents_) files.push_back({content->path, content->file.path()});
+  return files;
 }
 
 }  // namespace bespoke

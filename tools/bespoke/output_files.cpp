@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <set>
-#include <system_error>
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
@@ -35,7 +34,7 @@ void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector
     if (!written.insert(identity(output)).second)
       throw CLI::ValidationError(output.string(), "would be written twice; give each output its own name");
     const fs::path directory = output.parent_path();
-    if (!directory.empty() && !fs::is_directory(directory))
+    if (!directory.empty() && !writes_are_held() && !fs::is_directory(directory))
       throw FileError(output.string() + ": the directory " + directory.string() + " does not exist");
   }
 }
@@ -46,8 +45,7 @@ void require_mesh_ending(const std::string& option, const fs::path& path) {
 }
 
 OutputFiles::~OutputFiles() {
-  std::error_code ignored;
-  for (const fs::path& path : written_) fs::remove(path, ignored);
+  for (const fs::path& path : written_) remove_written(path);
 }
 
 void OutputFiles::write(const fs::path& path, const std::function<void(const fs::path&)>& writer) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string_view>
 
+#include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/words.h"
@@ -67,7 +68,7 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   auto source = std::make_unique<InputFile>(input);
   if (options.splits) {
     if (!format->split) throw InvalidInput(input.string() + ": edges of such a file cannot be split");
-    source = InputFile::of_written(outputs.front().parent_path(), input, [&](OutputFile& split) {
+    source = InputFile::of_written(directory_of_temporaries(outputs.front()), input, [&](OutputFile& split) {
       format->split(*source, *options.splits, split);
     });
   }
