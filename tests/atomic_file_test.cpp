@@ -256,5 +256,20 @@ TEST_F(WriteAtomically, HoldsOnOneThreadAlone) {
   EXPECT_FALSE(writes_are_held());
 }
 
+TEST_F(WriteAtomically, FlushesDirectoriesLater) {
+  LateDirectories directories;
+  for (const char* name : {"one", "two"}) fs::create_directory(directory_ / name);
+  directories.note([&] {
+    write_atomically(directory_ / "one/file.txt", text("old"));
+    write_atomically(directory_ / "one/file.txt", text("new"));
+    write_atomically(directory_ / "two/file.txt", text("other"));
+  });
+  EXPECT_EQ(test::read_text(directory_ / "one/file.txt"), "new");
+  EXPECT_EQ(test::read_text(directory_ / "two/file.txt"), "other");
+  // One that is gone since holds no names to be lost.
+  fs::remove_all(directory_ / "two");
+  EXPECT_NO_THROW(directories.flush());
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -180,8 +180,7 @@ fs::path followed(const fs::path& path) {
   return target;
 }
 
-void flush_directory(const fs::path& target) {
-  const fs::path directory = directory_of(target);
+void flush_directory(const fs::path& directory) {
   const Descriptor descriptor(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Some file systems cannot flush a directory (EINVAL), and one may be writable but not readable: the
   // rename has happened, so neither is a failure.
@@ -191,6 +190,21 @@ void flush_directory(const fs::path& target) {
 
 // Jobs of a batch run side by side, each on a thread of its own.
 thread_local HeldFiles* holder = nullptr;
+thread_local LateDirectories* late_directories = nullptr;
+
+/// Sets a pointer until the end of its life.
+template <typename Pointee>
+class Setting {
+ public:
+  Setting(Pointee*& pointer, Pointee* value) : pointer_(pointer), before_(std::exchange(pointer, value)) {}
+  ~Setting() { pointer_ = before_; }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+
+ private:
+  Pointee*& pointer_;
+  Pointee* before_;
+};
 
 }  // namespace
 
@@ -204,7 +218,7 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   write(temporary.path());
   temporary.flush();
   temporary.put_into_place();
-  flush_directory(target);
+  late_directories ? late_directories->add(directory_of(target)) : flush_directory(directory_of(target));
 }
 
 void remove_written(const fs::path& path) {
@@ -219,6 +233,22 @@ fs::path directory_of_temporaries(const fs::path& path) {
 
 bool writes_are_held() { return holder != nullptr; }
 
+void LateDirectories::note(const std::function<void()>& body) {
+  const Setting setting(late_directories, this);
+  body();
+}
+
+void LateDirectories::add(const fs::path& directory) {
+  const std::lock_guard lock(mutex_);
+  directories_.insert(directory);
+}
+
+void LateDirectories::flush() {
+  const std::lock_guard lock(mutex_);
+  for (const fs::path& directory : directories_) flush_directory(directory);
+  directories_.clear();
+}
+
 struct HeldFiles::Content {
   fs::path path;
   Temporary file;
@@ -229,11 +259,7 @@ HeldFiles::HeldFiles(fs::path directory) : directory_(std::move(directory)) {}
 HeldFiles::~HeldFiles() = default;
 
 void HeldFiles::hold(const std::function<void()>& body) {
-  struct Restore {
-    HeldFiles* before;
-    ~Restore() { holder = before; }
-  };
-  const Restore restore{std::exchange(holder, this)};
+  const Setting setting(holder, this);
   body();
 }
 

@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <vector>
 
 namespace bespoke {
@@ -39,6 +41,26 @@ std::filesystem::path directory_of_temporaries(const std::filesystem::path& path
 
 /// Whether what this thread writes atomically is held: the directories of its files need not be there.
 bool writes_are_held();
+
+/// The directories that files are put into, to be flushed to the disk once for all of them. Before that, a
+/// power failure may take new names away, or bring old content back, but never leaves a part of a file.
+/// Thread-safe.
+class LateDirectories {
+ public:
+  /// Calls `body`; the directories of what it writes atomically on this thread are noted, not flushed.
+  void note(const std::function<void()>& body);
+
+  /// Flushes what was noted. Throws FileError.
+  void flush();
+
+ private:
+  friend void write_atomically(const std::filesystem::path&,
+                               const std::function<void(const std::filesystem::path&)>&, TemporaryFile);
+  void add(const std::filesystem::path& directory);
+
+  std::mutex mutex_;
+  std::set<std::filesystem::path> directories_;
+};
 
 /// Files that were written atomically but not put into place: whoever holds them may put them elsewhere. They
 /// have no names where the file system allows that, are not flushed to the disk, and are gone with the

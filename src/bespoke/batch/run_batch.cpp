@@ -89,6 +89,7 @@ class Scheduler {
     for (int i = 1; i < options_.jobs; ++i) others.emplace_back([this] { work(); });
     work();
     for (std::thread& other : others) other.join();
+    directories_.flush();
     return std::move(results_);
   }
 
@@ -213,7 +214,7 @@ class Scheduler {
     for (const JobFile& output : job.outputs)
       if (output.path.has_parent_path()) fs::create_directories(output.path.parent_path());
     const std::vector<RecordedFile> inputs = records_.inputs_of(job);
-    run_on_threads(result.threads, [&] { result.findings = job.run({}); });
+    run_on_threads(result.threads, [&] { directories_.note([&] { result.findings = job.run({}); }); });
     records_.write(job, inputs, result.findings);
   }
 
@@ -261,6 +262,9 @@ class Scheduler {
   const BatchOptions& options_;
   const BatchEvents& events_;
   JobRecords records_;
+  // Flushed for each job, a directory costs as much as the job's own file. A name that a power failure takes
+  // away is missing, and its job runs again.
+  LateDirectories directories_;
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
