@@ -120,9 +120,8 @@ void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts
 }
 
 /// Nothing without --pack.
-std::unique_ptr<PackedJobs> open_pack(const BatchArguments& arguments, const JobGraph& graph) {
+std::unique_ptr<PackedJobs> open_pack(const BatchArguments& arguments) {
   if (arguments.pack.empty()) return nullptr;
-  require_no_faults(arguments.manifest, packing_faults(graph, arguments.pack));
   auto pack = std::make_unique<PackedJobs>(
       arguments.pack, arguments.dry_run ? PackedJobs::Access::read : PackedJobs::Access::write);
   if (pack->torn_bytes() > 0)
@@ -144,12 +143,13 @@ void run(const BatchArguments& arguments) {
   BatchOptions options = options_of(arguments);
   std::vector<JobForecast> forecasts = forecast_jobs(graph);
   require_no_faults(arguments.manifest, too_large_jobs(graph, forecasts, options.max_memory));
+  if (!arguments.pack.empty()) require_no_faults(arguments.manifest, packing_faults(graph, arguments.pack));
   if (arguments.shard.count > 1) {
     const auto mine = jobs_of_shard(graph, forecasts, arguments.shard.index - 1, arguments.shard.count);
     graph = subgraph(std::move(graph), mine);
     forecasts = forecast_jobs(graph);
   }
-  const std::unique_ptr<PackedJobs> pack = open_pack(arguments, graph);
+  const std::unique_ptr<PackedJobs> pack = open_pack(arguments);
   options.pack = pack.get();
   if (arguments.dry_run)
     print_plan(graph, forecasts, pack.get());
