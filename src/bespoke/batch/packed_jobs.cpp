@@ -302,14 +302,20 @@ std::string PackedJobs::tail() const {
 void PackedJobs::end_in_place() {
   file_->cut(end_);
   Appender appender(*file_, end_);
-  if (end_ == 0) appender.put(tar_comment(mark_text));
-  appender.put(tail());
-  appender.flush();
-  // An archive with an end has all of its content on the disk.
-  file_->flush();
-  appender.put(tar_end());
-  appender.flush();
-  file_->flush();
+  try {
+    if (end_ == 0) appender.put(tar_comment(mark_text));
+    appender.put(tail());
+    appender.flush();
+    // An archive with an end has all of its content on the disk.
+    file_->flush();
+    appender.put(tar_end());
+    appender.flush();
+    file_->flush();
+  } catch (const FileError&) {
+    // Programs read an archive without an end, but not one that ends within a member.
+    file_->cut(end_);
+    throw;
+  }
 }
 
 void PackedJobs::rewrite() const {
