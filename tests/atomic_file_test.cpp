@@ -201,5 +201,75 @@ TEST_F(WriteAtomically, FailsWhenTheWriterLeavesNoFile) {
                FileError);
 }
 
+TEST_F(WriteAtomically, HoldsWhatIsToGoElsewhere) {
+  test::write_text(directory_ / "old.txt", "old");
+  const fs::path absent = directory_ / "absent" / "new.txt";
+  for (const TemporaryFile kind : kinds) {
+    HeldFiles held(directory_.path());
+    held.hold([&] {
+      EXPECT_TRUE(writes_are_held());
+      EXPECT_EQ(directory_of_temporaries(absent), directory_.path());
+      write_atomically(directory_ / "old.txt", text("first"), kind);
+      write_atomically(absent, text("new"), kind);
+      write_atomically(directory_ / "old.txt", text("second"), kind);
+    });
+    EXPECT_FALSE(writes_are_held());
+    EXPECT_EQ(directory_of_temporaries(absent), absent.parent_path());
+    const std::vector<HeldFiles::File> files = held.files();
+    ASSERT_THAT(files, SizeIs(2));
+    EXPECT_EQ(files[0].path, absent);
+    EXPECT_EQ(test::read_text(files[0].content), "new");
+    EXPECT_EQ(files[1].path, directory_ / "old.txt");
+    EXPECT_EQ(test::read_text(files[1].content), "second");
+    EXPECT_EQ(test::read_text(directory_ / "old.txt"), "old");
+    EXPECT_THAT(names(), SizeIs(kind == TemporaryFile::named ? 3 : 1));
+  }
+  EXPECT_THAT(names(), ElementsAre("old.txt"));
+}
+
+TEST_F(WriteAtomically, RemovesWhatIsHeldAndNotWhatHasItsName) {
+  const fs::path path = directory_ / "file.txt";
+  write_atomically(path, text("old"));
+  HeldFiles held(directory_.path());
+  held.hold([&] {
+    write_atomically(path, text("new"));
+    remove_written(path);
+  });
+  EXPECT_THAT(held.files(), IsEmpty());
+  EXPECT_EQ(test::read_text(path), "old");
+  remove_written(path);
+  remove_written(path);
+  EXPECT_THAT(names(), IsEmpty());
+}
+
+TEST_F(WriteAtomically, HoldsOnOneThreadAlone) {
+  HeldFiles held(directory_.path());
+  held.hold([&] {
+    std::thread([&] { write_atomically(directory_ / "other.txt", text("other")); }).join();
+    EXPECT_THROW(
+        write_atomically(directory_ / "file.txt", [](const fs::path&) { throw FileError("no space left"); }),
+        FileError);
+  });
+  EXPECT_THAT(held.files(), IsEmpty());
+  EXPECT_THAT(names(), ElementsAre("other.txt"));
+  EXPECT_THROW(held.hold([] { throw Interrupted("interrupted"); }), Interrupted);
+  EXPECT_FALSE(writes_are_held());
+}
+
+TEST_F(WriteAtomically, FlushesDirectoriesLater) {
+  LateDirectories directories;
+  for (const char* name : {"one", "two"}) fs::create_directory(directory_ / name);
+  directories.note([&] {
+    write_atomically(directory_ / "one/file.txt", text("old"));
+    write_atomically(directory_ / "one/file.txt", text("new"));
+    write_atomically(directory_ / "two/file.txt", text("other"));
+  });
+  EXPECT_EQ(test::read_text(directory_ / "one/file.txt"), "new");
+  EXPECT_EQ(test::read_text(directory_ / "two/file.txt"), "other");
+  // One that is gone since holds no names to be lost.
+  fs::remove_all(directory_ / "two");
+  EXPECT_NO_THROW(directories.flush());
+}
+
 }  // namespace
 }  // namespace bespoke

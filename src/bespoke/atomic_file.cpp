@@ -180,8 +180,7 @@ fs::path followed(const fs::path& path) {
   return target;
 }
 
-void flush_directory(const fs::path& target) {
-  const fs::path directory = directory_of(target);
+void flush_directory(const fs::path& directory) {
   const Descriptor descriptor(directory, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   // Some file systems cannot flush a directory (EINVAL), and one may be writable but not readable: the
   // rename has happened, so neither is a failure.
@@ -189,10 +188,29 @@ void flush_directory(const fs::path& target) {
     fail("cannot write the directory", directory, errno);
 }
 
+// Jobs of a batch run side by side, each on a thread of its own.
+thread_local HeldFiles* holder = nullptr;
+thread_local LateDirectories* late_directories = nullptr;
+
+/// Sets a pointer until the end of its life.
+template <typename Pointee>
+class Setting {
+ public:
+  Setting(Pointee*& pointer, Pointee* value) : pointer_(pointer), before_(std::exchange(pointer, value)) {}
+  ~Setting() { pointer_ = before_; }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+
+ private:
+  Pointee*& pointer_;
+  Pointee* before_;
+};
+
 }  // namespace
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write,
                       TemporaryFile kind) {
+  if (holder) return holder->write(path, write, kind);
   const fs::path target = followed(path);
   std::error_code ignored;
   if (target.filename().empty() || fs::is_directory(target, ignored)) fail("cannot write", path, EISDIR);
@@ -200,7 +218,68 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
   write(temporary.path());
   temporary.flush();
   temporary.put_into_place();
-  flush_directory(target);
+  late_directories ? late_directories->add(directory_of(target)) : flush_directory(directory_of(target));
+}
+
+void remove_written(const fs::path& path) {
+  if (holder) return holder->remove(path);
+  std::error_code ignored;
+  fs::remove(path, ignored);
+}
+
+fs::path directory_of_temporaries(const fs::path& path) {
+  return holder ? holder->directory_ : directory_of(path);
+}
+
+bool writes_are_held() { return holder != nullptr; }
+
+void LateDirectories::note(const std::function<void()>& body) {
+  const Setting setting(late_directories, this);
+  body();
+}
+
+void LateDirectories::add(const fs::path& directory) {
+  const std::lock_guard lock(mutex_);
+  directories_.insert(directory);
+}
+
+void LateDirectories::flush() {
+  const std::lock_guard lock(mutex_);
+  for (const fs::path& directory : directories_) flush_directory(directory);
+  directories_.clear();
+}
+
+struct HeldFiles::Content {
+  fs::path path;
+  Temporary file;
+};
+
+HeldFiles::HeldFiles(fs::path directory) : directory_(std::move(directory)) {}
+
+HeldFiles::~HeldFiles() = default;
+
+void HeldFiles::hold(const std::function<void()>& body) {
+  const Setting setting(holder, this);
+  body();
+}
+
+void HeldFiles::write(const fs::path& path, const std::function<void(const fs::path&)>& write,
+                      TemporaryFile kind) {
+  if (path.filename().empty()) fail("cannot write", path, EISDIR);
+  std::unique_ptr<Content> content(new Content{path, {directory_ / path.filename(), kind}});
+  write(content->file.path());
+  remove(path);
+  contents_.push_back(std::move(content));
+}
+
+void HeldFiles::remove(const fs::path& path) {
+  std::erase_if(contents_, [&](const auto& content) { return content->path == path; });
+}
+
+std::vector<HeldFiles::File> HeldFiles::files() const {
+  std::vector<File> files;
+  for (const auto& content : contents_) files.push_back({content->path, content->file.path()});
+  return files;
 }
 
 }  // namespace bespoke

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/atomic_file.h"
 #include "bespoke/batch/job_graph.h"
 #include "bespoke/error.h"
 #include "support/file_text.h"
@@ -26,7 +27,13 @@ class BatchScene {
     job.command = "join";
     for (const std::string& input : inputs) job.inputs.push_back({"product", file(input)});
     for (const std::string& output : outputs) job.outputs.push_back({"output", file(output)});
-    job.run = [this, job](const Progress&) {
+    job.run = run_of(job);
+    return job;
+  }
+
+  /// Joins the texts.
+  std::function<JobFindings(const Progress&)> run_of(const BatchJob& job) {
+    return [this, job](const Progress&) {
       {
         const std::lock_guard lock(mutex_);
         ran.push_back(job.line);
@@ -34,10 +41,10 @@ class BatchScene {
       std::string text;
       for (const JobFile& input : job.inputs) text += read_text(input.path);
       if (text.find("bad") != std::string::npos) throw InvalidInput("the text is bad");
-      for (const JobFile& output : job.outputs) write_text(output.path, text);
+      for (const JobFile& output : job.outputs)
+        write_atomically(output.path, [&](const auto& temporary) { write_text(temporary, text); });
       return JobFindings{{{"bytes", text.size()}}, {}, {}};
     };
-    return job;
   }
 
   std::vector<std::size_t> ran;  ///< lines, by their starts

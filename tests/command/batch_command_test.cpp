@@ -19,6 +19,7 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::Contains;
 using testing::EndsWith;
+using testing::Field;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -347,6 +348,179 @@ TEST_F(BatchCommand, ReachesTheSameStateWhateverIsKilled) {
   }
   EXPECT_EQ(bespoke({"batch", path, "-q", "--threads", "2"}).exit_code, 0);
   EXPECT_TRUE(products(file("killed")) == wanted);
+}
+
+/// Batches that pack, run in the directory of the example: names in the archive are seen from there.
+class PackedBatchCommand : public BatchCommand {
+ protected:
+  /// A program and its arguments, started there.
+  std::vector<std::string> there(const std::vector<std::string>& command,
+                                 const std::string& before = "") const {
+    std::vector<std::string> words{"sh", "-c", before + "cd \"$0\" && exec \"$@\"", file("")};
+    words.insert(words.end(), command.begin(), command.end());
+    return words;
+  }
+  ProgramResult run_there(const std::vector<std::string>& arguments, const std::string& before = "") const {
+    std::vector<std::string> command{BESPOKE_COMMAND};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    return run_program(there(command, before));
+  }
+  /// What an archive holds and which files others leave, but records.
+  std::map<std::string, std::string> unpacked(const std::string& archive) const {
+    const ScratchDirectory directory;
+    const ProgramResult result = run_program({"tar", "-xf", file(archive), "-C", directory.path()});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    std::map<std::string, std::string> found = products(directory.path());
+    std::erase_if(found,
+                  [](const auto& row) { return row.first.find(".bespoke-jobs") != std::string::npos; });
+    return found;
+  }
+};
+
+TEST_F(PackedBatchCommand, PutsTheSameProductsIntoOneFile) {
+  const std::string path = manifest(season(pair_, "season"));
+  ASSERT_EQ(run_there({"batch", path, "-q"}).exit_code, 0);
+  const auto wanted = products(file("season"));
+  ASSERT_EQ(wanted.size(), 18u);
+  fs::remove_all(file("season"));
+
+  ASSERT_EQ(run_there({"batch", path, "-q", "--pack", "1.tar", "--shard", "1/2"}).exit_code, 0);
+  const ProgramResult dry = run_there({"batch", path, "--pack", "1.tar", "--dry-run"});
+  EXPECT_THAT(dry.out, HasSubstr("9 of 18 jobs would run"));
+  ASSERT_EQ(run_there({"batch", path, "-q", "--pack", "2.tar", "--shard", "2/2"}).exit_code, 0);
+  EXPECT_THAT(products(file("season")), testing::SizeIs(2));  // the maps
+  EXPECT_EQ(unpacked("1.tar").size(), 8u);
+  EXPECT_THAT(run_there({"batch", path, "--pack", "1.tar", "--shard", "1/2", "--json"}).out,
+              HasSubstr("\"up-to-date\":9"));
+  for (const std::string archive : {"1.tar", "2.tar"})
+    ASSERT_EQ(run_program({"tar", "-xf", file(archive), "-C", file("")}).exit_code, 0);
+  EXPECT_THAT(run_there({"batch", path, "--dry-run"}).out, StartsWith("0 of 18 jobs"));
+  auto found = products(file("season"));
+  std::erase_if(found, [](const auto& row) { return row.first.find(".bespoke-jobs") != std::string::npos; });
+  EXPECT_TRUE(found == wanted);
+}
+
+TEST_F(PackedBatchCommand, HoldsWhatEveryCommandWrites) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  const auto into = [&](const std::string& output, json job) {
+    job["output"] = "results/" + output;
+    return job;
+  };
+  json frames = apply("map.vdb", ""), refined = frames, reported = frames;
+  frames["frames"] = 20;
+  refined["refine"] = "0.01%";
+  reported["report"] = "results/of_apply.json";
+  const std::string path = manifest(
+      {into("frame.obj", frames), into("refined.obj", refined), into("reported.obj", reported),
+       into("map.vdb", fit("")),
+       into("check.json", {{"command", "check"}, {"map", file("map.vdb")}, {"json", true}}),
+       into("inverse.vdb", {{"command", "invert"}, {"map", file("map.vdb")}}),
+       into("map.vti", {{"command", "export"}, {"map", file("map.vdb")}, {"grid", "5%"}}),
+       into(
+           "morph.glb",
+           {{"command", "export"}, {"map", file("map.vdb")}, {"morph", 2}, {"product", file("product.obj")}}),
+       into("pictures.md", {{"command", "report"},
+                            {"map", file("map.vdb")},
+                            {"source", file("source.obj")},
+                            {"target", file("target.obj")}})});
+  const ProgramResult packed = run_there({"batch", path, "-q", "--pack", "out.tar"});
+  ASSERT_EQ(packed.exit_code, 0) << packed.err;
+  EXPECT_FALSE(pair_.has("results"));
+  auto found = unpacked("out.tar");
+  const ProgramResult plain = run_there({"batch", path, "-q"});
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  auto wanted = products(file("results"));
+  ASSERT_GT(wanted.size(), 30u);
+  EXPECT_EQ(found.size(), wanted.size());
+  // The report of an apply says how long that took.
+  wanted.erase("of_apply.json");
+  for (const auto& [name, bytes] : wanted) EXPECT_TRUE(found["results/" + name] == bytes) << name;
+  EXPECT_GT(wanted["refined.obj"].size(), wanted["reported.obj"].size());
+}
+
+TEST_F(PackedBatchCommand, ReachesTheSameStateWhateverIsKilled) {
+  const std::string path = manifest(season(pair_, "season"));
+  ASSERT_EQ(run_there({"batch", path, "-q", "--pack", "undisturbed.tar"}).exit_code, 0);
+  const auto wanted = unpacked("undisturbed.tar");
+  ASSERT_EQ(wanted.size(), 16u);
+  fs::remove_all(file("season"));
+  fs::create_directory(file("temporary"));
+
+  constexpr int kills = 12;
+  std::mt19937 random(13);
+  for (int kill = 0; kill < kills; ++kill) {
+    RunningProgram program(there({"env", "TMPDIR=" + file("temporary"), BESPOKE_COMMAND, "batch", path, "-q",
+                                  "--pack", "killed.tar", "--threads", kill % 2 == 0 ? "1" : "3"}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 400));
+    program.send(SIGKILL);
+    program.wait();
+    EXPECT_TRUE(fs::is_empty(file("temporary"))) << kill;
+    for (const auto& [name, bytes] :
+         fs::exists(file("season")) ? products(file("season")) : std::map<std::string, std::string>())
+      EXPECT_THAT(name, EndsWith(".vdb")) << kill;
+  }
+  const ProgramResult last = run_there({"batch", path, "-q", "--pack", "killed.tar"});
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_TRUE(unpacked("killed.tar") == wanted);
+}
+
+TEST_F(PackedBatchCommand, RefusesWhatIsNoPlaceForAnArchive) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  json good = apply("map.vdb", "out.obj"), outside = good;
+  outside["output"] = "../outside.obj";
+  const std::string path = manifest({good, outside});
+  EXPECT_THAT(run_there({"batch", path, "--pack", "out.zip"}),
+              AllOf(Field(&ProgramResult::exit_code, 1), Field(&ProgramResult::err, HasSubstr(".tar"))));
+  EXPECT_EQ(run_there({"batch", path, "--pack", "out.tar", "--html", "pages"}).exit_code, 1);
+  for (const std::vector<std::string>& extra : {std::vector<std::string>{}, {"--dry-run"}}) {
+    std::vector<std::string> arguments{"batch", path, "--pack", "out.tar"};
+    arguments.insert(arguments.end(), extra.begin(), extra.end());
+    const ProgramResult result = run_there(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("jobs.jsonl:2: output ../outside.obj lies outside"),
+                                  HasSubstr("1 fault; nothing was run")));
+  }
+  EXPECT_FALSE(pair_.has("out.tar"));
+  manifest({good});
+  write_text(file("out.tar"), "a note");
+  const ProgramResult other = run_there({"batch", path, "--pack", "out.tar"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("out.tar: is not an archive that `bespoke batch --pack` has made"));
+  EXPECT_EQ(read("out.tar"), "a note");
+  EXPECT_THAT(
+      run_there({"batch", path, "--pack", "jobs.jsonl/out.tar"}),
+      AllOf(Field(&ProgramResult::exit_code, 4), Field(&ProgramResult::err, HasSubstr("jobs.jsonl"))));
+}
+
+TEST_F(PackedBatchCommand, IsWholeAfterADiskThatWasFull) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  std::vector<json> jobs;
+  for (int i = 0; i < 8; ++i) {
+    jobs.push_back(apply("map.vdb", "out_" + std::to_string(i) + ".obj"));
+    jobs.back()["t"] = 0.1 * i;
+  }
+  const std::string path = manifest(jobs);
+  ASSERT_EQ(run_there({"batch", path, "-q", "--pack", "whole.tar"}).exit_code, 0);
+  const auto wanted = unpacked("whole.tar");
+  // As files may be no larger, the archive finds no space: for some of the products, or for the last block.
+  // Units of 512 bytes.
+  const auto some = 4 * fs::file_size(file("product.obj")) / 512;
+  const auto all_but_the_end = fs::file_size(file("whole.tar")) / 512 - 1;
+  for (const auto blocks : {some, all_but_the_end}) {
+    fs::remove(file("out.tar"));
+    const std::string full = "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; ";
+    const ProgramResult result = run_there({"batch", path, "-q", "--pack", "out.tar"}, full);
+    // A job that fails gives 3, the end of the archive that fails as well gives 4.
+    EXPECT_THAT(result.exit_code, testing::AnyOf(3, 4)) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("out.tar: cannot be written: File too large"));
+    const auto kept = unpacked("out.tar");
+    EXPECT_GT(kept.size(), 0u);
+    EXPECT_EQ(kept.size() == wanted.size(), blocks == all_but_the_end);
+    const ProgramResult again = run_there({"batch", path, "--json", "--pack", "out.tar"});
+    EXPECT_THAT(again.out, HasSubstr("\"up-to-date\":" + std::to_string(kept.size())));
+    EXPECT_TRUE(unpacked("out.tar") == wanted);
+  }
 }
 
 }  // namespace

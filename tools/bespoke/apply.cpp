@@ -6,6 +6,7 @@
 
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
+#include "bespoke/atomic_file.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
@@ -184,7 +185,7 @@ void print_summary(const fs::path& output, const ProductSummary& summary) {
 void run(const ApplyArguments& arguments, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const Progress& progress = context.progress;
-  if (!arguments.out_dir.empty()) fs::create_directories(arguments.out_dir);
+  if (!arguments.out_dir.empty() && !writes_are_held()) fs::create_directories(arguments.out_dir);
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
   const fs::path map_file =

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "batch_run.h"
 #include "bespoke/batch/forecast.h"
 #include "bespoke/batch/job_records.h"
+#include "bespoke/batch/packed_jobs.h"
 #include "bespoke/error.h"
 #include "commands.h"
 #include "memory_option.h"
@@ -26,6 +28,7 @@ struct BatchArguments {
   std::string manifest;
   std::string log;
   std::string html;
+  std::string pack;
   Shard shard;
   std::optional<int> jobs;
   std::optional<int> threads;
@@ -78,8 +81,12 @@ std::vector<ManifestFault> too_large_jobs(const JobGraph& graph, const std::vect
 }
 
 /// Why each job would run, empty for those that would not: for a reason of its own or of one that it needs.
-std::vector<std::string> reasons_to_run(const JobGraph& graph) {
+std::vector<std::string> reasons_to_run(const JobGraph& graph, PackedJobs* pack) {
   JobRecords records;
+  const auto own_reason = [&](std::size_t job) {
+    const BatchJob& checked = graph.jobs[job];
+    return pack && is_packed(graph, job) ? pack->reason_to_run(checked) : records.reason_to_run(checked);
+  };
   std::vector<std::optional<std::string>> known(graph.jobs.size());
   const std::function<const std::string&(std::size_t)> reason_of =
       [&](std::size_t job) -> const std::string& {
@@ -88,15 +95,15 @@ std::vector<std::string> reasons_to_run(const JobGraph& graph) {
     for (const std::size_t need : graph.needs[job])
       if (reason.empty() && !reason_of(need).empty())
         reason = "line " + std::to_string(graph.jobs[need].line) + " runs";
-    return known[job].emplace(reason.empty() ? records.reason_to_run(graph.jobs[job]) : reason);
+    return known[job].emplace(reason.empty() ? own_reason(job) : reason);
   };
   std::vector<std::string> reasons;
   for (std::size_t job = 0; job < graph.jobs.size(); ++job) reasons.push_back(reason_of(job));
   return reasons;
 }
 
-void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts) {
-  const std::vector<std::string> reasons = reasons_to_run(graph);
+void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts, PackedJobs* pack) {
+  const std::vector<std::string> reasons = reasons_to_run(graph, pack);
   std::size_t count = 0;
   double seconds = 0;
   for (std::size_t i = 0; i < graph.jobs.size(); ++i) {
@@ -112,6 +119,18 @@ void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts
   std::printf("%zu of %zu jobs would run, some %.3g s on one thread\n", count, graph.jobs.size(), seconds);
 }
 
+/// Nothing without --pack.
+std::unique_ptr<PackedJobs> open_pack(const BatchArguments& arguments) {
+  if (arguments.pack.empty()) return nullptr;
+  auto pack = std::make_unique<PackedJobs>(
+      arguments.pack, arguments.dry_run ? PackedJobs::Access::read : PackedJobs::Access::write);
+  if (pack->torn_bytes() > 0)
+    std::fprintf(stderr, "bespoke: warning: %s was not finished: %llu bytes behind its last whole job %s\n",
+                 arguments.pack.c_str(), static_cast<unsigned long long>(pack->torn_bytes()),
+                 arguments.dry_run ? "do not count" : "are cut off");
+  return pack;
+}
+
 void run(const BatchArguments& arguments) {
   OpenedMaps maps;
   Manifest manifest = read_manifest(arguments.manifest);
@@ -121,16 +140,19 @@ void run(const BatchArguments& arguments) {
   manifest.faults.insert(manifest.faults.end(), graph.faults.begin(), graph.faults.end());
   require_no_faults(arguments.manifest, std::move(manifest.faults));
   if (graph.jobs.empty()) throw InvalidInput(arguments.manifest + ": holds no job");
-  const BatchOptions options = options_of(arguments);
+  BatchOptions options = options_of(arguments);
   std::vector<JobForecast> forecasts = forecast_jobs(graph);
   require_no_faults(arguments.manifest, too_large_jobs(graph, forecasts, options.max_memory));
+  if (!arguments.pack.empty()) require_no_faults(arguments.manifest, packing_faults(graph, arguments.pack));
   if (arguments.shard.count > 1) {
     const auto mine = jobs_of_shard(graph, forecasts, arguments.shard.index - 1, arguments.shard.count);
     graph = subgraph(std::move(graph), mine);
     forecasts = forecast_jobs(graph);
   }
+  const std::unique_ptr<PackedJobs> pack = open_pack(arguments);
+  options.pack = pack.get();
   if (arguments.dry_run)
-    print_plan(graph, forecasts);
+    print_plan(graph, forecasts, pack.get());
   else
     run_jobs({arguments.manifest, style_of(arguments), arguments.log}, graph, forecasts, options, maps,
              pages ? &*pages : nullptr);
@@ -161,10 +183,21 @@ void add_outputs(CLI::App& batch, BatchArguments& arguments) {
       .add_option("--log", arguments.log,
                   "Append one JSON line a job: state, seconds, memory, error, figures")
       ->type_name("FILE.jsonl");
+  CLI::Option* html =
+      batch
+          .add_option("--html", arguments.html,
+                      "Write a page for every map that the batch fits, and an index of them with pictures")
+          ->type_name("DIR");
   batch
-      .add_option("--html", arguments.html,
-                  "Write a page for every map that the batch fits, and an index of them with pictures")
-      ->type_name("DIR");
+      .add_option("--pack", arguments.pack,
+                  "Append outputs that no other job reads to this archive, in place of files")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return std::filesystem::path(name).extension() == ".tar" ? "" : name + " must end in .tar";
+          },
+          ""))
+      ->type_name("OUT.tar")
+      ->excludes(html);
   CLI::Option* json = batch.add_flag("--json", arguments.json, "Print events as JSON lines");
   batch
       .add_option_function<std::string>(
@@ -194,9 +227,14 @@ void add_batch_command(CLI::App& app) {
       "A job may read what another writes. A job is skipped when its outputs are those of its inputs and\n"
       "options already; `.bespoke-jobs.jsonl` beside its first output knows. SIGTERM stops between two "
       "jobs.\n\n"
+      "With --pack, outputs are called in the archive by their paths from the working directory, where\n"
+      "`tar -xf` unpacks them with their records: a batch without --pack then finds them up to date. Jobs\n"
+      "follow each other as they finished; TMPDIR holds what runs. A job that is done again takes the place "
+      "of\n"
+      "its older outputs. One batch at a time writes an archive: with --shard, give each its own.\n\n"
       "Examples:\n"
       "  bespoke batch season.jsonl --log season.log.jsonl --keep-going\n"
-      "  bespoke batch season.jsonl --shard 3/16 --threads 8\n"
+      "  bespoke batch season.jsonl --shard 3/16 --threads 8 --pack season_3.tar\n"
       "  bespoke batch season.jsonl --dry-run\n\n"
       "  "
       "{\"command\":\"fit\",\"source\":\"a.obj\",\"target\":\"b.obj\",\"anchors\":\"ab.json\",\"output\":"

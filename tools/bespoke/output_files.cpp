@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <fstream>
+#include <optional>
 #include <set>
-#include <system_error>
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
@@ -16,12 +16,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Of a file that is there, by the system's numbers.
+std::optional<std::string> number_of(const fs::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+  return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
+}
+
 /// The same for every name of a file, whether it is there already or not.
 std::string identity(const fs::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) == 0)
-    return std::to_string(status.st_dev) + ":" + std::to_string(status.st_ino);
-  return fs::weakly_canonical(path).string();
+  if (const std::optional<std::string> number = number_of(path)) return *number;
+  const std::optional<std::string> directory = number_of(path.has_parent_path() ? path.parent_path() : ".");
+  return directory ? *directory + "/" + path.filename().string() : fs::weakly_canonical(path).string();
 }
 
 }  // namespace
@@ -30,12 +36,13 @@ void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector
   std::set<std::string> read, written;
   for (const fs::path& input : inputs) read.insert(identity(input));
   for (const fs::path& output : outputs) {
-    if (read.count(identity(output)) > 0)
+    const std::string own = identity(output);
+    if (read.count(own) > 0)
       throw CLI::ValidationError(output.string(), "is an input of this run and would be overwritten");
-    if (!written.insert(identity(output)).second)
+    if (!written.insert(own).second)
       throw CLI::ValidationError(output.string(), "would be written twice; give each output its own name");
     const fs::path directory = output.parent_path();
-    if (!directory.empty() && !fs::is_directory(directory))
+    if (!directory.empty() && !writes_are_held() && !fs::is_directory(directory))
       throw FileError(output.string() + ": the directory " + directory.string() + " does not exist");
   }
 }
@@ -46,8 +53,7 @@ void require_mesh_ending(const std::string& option, const fs::path& path) {
 }
 
 OutputFiles::~OutputFiles() {
-  std::error_code ignored;
-  for (const fs::path& path : written_) fs::remove(path, ignored);
+  for (const fs::path& path : written_) remove_written(path);
 }
 
 void OutputFiles::write(const fs::path& path, const std::function<void(const fs::path&)>& writer) {

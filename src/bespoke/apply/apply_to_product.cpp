@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <system_error>
 
 #include "bespoke/apply/motion_jacobian.h"
 #include "bespoke/apply/refine_product.h"
+#include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/stopwatch.h"
@@ -20,8 +20,7 @@ constexpr std::size_t frames_at_a_time = 16;
 class Written {
  public:
   ~Written() {
-    std::error_code ignored;
-    for (const std::filesystem::path& path : paths_) std::filesystem::remove(path, ignored);
+    for (const std::filesystem::path& path : paths_) remove_written(path);
   }
   void add(const std::vector<std::filesystem::path>& paths) {
     paths_.insert(paths_.end(), paths.begin(), paths.end());

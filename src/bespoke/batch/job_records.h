@@ -9,6 +9,7 @@
 
 #include "bespoke/batch/batch_job.h"
 #include "bespoke/batch/file_hashes.h"
+#include "bespoke/batch/job_record.h"
 #include "bespoke/batch/line_log.h"
 
 namespace bespoke {
@@ -18,12 +19,9 @@ namespace bespoke {
 /// disk, and a line that is lost or damaged costs a run of its job, no more.
 std::filesystem::path record_path(const BatchJob& job);
 
-/// A file of a job as its record has it.
-struct RecordedFile {
-  std::string role;
-  std::string file;  ///< as seen from the record, so that a directory may be moved or copied
-  FileHashes::HashedFile content;
-};
+/// Further files of such lines lie here, where an archive of `PackedJobs` was unpacked into the directory of
+/// outputs. A job is up to date when one of its lines says so, whichever.
+std::filesystem::path unpacked_records(const std::filesystem::path& directory);
 
 /// What finished jobs were made of. Thread-safe.
 class JobRecords {
@@ -42,10 +40,9 @@ class JobRecords {
   void write(const BatchJob& job, const std::vector<RecordedFile>& inputs, const JobFindings& findings);
 
  private:
-  using Lines = std::unordered_map<std::string, std::string>;  // by output
+  using Lines = std::unordered_map<std::string, std::vector<std::string>>;  // by output
 
-  std::string line_of(const BatchJob& job);
-  RecordedFile recorded(const JobFile& file, const std::filesystem::path& directory);
+  std::vector<std::string> lines_of(const BatchJob& job);
 
   FileHashes hashes_;
   std::mutex mutex_;                                                // of all below

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bespoke/atomic_file.h"
 #include "bespoke/batch/job_records.h"
 #include "bespoke/error.h"
 #include "bespoke/report/report.h"
@@ -88,6 +89,7 @@ class Scheduler {
     for (int i = 1; i < options_.jobs; ++i) others.emplace_back([this] { work(); });
     work();
     for (std::thread& other : others) other.join();
+    directories_.flush();
     return std::move(results_);
   }
 
@@ -124,7 +126,9 @@ class Scheduler {
     lock.unlock();
     JobResult result;
     try {
-      result.reason = records_.reason_to_run(graph_.jobs[job]);
+      const BatchJob& checked = graph_.jobs[job];
+      result.reason =
+          goes_into_archive(job) ? options_.pack->reason_to_run(checked) : records_.reason_to_run(checked);
       if (result.reason.empty()) result.state = JobState::up_to_date;
     } catch (const std::exception& error) {
       fail(result, error);
@@ -181,7 +185,7 @@ class Scheduler {
     ++busy_;
     if (events_.started) events_.started(job);
     lock.unlock();
-    carry_out(graph_.jobs[job], result);
+    carry_out(job, result);
     lock.lock();
     --busy_;
     --running_;
@@ -191,20 +195,34 @@ class Scheduler {
     end(job, std::move(result));
   }
 
-  void carry_out(const BatchJob& job, JobResult& result) {
+  bool goes_into_archive(std::size_t job) const { return options_.pack && is_packed(graph_, job); }
+
+  void carry_out(std::size_t job, JobResult& result) {
     const Stopwatch watch;
     try {
-      for (const JobFile& output : job.outputs)
-        if (output.path.has_parent_path()) fs::create_directories(output.path.parent_path());
-      const std::vector<RecordedFile> inputs = records_.inputs_of(job);
-      run_on_threads(result.threads, [&] { result.findings = job.run({}); });
-      records_.write(job, inputs, result.findings);
+      goes_into_archive(job) ? run_into_archive(graph_.jobs[job], result)
+                             : run_in_place(graph_.jobs[job], result);
       result.state = JobState::done;
     } catch (const std::exception& error) {
       fail(result, error);
     }
     result.seconds = watch.seconds();
     result.memory = peak_memory();
+  }
+
+  void run_in_place(const BatchJob& job, JobResult& result) {
+    for (const JobFile& output : job.outputs)
+      if (output.path.has_parent_path()) fs::create_directories(output.path.parent_path());
+    const std::vector<RecordedFile> inputs = records_.inputs_of(job);
+    run_on_threads(result.threads, [&] { directories_.note([&] { result.findings = job.run({}); }); });
+    records_.write(job, inputs, result.findings);
+  }
+
+  void run_into_archive(const BatchJob& job, JobResult& result) {
+    const std::vector<RecordedFile> inputs = options_.pack->inputs_of(job);
+    HeldFiles outputs(fs::temp_directory_path());
+    run_on_threads(result.threads, [&] { outputs.hold([&] { result.findings = job.run({}); }); });
+    options_.pack->write(job, inputs, outputs);
   }
 
   static void fail(JobResult& result, const std::exception& error) {
@@ -244,6 +262,9 @@ class Scheduler {
   const BatchOptions& options_;
   const BatchEvents& events_;
   JobRecords records_;
+  // Flushed for each job, a directory costs as much as the job's own file. A name that a power failure takes
+  // away is missing, and its job runs again.
+  LateDirectories directories_;
 
   std::mutex mutex_;  // of all below
   std::condition_variable changed_;
@@ -266,7 +287,9 @@ class Scheduler {
 std::vector<JobResult> run_batch(const JobGraph& graph, const std::vector<JobForecast>& forecasts,
                                  const BatchOptions& options, const BatchEvents& events) {
   if (!graph.faults.empty()) throw InvalidInput("a batch with faults in its manifest cannot run");
-  return Scheduler(graph, forecasts, options, events).run();
+  std::vector<JobResult> results = Scheduler(graph, forecasts, options, events).run();
+  if (options.pack) options.pack->finish();
+  return results;
 }
 
 }  // namespace bespoke

@@ -8,6 +8,7 @@
 
 #include "bespoke/batch/forecast.h"
 #include "bespoke/batch/job_graph.h"
+#include "bespoke/batch/packed_jobs.h"
 
 namespace bespoke {
 
@@ -37,6 +38,8 @@ struct BatchOptions {
   std::size_t max_memory = 0;  ///< bytes that the forecasts of running jobs may add up to
   bool keep_going = false;     ///< after a job has failed, all others that do not need it
   std::function<bool()> stop;  ///< asked before a job starts: those that run end, no more start
+  /// Open for writing: takes the outputs that no job reads, and is finished at the end.
+  PackedJobs* pack = nullptr;
 };
 
 /// What is told while a batch runs; never two at a time. May be empty.
@@ -50,7 +53,8 @@ struct BatchEvents {
 /// it is up to date, and as soon as its forecast memory fits. Many jobs run side by side on one thread each;
 /// one that is more than its share of the work that is left takes more. Jobs that lead to the most work start
 /// first, those of one map together. What a job writes does not depend on any of this. Directories of outputs
-/// are made. Returns one result a job; a job that throws is a result.
+/// are made. Returns one result a job; a job that throws is a result. Throws FileError when the archive
+/// cannot be finished.
 std::vector<JobResult> run_batch(const JobGraph& graph, const std::vector<JobForecast>& forecasts,
                                  const BatchOptions& options, const BatchEvents& events = {});
 

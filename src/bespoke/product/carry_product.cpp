@@ -5,6 +5,7 @@
 #include <memory>
 #include <string_view>
 
+#include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/product_io.h"
@@ -83,7 +84,7 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   std::vector<PartPoints> places = parts;
   if (options.splits) {
     if (!format.split) throw InvalidInput(input.string() + ": edges of such a file cannot be split");
-    file = InputFile::of_written(outputs.front().parent_path(), input,
+    file = InputFile::of_written(directory_of_temporaries(outputs.front()), input,
                                  [&](OutputFile& split) { format.split(*file, *options.splits, split); });
     places = find_parts(format, *file, options.parts, options.progress);
   }
