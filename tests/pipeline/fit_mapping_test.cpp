@@ -5,6 +5,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <numeric>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -155,6 +158,42 @@ TEST(FitMapping, LeavesOutLooseAndMergesDuplicateVertices) {
   EXPECT_EQ(fit.summary.elastic.unreferenced_vertices, 1u);
   EXPECT_EQ(fit.summary.elastic.duplicate_vertices, 3u);
   EXPECT_TRUE((*fit.elastic)(pair.source.vertices).allFinite());
+}
+
+/// The mesh with half of its faces cut off along a seam; `of_vertex` says whose place a vertex has.
+TriangleMesh with_seam(const TriangleMesh& mesh, std::vector<int>& of_vertex) {
+  TriangleMesh cut = mesh;
+  of_vertex.resize(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(of_vertex.begin(), of_vertex.end(), 0);
+  const Eigen::Index half = mesh.faces.cols() / 2;
+  const std::set<int> others(mesh.faces.leftCols(half).reshaped().begin(),
+                             mesh.faces.leftCols(half).reshaped().end());
+  std::map<int, int> copies;
+  for (int& vertex : cut.faces.rightCols(half).reshaped()) {
+    if (others.count(vertex) == 0) continue;
+    const auto [copy, is_new] = copies.try_emplace(vertex, static_cast<int>(of_vertex.size()));
+    if (is_new) of_vertex.push_back(vertex);
+    vertex = copy->second;
+  }
+  cut.vertices = mesh.vertices(Eigen::all, of_vertex);
+  return cut;
+}
+
+TEST(FitMapping, DoesNotSeeSeams) {
+  Pair whole, cut;
+  whole.options.elastic = cut.options.elastic = ElasticMethod::diffeomorphic;
+  whole.options.fit_tolerance = cut.options.fit_tolerance = 1e-3;
+  std::vector<int> of_source, of_target;
+  cut.source = with_seam(whole.source, of_source);
+  cut.target = with_seam(whole.target, of_target);
+  const FittedMapping expected = whole.fit(), fit = cut.fit();
+  EXPECT_TRUE(fit.fitted_vertices == expected.fitted_vertices(Eigen::all, of_source));
+  const Points x = whole.source.vertices * 1.1;
+  EXPECT_LT(((*fit.elastic)(x) - (*expected.elastic)(x)).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_EQ(fit.summary.seams.source, of_source.size() - 642);
+  EXPECT_EQ(fit.summary.seams.target, of_target.size() - 2562);
+  EXPECT_EQ(stage_lines(fit.summary, cut.anchors).front().name, "seams");
+  EXPECT_FALSE(has_any(expected.summary.seams));
 }
 
 TEST(FitMapping, NamesWhatTheAnchorsLack) {

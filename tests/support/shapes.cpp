@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace bespoke::shapes {
@@ -85,6 +86,12 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {
   mesh.faces.resize(3, a.faces.cols() + b.faces.cols());
   mesh.faces << a.faces, (b.faces.array() + static_cast<int>(a.vertices.cols())).matrix();
   return mesh;
+}
+
+TriangleMesh soup(const TriangleMesh& mesh) {
+  TriangleMesh result{mesh.vertices(Eigen::all, mesh.faces.reshaped()), mesh.faces};
+  std::iota(result.faces.reshaped().begin(), result.faces.reshaped().end(), 0);
+  return result;
 }
 
 TriangleMesh moved(TriangleMesh mesh, const AffineMap& map) {

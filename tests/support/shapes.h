@@ -23,6 +23,9 @@ TriangleMesh subdivided(const TriangleMesh& mesh);
 /// Both meshes as one, b's vertices after a's.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
+/// Every corner of a face a vertex of its own: face k has the vertices 3k, 3k + 1, 3k + 2.
+TriangleMesh soup(const TriangleMesh& mesh);
+
 /// The mesh with all vertices mapped.
 TriangleMesh moved(TriangleMesh mesh, const AffineMap& map);
 

@@ -124,6 +124,11 @@ double diagonal(const Points& points) {
   return points.cols() == 0 ? 0 : bounding_box(points).diagonal().norm();
 }
 
+std::vector<double> distances(const Points& from, const Points& to) {
+  const Eigen::VectorXd lengths = (from - to).colwise().norm();
+  return {lengths.begin(), lengths.end()};
+}
+
 Points face_normals(const TriangleMesh& mesh) {
   Points normals(3, mesh.faces.cols());
   for_each_face(mesh, [&](Eigen::Index face) {

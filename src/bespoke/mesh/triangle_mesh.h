@@ -43,6 +43,9 @@ Box bounding_box(const Points& points);
 /// Length of the bounding box's diagonal, mesh units; 0 for no columns.
 double diagonal(const Points& points);
 
+/// Between points in the same columns.
+std::vector<double> distances(const Points& from, const Points& to);
+
 /// 3×m unit normals, one per face; zero for a face without area.
 Points face_normals(const TriangleMesh& mesh);
 

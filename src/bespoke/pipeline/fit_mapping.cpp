@@ -7,34 +7,17 @@
 #include <utility>
 
 #include "bespoke/anchors/anchor_curves.h"
+#include "bespoke/anchors/patch_borders.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/seams.h"
 #include "bespoke/pipeline/elastic_pairs.h"
-#include "bespoke/pipeline/fit_patches.h"
-#include "bespoke/rbf/global_rbf.h"
+#include "bespoke/pipeline/lay_source.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
-
-/// Weighted pairs of points as matrices: 3×k, 3×k and k.
-struct Pairs {
-  Points sources;
-  Points targets;
-  Eigen::VectorXd weights;
-  Eigen::VectorXd sigmas;
-};
-
-Pairs pairs_of(const Anchors& anchors) {
-  return {source_points(anchors), target_points(anchors), spline_weights(anchors), sigmas(anchors)};
-}
-
-std::vector<double> distances(const Points& from, const Points& to) {
-  const Eigen::VectorXd lengths = (from - to).colwise().norm();
-  return {lengths.begin(), lengths.end()};
-}
 
 void require_usable(const TriangleMesh& source, const Anchors& anchors, const FitOptions& options) {
   require_valid(source, "source");
@@ -73,19 +56,6 @@ void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& f
       throw InvalidInput("face " + std::to_string(face) +
                          " of the fitted mesh has other vertices than the source's; both must have the "
                          "same connectivity");
-}
-
-/// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame.
-Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, const Anchors& anchors,
-                     CoarseSummary& summary) {
-  const Stopwatch watch;
-  const GlobalRbf coarse(pairs.sources, pairs.targets, pairs.weights);
-  Points warped = coarse(source.vertices);
-  summary.residuals = summarize(distances(coarse(pairs.sources), pairs.targets));
-  summary.audit = audit_anchors(anchors);
-  summary.contradicting = contradicting_anchors(anchors);
-  summary.seconds = watch.seconds();
-  return warped;
 }
 
 /// What the elastic map is fitted to, with the anchors that the surface does not carry.
@@ -206,111 +176,43 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.seconds = watch.seconds();
 }
 
-/// What is laid onto what, and as which parts.
-struct LayInput {
-  const TriangleMesh& source;
-  const TriangleMesh& target;
-  const FitPatches& patches;
-  const Anchors& given;
-  const FitOptions& options;
-};
-
-/// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
-/// anchors as the fit took them.
-Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
-                       const Progress& progress) {
-  FitSummary& summary = result.summary;
-  const auto& [source, target, patches, given, options] = input;
-  RatedAnchors rated = rate_anchors(anchors, source, target);
-  summary.accuracy = std::move(rated.accuracy);
-  result.anchor_sigma = std::move(rated.sigmas);
-  result.anchor_sigma.resize(given.pairs.size());
-  Pairs pairs = pairs_of(rated.anchors);
-
-  // IV.A: Γ. From here on everything is in the source frame.
-  const Stopwatch rigid_watch;
-  progress.step("rigid", 0, 0);
-  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
-  const RigidTransform source_from_target = inverse(result.target_from_source);
-  pairs.targets = (source_from_target * pairs.targets).eval();
-  const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
-  summary.rigid = {false, rotation_angle(result.target_from_source),
-                   summarize(distances(pairs.sources, pairs.targets)), rigid_watch.seconds()};
-
-  // IV.B: Ẽ.
-  progress.step("coarse", 0, 0);
-  const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
-
-  // IV.C: H'_a.
-  SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
-                                pairs.sigmas, patches.source, patches.target},
-                               options.surface_fit, progress);
-  result.fitted_vertices = std::move(fit.vertices);
-  result.confidence = std::move(fit.confidence);
-  summary.surface = std::move(fit.summary);
-  summary.surface_method = options.surface_fit.method;
-  return rated.anchors;
-}
-
-/// Where points on or near the source are once it is laid on the target, target frame.
-Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, const Points& x) {
-  const ClosestPointTree tree(source);
-  const Points vertices = laid.target_from_source * laid.fitted_vertices;
-  Points places = Points::Zero(3, x.cols());
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    const SurfacePoint foot = *tree.closest(x.col(i));
-    for (int corner = 0; corner < 3; ++corner)
-      places.col(i) += foot.barycentric[corner] * vertices.col(source.faces(corner, foot.face));
-  }
-  return places;
-}
-
-/// The same with curves, in two fits: the first may move along them, and across within what matching by
-/// length leaves open; the second meets them where the first came to lie.
-Anchors lay_by_curves(FittedMapping& result, const LayInput& input, const Anchors& anchors,
-                      const Progress& progress) {
-  constexpr double spacing = 0.01, sliding = 0.02;  // of the source's diagonal
-  const double size = diagonal(input.source.vertices);
-  CurvePairs curves(anchors, spacing * size);
-  FittedMapping first;
-  lay_by_anchors(first, input, curves.pairs(sliding * size), progress);
-  curves.slide(laid_with_source(first, input.source, curves.sources()));
-  return lay_by_anchors(result, input, curves.pairs(0), progress);
-}
-
-/// Γ and H'_a by the two surfaces alone.
-void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                     const FitOptions& options, const Progress& progress) {
-  UnanchoredFit fit = fit_unanchored(source, target, options.surface_fit, progress);
-  FitSummary& summary = result.summary;
-  result.target_from_source = fit.target_from_source;
-  result.fitted_vertices = std::move(fit.surface.vertices);
-  result.confidence = std::move(fit.surface.confidence);
-  summary.rigid = {true, rotation_angle(fit.target_from_source),
-                   summarize(distances(source.vertices, fit.start)), 0};
-  summary.surface = std::move(fit.surface.summary);
-  summary.surface_method = options.surface_fit.method;
-  summary.unanchored = std::move(fit.summary);
-}
-
-/// Γ and H'_a. Returns the anchors as the fit took them.
-Anchors lay(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-            const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+void require_models(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
+                    const FitOptions& options) {
   require_usable(source, anchors, options);
   require_valid(target, "target");
   if (anchors.pairs.size() > 2)
     require_one_unit(source_points(anchors), target_points(anchors), "their anchors");
   else
     require_one_unit(source.vertices, target.vertices, "their bounding boxes");
-  const FitPatches patches = fit_patches(anchors, source, target);
-  result.summary.patches = patches.found;
-  const LayInput input{source, target, patches, anchors, options};
-  Anchors lines = anchors;
-  for (const PatchBorder& border : patches.borders) lines.curves.push_back(border.curve);
-  if (!lines.curves.empty()) return lay_by_curves(result, input, lines, progress);
-  if (!anchors.pairs.empty()) return lay_by_anchors(result, input, anchors, progress);
-  lay_by_surfaces(result, source, target, options, progress);
-  return {};
+}
+
+/// The models as the surface fitting takes them: along a seam a surface does not end.
+struct JoinedModels {
+  JoinedMesh source, target;
+};
+
+JoinedModels joined_models(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target) {
+  JoinedModels joined{joined_at_seams(source), joined_at_seams(target)};
+  result.summary.seams = {joined.source.joined(), joined.target.joined()};
+  return joined;
+}
+
+/// From the vertices of the joined source to those of the source.
+void part_at_seams(FittedMapping& result, const JoinedMesh& source) {
+  result.fitted_vertices = result.fitted_vertices(Eigen::all, source.of_vertex).eval();
+  if (!result.confidence.empty()) {
+    std::vector<double> confidence;
+    for (const int vertex : source.of_vertex)
+      confidence.push_back(result.confidence[static_cast<std::size_t>(vertex)]);
+    result.confidence = std::move(confidence);
+  }
+  const auto renumber = [&](int& vertex) { vertex = source.first[static_cast<std::size_t>(vertex)]; };
+  if (std::optional<SurfaceFitSummary>& surface = result.summary.surface)
+    for (std::vector<int>* vertices :
+         {&surface->cavity_vertices, &surface->excluded_vertices, &surface->stretched_vertices})
+      std::for_each(vertices->begin(), vertices->end(), renumber);
+  if (result.summary.contact)
+    for (ReleasedVertex& released : result.summary.contact->released) renumber(released.vertex);
 }
 
 /// Of places along the mapped curve from its counterpart, mesh units.
@@ -365,8 +267,12 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress) {
   FittedMapping result;
-  const Anchors rated = lay(result, source, target, anchors, options, progress);
-  hold_parts_apart(result, source, options, progress);
+  require_models(source, target, anchors, options);
+  const JoinedModels joined = joined_models(result, source, target);
+  const Anchors rated =
+      lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
+  hold_parts_apart(result, joined.source.mesh, options, progress);
+  part_at_seams(result, joined.source);
 
   // IV.D, IV.E: E.
   fit_elastic_map(result, source, rated, options, progress);
@@ -379,7 +285,10 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
                                  const Anchors& anchors, const FitOptions& options,
                                  const Progress& progress) {
   FittedMapping result;
-  lay(result, source, target, anchors, options, progress);
+  require_models(source, target, anchors, options);
+  const JoinedModels joined = joined_models(result, source, target);
+  lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
+  part_at_seams(result, joined.source);
   return result;
 }
 
@@ -399,16 +308,17 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   const Stopwatch rigid_watch;
   progress.step("rigid", 0, 0);
   const bool by_vertices = anchors.pairs.empty();
-  Pairs pairs = pairs_of(anchors);
+  Points sources = source_points(anchors), targets = target_points(anchors);
+  Eigen::VectorXd weights = spline_weights(anchors);
   if (by_vertices) {
     const std::vector<int> used = elastic_pairs(source, fitted.vertices).referenced;
-    pairs.sources = source.vertices(Eigen::all, used);
-    pairs.targets = fitted.vertices(Eigen::all, used);
-    pairs.weights = Eigen::VectorXd::Ones(pairs.sources.cols());
+    sources = source.vertices(Eigen::all, used);
+    targets = fitted.vertices(Eigen::all, used);
+    weights = Eigen::VectorXd::Ones(sources.cols());
   }
-  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
+  result.target_from_source = align_rigidly(sources, targets, weights);
   result.summary.rigid = {by_vertices, rotation_angle(result.target_from_source),
-                          summarize(distances(result.target_from_source * pairs.sources, pairs.targets)),
+                          summarize(distances(result.target_from_source * sources, targets)),
                           rigid_watch.seconds()};
 
   result.fitted_vertices = inverse(result.target_from_source) * fitted.vertices;

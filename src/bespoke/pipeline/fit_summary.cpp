@@ -7,6 +7,11 @@
 
 namespace bespoke {
 
+std::string to_string(const SeamSummary& summary) {
+  return "vertices joined that are one but for a seam: " + std::to_string(summary.source) +
+         " of the source, " + std::to_string(summary.target) + " of the target";
+}
+
 std::string to_string(const RigidSummary& summary) {
   char line[300];
   std::snprintf(line, sizeof line, "%zu %s, turned by %.4g degrees, residual p95 %.4g max %.4g",
@@ -97,6 +102,7 @@ std::string to_string(const std::vector<PatchSummary>& patches) {
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors) {
   std::vector<StageLine> lines;
   if (summary.cloud) lines.push_back({"cloud", to_string(*summary.cloud)});
+  if (has_any(summary.seams)) lines.push_back({"seams", to_string(summary.seams)});
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});

@@ -67,9 +67,16 @@ struct PatchSummary {
   std::optional<double> largest_distance;
 };
 
+/// Vertices that were joined along seams for the surface fitting (seams.h).
+struct SeamSummary {
+  std::size_t source = 0, target = 0;
+};
+inline bool has_any(const SeamSummary& summary) { return summary.source + summary.target > 0; }
+
 /// What every stage of a fit found.
 struct FitSummary {
-  std::optional<PointCloudSummary> cloud;       ///< the target's, if it was one
+  std::optional<PointCloudSummary> cloud;  ///< the target's, if it was one
+  SeamSummary seams;
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
@@ -85,6 +92,7 @@ struct FitSummary {
 };
 
 /// One line each. Anchors: those of the fit, for their names.
+std::string to_string(const SeamSummary& summary);
 std::string to_string(const RigidSummary& summary);
 std::string to_string(const CoarseSummary& summary, const Anchors& anchors);
 std::string to_string(const ElasticSummary& summary);
@@ -93,13 +101,13 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "cloud", "alignment", "accuracy", "rigid", "coarse", "surface-fit", "contact",
-                     ///< "elastic", "curves", "patches", "bake"
+  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "surface-fit",
+                     ///< "contact", "elastic", "curves", "patches", "bake"
   std::string line;
 };
 
-/// In their order; "cloud" for a target that was one, "alignment" without anchors only, "accuracy" only where
-/// it found something.
+/// In their order; "cloud" for a target that was one, "seams" for models that have some, "alignment" without
+/// anchors only, "accuracy" only where it found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

@@ -240,6 +240,10 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     stages.push_back({std::move(json), seconds});
   };
   if (summary.cloud) add("cloud", to_json(*summary.cloud), summary.cloud->seconds);
+  if (has_any(summary.seams))
+    add("seams",
+        {{"joined_source_vertices", summary.seams.source}, {"joined_target_vertices", summary.seams.target}},
+        0);
   if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);

@@ -1,0 +1,142 @@
+#include "bespoke/pipeline/lay_source.h"
+
+#include <utility>
+
+#include "bespoke/anchors/anchor_curves.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/pipeline/fit_patches.h"
+#include "bespoke/rbf/global_rbf.h"
+#include "bespoke/rigid/rigid_alignment.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+/// Weighted pairs of points as matrices: 3×k, 3×k and k.
+struct Pairs {
+  Points sources;
+  Points targets;
+  Eigen::VectorXd weights;
+  Eigen::VectorXd sigmas;
+};
+
+Pairs pairs_of(const Anchors& anchors) {
+  return {source_points(anchors), target_points(anchors), spline_weights(anchors), sigmas(anchors)};
+}
+
+/// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame.
+Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, const Anchors& anchors,
+                     CoarseSummary& summary) {
+  const Stopwatch watch;
+  const GlobalRbf coarse(pairs.sources, pairs.targets, pairs.weights);
+  Points warped = coarse(source.vertices);
+  summary.residuals = summarize(distances(coarse(pairs.sources), pairs.targets));
+  summary.audit = audit_anchors(anchors);
+  summary.contradicting = contradicting_anchors(anchors);
+  summary.seconds = watch.seconds();
+  return warped;
+}
+
+/// What is laid onto what, and as which parts.
+struct LayInput {
+  const TriangleMesh& source;
+  const TriangleMesh& target;
+  const FitPatches& patches;
+  const Anchors& given;
+  const FitOptions& options;
+};
+
+/// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
+/// anchors as the fit took them.
+Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
+                       const Progress& progress) {
+  FitSummary& summary = result.summary;
+  const auto& [source, target, patches, given, options] = input;
+  RatedAnchors rated = rate_anchors(anchors, source, target);
+  summary.accuracy = std::move(rated.accuracy);
+  result.anchor_sigma = std::move(rated.sigmas);
+  result.anchor_sigma.resize(given.pairs.size());
+  Pairs pairs = pairs_of(rated.anchors);
+
+  // IV.A: Γ. From here on everything is in the source frame.
+  const Stopwatch rigid_watch;
+  progress.step("rigid", 0, 0);
+  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
+  const RigidTransform source_from_target = inverse(result.target_from_source);
+  pairs.targets = (source_from_target * pairs.targets).eval();
+  const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
+  summary.rigid = {false, rotation_angle(result.target_from_source),
+                   summarize(distances(pairs.sources, pairs.targets)), rigid_watch.seconds()};
+
+  // IV.B: Ẽ.
+  progress.step("coarse", 0, 0);
+  const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
+
+  // IV.C: H'_a.
+  SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
+                                pairs.sigmas, patches.source, patches.target},
+                               options.surface_fit, progress);
+  result.fitted_vertices = std::move(fit.vertices);
+  result.confidence = std::move(fit.confidence);
+  summary.surface = std::move(fit.summary);
+  summary.surface_method = options.surface_fit.method;
+  return rated.anchors;
+}
+
+/// Where points on or near the source are once it is laid on the target, target frame.
+Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, const Points& x) {
+  const ClosestPointTree tree(source);
+  const Points vertices = laid.target_from_source * laid.fitted_vertices;
+  Points places = Points::Zero(3, x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    const SurfacePoint foot = *tree.closest(x.col(i));
+    for (int corner = 0; corner < 3; ++corner)
+      places.col(i) += foot.barycentric[corner] * vertices.col(source.faces(corner, foot.face));
+  }
+  return places;
+}
+
+/// The same with curves, in two fits: the first may move along them, and across within what matching by
+/// length leaves open; the second meets them where the first came to lie.
+Anchors lay_by_curves(FittedMapping& result, const LayInput& input, const Anchors& anchors,
+                      const Progress& progress) {
+  constexpr double spacing = 0.01, sliding = 0.02;  // of the source's diagonal
+  const double size = diagonal(input.source.vertices);
+  CurvePairs curves(anchors, spacing * size);
+  FittedMapping first;
+  lay_by_anchors(first, input, curves.pairs(sliding * size), progress);
+  curves.slide(laid_with_source(first, input.source, curves.sources()));
+  return lay_by_anchors(result, input, curves.pairs(0), progress);
+}
+
+/// Γ and H'_a by the two surfaces alone.
+void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                     const FitOptions& options, const Progress& progress) {
+  UnanchoredFit fit = fit_unanchored(source, target, options.surface_fit, progress);
+  FitSummary& summary = result.summary;
+  result.target_from_source = fit.target_from_source;
+  result.fitted_vertices = std::move(fit.surface.vertices);
+  result.confidence = std::move(fit.surface.confidence);
+  summary.rigid = {true, rotation_angle(fit.target_from_source),
+                   summarize(distances(source.vertices, fit.start)), 0};
+  summary.surface = std::move(fit.surface.summary);
+  summary.surface_method = options.surface_fit.method;
+  summary.unanchored = std::move(fit.summary);
+}
+
+}  // namespace
+
+Anchors lay_source(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                   const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  const FitPatches patches = fit_patches(anchors, source, target);
+  result.summary.patches = patches.found;
+  const LayInput input{source, target, patches, anchors, options};
+  Anchors lines = anchors;
+  for (const PatchBorder& border : patches.borders) lines.curves.push_back(border.curve);
+  if (!lines.curves.empty()) return lay_by_curves(result, input, lines, progress);
+  if (!anchors.pairs.empty()) return lay_by_anchors(result, input, anchors, progress);
+  lay_by_surfaces(result, source, target, options, progress);
+  return {};
+}
+
+}  // namespace bespoke
