@@ -17,11 +17,10 @@ export function parse_meshlab(text: string, file: string): NamedPoint[] {
   return points.filter((_, i) => elements[i].getAttribute("active") !== "0");
 }
 
-/** The sentence of a browser's report that says where and what. */
+/** The sentence of a browser's report that says where and what: Chromium's "error on line 2 at column 28: …", Firefox's "… Line Number 2, …". */
 function reason(fault: Element): string {
-  const lines = (fault.textContent ?? "").split("\n").map((line) => line.trim());
-  const place = lines.find((line) => /\bline\b/i.test(line)) ?? "";
-  return place.replace(/^.*?(?=(error on )?line)/i, "").slice(0, 200).replace(/[\s.]+$/, "");
+  const text = (fault.textContent ?? "").replace(/Below is a rendering of the page[^]*/, "");
+  return /line (number )?\d[^\n]*/i.exec(text)?.[0].trim().slice(0, 200) ?? "the browser does not say where";
 }
 
 const entities: Record<string, string> = { "<": "&lt;", '"': "&quot;", "&": "&amp;" };

@@ -4,7 +4,6 @@ import { anchor_formats, type AnchorFormat, format_of } from "../anchor_files/fo
 import { are_named_alike, paired } from "../anchor_files/paired_sides";
 import type { FileSide } from "../anchor_files/side";
 import { element } from "../controls/elements";
-import { shown } from "../maths/numbers";
 import type { Triple } from "../scene/scene";
 import { type Side, sides } from "./curves";
 import type { ModelsOfFiles } from "./file_models";
@@ -27,7 +26,6 @@ export interface ImportListener {
 
 const endings = [".json", ".csv", ".pp", ".fcsv", ".pts", ".txt"];
 const models_of: Record<Side, string> = { a: "Source", b: "Target" };
-const measured_points = 50; // of a file, to tell how far it lies from a model
 
 /** Opens anchors files; where each side has its own, shows which belongs to which model before it takes them. */
 export class ImportPanel {
@@ -37,8 +35,8 @@ export class ImportPanel {
   /** The source's, then the target's; a single one may be either's. */
   private waiting: OpenedFile[] = [];
 
-  constructor(private readonly models: ModelsOfFiles, private readonly listener: ImportListener) {
-    this.body = element("div", {}, element("p", {}, element("button", { type: "button", onclick: () => this.input.click() }, "Open files"), this.input), this.form);
+  constructor(private readonly models: ModelsOfFiles, message: HTMLElement, private readonly listener: ImportListener) {
+    this.body = element("div", {}, element("p", {}, element("button", { type: "button", onclick: () => this.input.click() }, "Open files"), this.input), message, this.form);
   }
 
   private async open(): Promise<void> {
@@ -66,8 +64,8 @@ export class ImportPanel {
       return this.close();
     }
     this.waiting = this.arranged(all);
-    this.show_form();
     this.listener.asked(all.length === 1 ? `${all[0].name} holds one side of the pairs.` : "Each file holds one side of the pairs. Is each with its model?");
+    this.show_form();
   }
 
   private whole(file: OpenedFile): Partial<Work> {
@@ -112,7 +110,7 @@ export class ImportPanel {
     const found = [files, [...files].reverse()].map((order) => {
       try {
         this.both(order);
-        return { order, off: order.reduce((sum, file, i) => sum + (this.distance(this.side(file, sides[i]), sides[i]) ?? 0), 0), error: null };
+        return { order, off: order.reduce((sum, file, i) => sum + (this.models.distance(sides[i], points_of(this.side(file, sides[i]))) ?? 0), 0), error: null };
       } catch (error) {
         return { order, off: Infinity, error };
       }
@@ -120,14 +118,6 @@ export class ImportPanel {
     const best = found.reduce((least, each) => (each.off < least.off ? each : least));
     if (best.error !== null) throw best.error;
     return best.order;
-  }
-
-  /** The median over the points of a file, mesh units; null without points. */
-  private distance(file: FileSide, side: Side): number | null {
-    const points = [...file.points.map((point) => point.x), ...file.lines.flatMap((line) => line.points)];
-    const step = Math.max(1, Math.ceil(points.length / measured_points));
-    const distances = points.filter((_, i) => i % step === 0).map((point: Triple) => this.models.distance(side, point)).sort((x, y) => x - y);
-    return distances.length === 0 ? null : distances[Math.floor((distances.length - 1) / 2)];
   }
 
   private show_form(): void {
@@ -138,10 +128,9 @@ export class ImportPanel {
       this.waiting.reverse();
       this.show_form();
     };
-    const heads = ["model", "file", "points", "off the model"].map((head) => element("th", { scope: "col" }, head));
     const system = this.models.system_row(() => this.show_form());
     this.form.replaceChildren(
-      element("table", {}, element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...(second === undefined ? [this.row(first, "")] : sides.map((side, i) => this.row(this.waiting[i], side))))),
+      element("table", {}, element("tbody", {}, ...(second === undefined ? [this.row(first, "")] : sides.map((side, i) => this.row(this.waiting[i], side))))),
       anchor_formats[first.format].of_patient ? system : "",
       element("p", { class: "soft" }, second === undefined ? "" : this.pairing()),
       element("p", { class: "actions" }, main, ...(second === undefined ? [] : [button("Swap the files", swap)]), button("Cancel", () => this.cancel())));
@@ -151,13 +140,17 @@ export class ImportPanel {
   }
 
   private row(file: OpenedFile, side: Side | ""): HTMLElement {
-    const cells = (count: string, off: string): HTMLElement => element("tr", {}, element("td", {}, side === "" ? "?" : models_of[side]), element("td", { class: "text" }, file.name), element("td", {}, count), element("td", {}, off));
+    return element("tr", {}, element("th", { scope: "row" }, side === "" ? "One side" : models_of[side]), element("td", { class: "text" }, file.name, element("div", { class: "soft" }, this.content(file, side))));
+  }
+
+  private content(file: OpenedFile, side: Side | ""): string {
     try {
       const read = side === "" ? this.either_side(file) : this.side(file, side);
-      const lines = read.lines.length === 0 ? "" : `, ${read.lines.length} ${read.lines.length === 1 ? "curve" : "curves"}`;
-      return cells(`${read.points.length}${lines}`, side === "" || anchor_formats[file.format].of_model ? "–" : shown(this.distance(read, side)));
+      const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
+      const median = side === "" || anchor_formats[file.format].of_model ? null : this.models.distance(side, points_of(read));
+      return [counted(read.points.length, "point"), ...(read.lines.length === 0 ? [] : [counted(read.lines.length, "curve")]), ...(side === "" || median === null ? [] : [this.models.place(side, median)])].join(", ");
     } catch (error) {
-      return cells(error instanceof Error ? error.message : String(error), "–");
+      return error instanceof Error ? error.message : String(error);
     }
   }
 
@@ -189,6 +182,10 @@ export class ImportPanel {
     this.form.replaceChildren();
     if (had_focus) this.body.querySelector("button")?.focus();
   }
+}
+
+function points_of(side: FileSide): Triple[] {
+  return [...side.points.map((point) => point.x), ...side.lines.flatMap((line) => line.points)];
 }
 
 async function opened(file: File): Promise<OpenedFile> {

@@ -68,9 +68,9 @@ class PickPage {
     const mirror = element("button", { type: "button", onclick: () => this.mirror_curve() }, "Mirror chosen");
     this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, [mirror]);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
-    const files = new ModelsOfFiles(bytes, { a: models[0], b: models[1] }, this.editor.tracers);
+    const files = new ModelsOfFiles(bytes, record.unit, { a: models[0], b: models[1] }, this.editor.tracers);
     this.export_panel = new ExportPanel(() => this.history.work, record.unit, files, (name, text) => this.save(name, text));
-    this.import_panel = new ImportPanel(files, {
+    this.import_panel = new ImportPanel(files, this.file_message, {
       read: (work, names) => this.take(work, names),
       refused: (reason) => this.say_of_files(`Nothing was imported: ${reason}.`, "warn"),
       asked: (question) => this.say_of_files(question, ""),
@@ -155,7 +155,6 @@ class PickPage {
       element("h2", {}, "Import"),
       element("p", { class: "soft" }, "JSON and CSV, and files of MeshLab, 3D Slicer, Landmark Editor and Wrap: two, where each model has its own."),
       this.import_panel.body,
-      this.file_message,
       element("p", { class: "soft" }, "Work is kept in this browser until it is deleted."));
     return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Curves", body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
   }
@@ -372,12 +371,13 @@ class PickPage {
     this.chosen = -1;
     this.editor.choose(-1);
     this.history.change((all) => Object.assign(all, work));
-    const counted = (list: unknown[] | undefined, one: string): string[] => (list === undefined ? [] : [`${list.length} ${one}${list.length === 1 ? "" : "s"}`]);
+    const counted = (list: unknown[] | undefined, one: string, more = `${one}s`): string[] => (list === undefined ? [] : [`${list.length} ${list.length === 1 ? one : more}`]);
     const patches = work.patches?.length ?? 0;
     const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
     const read = [...counted(work.pairs, "pair"), ...counted(work.curves, "curve")].join(" and ");
-    const kept = work.curves === undefined && this.history.curves.length > 0 ? " The curves stay as they were." : "";
-    this.say_of_files(`${read} from ${files}, in the place of what was there; Undo brings it back.${hidden}${kept}`, "soft");
+    const stays = (list: "curves" | "patches", one: string, more: string): string[] => (work[list] === undefined && (this.history.work[list]?.length ?? 0) > 0 ? counted(this.history.work[list], one, more) : []);
+    const kept = [...stays("curves", "curve", "curves"), ...stays("patches", "patch", "patches")].join(" and ");
+    this.say_of_files(`${read} from ${files}, in the place of what was there; Undo brings it back.${hidden}${kept === "" ? "" : ` As before: ${kept}.`}`, "soft");
   }
 
   private say_of_files(text: string, kind: "soft" | "warn" | ""): void {
