@@ -148,6 +148,19 @@ for (const [format, { files, system = "LPS" }] of Object.entries(formats))
     assert.deepEqual(named(await imported(files, system)), named(converted(files, system).pairs));
   });
 
+test("3D Slicer's coordinates are turned into those of the models, as the command turns them", async () => {
+  for (const { files } of [formats.markups, formats.fiducials])
+    for (const [written, wanted] of [["RAS", "LPS"], ["LPS", "RAS"]]) {
+      bespoke(directory, "anchors", "convert", "given.json", "-o", ...files, "--coordinates", written);
+      const read = await imported(files, wanted);
+      assert.deepEqual(read[2].a, [-given[2].a[0], -given[2].a[1], given[2].a[2]]);
+      assert.deepEqual(named(read), named(converted(files, wanted).pairs));
+    }
+  // Files without the line that says so are RAS.
+  for (const name of formats.fiducials.files) writeFileSync(file(name), "1,1,2,3\n");
+  assert.deepEqual((await imported(formats.fiducials.files, "LPS"))[0].a, [-1, -2, 3]);
+});
+
 test("curves go through 3D Slicer's markups, without their fixed points", async () => {
   const fixed = [{ ...curves[0], fixed: [[0, 0], [1, 1]] }, curves[1]];
   writeFileSync(file("fixed.json"), JSON.stringify({ pairs: given, curves: fixed }));
