@@ -177,5 +177,106 @@ TEST_F(AnchorFiles, RefuseMissingSidesModelsAndEndings) {
   EXPECT_THROW(read_anchor_files(paths({"a.pp", "b.pp"})), FileError);
 }
 
+// ---- curves
+
+/// One closed with fixed points, one open.
+std::vector<AnchorCurve> two_curves() {
+  const Points ring{{0, 1, 1, 0.1}, {0, 0, 1, 1}, {0, 0.5, 0, 0}};
+  return {{"waist", ring, 2 * ring.rightCols(3), true, {{0, 0}, {2, 1}}},
+          {"seam", ring.leftCols(2), 3 * ring, false}};
+}
+
+TEST_F(AnchorFiles, MarkupsKeepCurvesOfBothSystems) {
+  Anchors anchors = two_pairs(source_, target_);
+  anchors.curves = two_curves();
+  for (const PatientSystem system : {PatientSystem::lps, PatientSystem::ras}) {
+    const AnchorFileOptions options{nullptr, nullptr, system};
+    write_anchor_files(paths({"a.mrk.json", "b.mrk.json"}), anchors, options);
+    const Anchors found = read_anchor_files(paths({"a.mrk.json", "b.mrk.json"}), options);
+    EXPECT_EQ(found.pairs.size(), anchors.pairs.size());
+    ASSERT_EQ(found.curves.size(), anchors.curves.size());
+    for (std::size_t k = 0; k < found.curves.size(); ++k) {
+      EXPECT_EQ(found.curves[k].name, anchors.curves[k].name);
+      EXPECT_EQ(found.curves[k].closed, anchors.curves[k].closed);
+      EXPECT_EQ(found.curves[k].a, anchors.curves[k].a);
+      EXPECT_EQ(found.curves[k].b, anchors.curves[k].b);
+      EXPECT_TRUE(found.curves[k].fixed.empty());
+    }
+  }
+}
+
+/// Several lists, as 3D Slicer has them.
+std::string markups(const std::string& lists) { return R"({"markups": [)" + lists + "]}"; }
+
+std::string list_of(const std::string& type, const std::string& name, const std::string& controls) {
+  return R"({"type": ")" + type + R"(", "name": ")" + name + R"(", "controlPoints": [)" + controls + "]}";
+}
+
+const std::string two_places = R"({"position": [0,0,0]}, {"position": [1,0,0]})";
+const std::string three_places = R"({"position": [5,0,0]}, {"position": [6,0,0]}, {"position": [6,7,0]})";
+
+TEST_F(AnchorFiles, CurvesOfOneNameBelongTogetherInAnyOrder) {
+  const std::string a =
+      markups(list_of("Fiducial", "F", two_places) + "," + list_of("Curve", "seam", two_places) + "," +
+              list_of("ClosedCurve", "waist", three_places));
+  const std::string b =
+      markups(list_of("ClosedCurve", "waist", three_places) + "," + list_of("Curve", "seam", three_places) +
+              "," + list_of("Fiducial", "F", two_places));
+  const Anchors found = read_anchor_files(write("a.mrk.json", a, "b.mrk.json", b));
+  EXPECT_EQ(found.pairs.size(), 2u);
+  ASSERT_EQ(found.curves.size(), 2u);
+  EXPECT_EQ(found.curves[0].name, "seam");
+  EXPECT_EQ(found.curves[0].a.cols(), 2);
+  EXPECT_EQ(found.curves[0].b.cols(), 3);
+  EXPECT_TRUE(found.curves[1].closed);
+}
+
+TEST_F(AnchorFiles, MarkupsThatAreNoneNameTheirPlace) {
+  const auto message = [&](const std::string& a, const std::string& b) {
+    return error_message<FormatError>([&] { read_anchor_files(write("a.mrk.json", a, "b.mrk.json", b)); });
+  };
+  const std::string open = markups(list_of("Curve", "seam", two_places));
+  const std::string closed = markups(list_of("ClosedCurve", "seam", three_places));
+  EXPECT_THAT(message(open, closed), testing::AllOf(HasSubstr("curve 0 (\"seam\") is closed in"),
+                                                    HasSubstr("b.mrk.json and open in")));
+  EXPECT_THAT(message(open, markups("")), HasSubstr("a.mrk.json has 1 curves"));
+  EXPECT_THAT(message(open, markups(list_of("Curve", "seam", R"({"position": [0,0,0]})"))),
+              HasSubstr("b.mrk.json: markup 0: a curve has two control points"));
+  EXPECT_THAT(message(open, markups(list_of("Plane", "P", two_places))), HasSubstr("is of type \"Plane\""));
+  EXPECT_THAT(message(open, markups(list_of("Fiducial", "F", two_places + R"(, {"position": [1,"x",0]})"))),
+              HasSubstr("markup 0: control point 2: \"position\" is not three numbers"));
+  EXPECT_THAT(message(open, markups("7")), HasSubstr("b.mrk.json: markup 0 is no object"));
+  EXPECT_THAT(message(open, R"({"pairs": []})"), HasSubstr("b.mrk.json: has no list \"markups\""));
+  EXPECT_THAT(message(open, "{"), HasSubstr("b.mrk.json: not valid JSON"));
+}
+
+TEST_F(AnchorFiles, PlacesOfTrianglesAreATriangleAndTwoNumbers) {
+  const auto message = [&](const std::string& b) {
+    return error_message<FormatError>(
+        [&] { read_anchor_files(write("a.wrap.json", "[[0, 0.5, 0.25]]", "b.wrap.json", b), models_); });
+  };
+  EXPECT_EQ(message("[[319, 0, 1]]"), "accepted");
+  EXPECT_THAT(message("[[320, 0, 1]]"), HasSubstr("b.wrap.json: point 0: triangle 320 of 320"));
+  EXPECT_THAT(message("[[1.5, 0, 1]]"), HasSubstr("point 0 is not [triangle, u, v]"));
+  EXPECT_THAT(message("[[0, 0, 1], [0, 0]]"), HasSubstr("point 1 is not [triangle, u, v]"));
+  EXPECT_THAT(message("{}"), HasSubstr("b.wrap.json: is no list"));
+}
+
+TEST_F(AnchorFiles, SayWhatAFormatHasNoPlaceFor) {
+  Anchors anchors = two_pairs(source_, target_);
+  EXPECT_EQ(left_out(anchors, AnchorFormat::csv), "");
+  EXPECT_EQ(left_out(anchors, AnchorFormat::indices), "the names of 2 pairs");
+  anchors.unit = "cm";
+  anchors.pairs[0].sigma = 0.25;
+  anchors.curves = two_curves();
+  anchors.patches = {{"hair", {Points(3, 0), {3}}, {}, true}};
+  EXPECT_EQ(left_out(anchors, AnchorFormat::json), "");
+  EXPECT_EQ(left_out(anchors, AnchorFormat::csv), "the unit (cm), 2 curves, 1 patch");
+  EXPECT_EQ(left_out(anchors, AnchorFormat::meshlab),
+            "the unit (cm), the accuracies of 1 pair, 2 curves, 1 patch");
+  EXPECT_EQ(left_out(anchors, AnchorFormat::markups),
+            "the unit (cm), the accuracies of 1 pair, the fixed points of 1 curve, 1 patch");
+}
+
 }  // namespace
 }  // namespace bespoke

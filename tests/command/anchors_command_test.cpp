@@ -27,6 +27,27 @@ TEST(AnchorsCommand, ConvertsThereAndBack) {
   EXPECT_EQ(target_points(first), target_points(last));
 }
 
+TEST(AnchorsCommand, SaysWhatAFormatHasNoPlaceFor) {
+  const ExamplePair pair;
+  write_text(pair.file("all.json"),
+             R"({"units": "cm", "pairs": [{"name": "p", "a": [0,0,0], "b": [0,0,1], "sigma": 0.5}],
+                 "curves": [{"name": "waist", "a": [[0,0,0],[1,0,0]], "b": [[0,0,1],[2,0,0]]}],
+                 "patches": [{"a": {"faces": [0]}, "exclude": true}]})");
+  const auto said = [&](const std::vector<std::string>& outputs) {
+    std::vector<std::string> words{"anchors", "convert", pair.file("all.json"), "-o"};
+    for (const std::string& output : outputs) words.push_back(pair.file(output));
+    return bespoke(words).out;
+  };
+  EXPECT_EQ(said({"x.json"}), "1 pair and 1 curve and 1 patch\n");
+  EXPECT_EQ(
+      said({"a.mrk.json", "b.mrk.json"}),
+      "1 pair and 1 curve; left out, for want of a place in the format: the unit (cm), the accuracies of "
+      "1 pair, 1 patch\n");
+  EXPECT_EQ(said({"a.pp", "b.pp"}),
+            "1 pair; left out, for want of a place in the format: the unit (cm), the accuracies of 1 pair, 1 "
+            "curve, 1 patch\n");
+}
+
 TEST(AnchorsCommand, NamesWhatIsSuspicious) {
   const ExamplePair pair;
   const ProgramResult sound = bespoke({"anchors", "audit", pair.file("anchors.json"), "--source",

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -35,6 +36,22 @@ TEST(PackedArrays, RoundPointsByHalfAStepOfTheirBox) {
   const Vector3 step = (points.rowwise().maxCoeff() - points.rowwise().minCoeff()) / 65535;
   for (int axis = 0; axis < 3; ++axis)
     EXPECT_LE((found - points).row(axis).cwiseAbs().maxCoeff(), 0.5 * step[axis] * (1 + 1e-9));
+}
+
+TEST(PackedArrays, KeepEveryBitOfExactPoints) {
+  Points points = test::random_points(50, 7).array() * 1e3;
+  points.col(0) = Vector3(-0.0, 5e-324, 1e308);
+  PackedArrays arrays;
+  const Json reference = arrays.add_exact_points(points);
+  const UnpackedScene scene = unpacked(packed_scene({{"points", reference}}, arrays));
+  const std::vector<std::uint32_t> low = scene.numbers(scene.record["points"]["low"]);
+  const std::vector<std::uint32_t> high = scene.numbers(scene.record["points"]["high"]);
+  ASSERT_EQ(low.size(), 150u);
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    for (Eigen::Index i = 0; i < 50; ++i) {
+      const auto at = static_cast<std::size_t>(50 * axis + i);
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(points(axis, i)), std::uint64_t{high[at]} << 32 | low[at]);
+    }
 }
 
 TEST(PackedArrays, FlatBoxesAndNoPointsAreFine) {

@@ -67,6 +67,18 @@ std::string lines_and_parts(const Anchors& anchors) {
   return text;
 }
 
+/// What a file of this format holds of the anchors, and what it does not.
+std::string written(const Anchors& anchors, AnchorFormat format) {
+  Anchors kept = anchors;
+  if (!has_curves(format)) kept.curves.clear();
+  if (format != AnchorFormat::json) kept.patches.clear();
+  std::string text = counted(kept.pairs.size(), "pair", "pairs");
+  if (const std::string others = lines_and_parts(kept); !others.empty()) text += " and " + others;
+  if (const std::string lost = left_out(anchors, format); !lost.empty())
+    text += "; left out, for want of a place in the format: " + lost;
+  return text;
+}
+
 // ---- convert
 
 struct ConvertArguments {
@@ -83,18 +95,13 @@ void convert(const ConvertArguments& arguments) {
       file_options(models, arguments.coordinates == "RAS" ? PatientSystem::ras : PatientSystem::lps);
   const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), options);
   write_anchor_files(as_paths(arguments.outputs), anchors, options);
-  std::cout << anchors.pairs.size() << " pairs";
-  const std::string others = lines_and_parts(anchors);
-  const bool keeps_them = anchor_format_of(arguments.outputs[0]) == AnchorFormat::json;
-  if (!others.empty())
-    std::cout << (keeps_them ? " and " : "; left out, for want of a place in the format: ") << others;
-  std::cout << '\n';
+  std::cout << written(anchors, anchor_format_of(arguments.outputs[0])) << '\n';
 }
 
 void add_convert(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command =
-      app.add_subcommand("convert", "Turn pairs of points into the format of another program");
+      app.add_subcommand("convert", "Turn pairs of points, and curves, into the format of another program");
   command
       ->add_option("INPUT", arguments->inputs,
                    "Pairs; where a format has one file a side, the source's and the target's")
@@ -112,7 +119,8 @@ void add_convert(CLI::App& app) {
   command->footer(
       "Endings: .json and .csv (both sides in one file), .pp (MeshLab), .mrk.json and .fcsv (3D Slicer), "
       ".pts\n"
-      "(Landmark Editor), .wrap.json ([triangle, u, v] lists), .txt (two vertex numbers a line, from 0).\n\n"
+      "(Landmark Editor), .wrap.json ([triangle, u, v] lists), .txt (two vertex numbers a line, from 0).\n"
+      "Curves go into .json and .mrk.json, patches into .json; what a format has no place for is listed.\n\n"
       "Examples:\n"
       "  bespoke anchors convert woman.pp man.pp -o anchors.json\n"
       "  bespoke anchors convert anchors.json -o woman.mrk.json man.mrk.json");
@@ -220,7 +228,7 @@ void suggest(const SuggestArguments& arguments, const Progress& progress) {
   if (arguments.run.quiet) return;
   if (suggestions.size() < arguments.count)
     std::printf("everywhere else the fits are at most %.4g apart\n", tolerance);
-  std::printf("written: %zu pairs\n", anchors.pairs.size());
+  std::printf("written: %s\n", written(anchors, anchor_format_of(arguments.outputs[0])).c_str());
 }
 
 void add_suggest(CLI::App& app) {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 
+#include "bespoke/anchors/detail/paired_sides.h"
 #include "bespoke/anchors/detail/point_files.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
@@ -52,38 +52,6 @@ void require_models(AnchorFormat format, const AnchorFileOptions& options) {
   if (needs_them && (options.source == nullptr || options.target == nullptr))
     throw InvalidInput(std::string("the format ") + std::string(name_of(anchor_formats, format)) +
                        " names places of the models: give both");
-}
-
-// ---- pairs of two sides
-
-/// Whether the points of both sides are the same names in perhaps another order, each once.
-bool are_named_alike(const std::vector<NamedPoint>& a, const std::vector<NamedPoint>& b) {
-  std::set<std::string> first, second;
-  for (const NamedPoint& point : a) first.insert(point.name);
-  for (const NamedPoint& point : b) second.insert(point.name);
-  return first == second && first.size() == a.size() && first.size() == b.size() && !first.contains("");
-}
-
-Anchors paired(const std::vector<NamedPoint>& a, const std::vector<NamedPoint>& b,
-               const std::vector<std::filesystem::path>& paths) {
-  if (a.size() != b.size())
-    throw FormatError(paths[0].string() + " has " + std::to_string(a.size()) + " points, " +
-                      paths[1].string() + " has " + std::to_string(b.size()));
-  const bool by_name = are_named_alike(a, b);
-  Anchors anchors;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const NamedPoint& other =
-        by_name ? *std::find_if(b.begin(), b.end(),
-                                [&](const NamedPoint& point) { return point.name == a[i].name; })
-                : b[i];
-    // Where the names of the sides differ the first one's stand, but no name twice.
-    const auto is_taken = [&](const AnchorPair& pair) {
-      return !a[i].name.empty() && pair.name == a[i].name;
-    };
-    const bool is_free = std::none_of(anchors.pairs.begin(), anchors.pairs.end(), is_taken);
-    anchors.pairs.push_back({is_free ? a[i].name : "", a[i].x, other.x});
-  }
-  return anchors;
 }
 
 // ---- vertex numbers
@@ -174,11 +142,23 @@ std::string csv_text(const Anchors& anchors) {
   return text.str();
 }
 
-std::vector<NamedPoint> side_of(const Anchors& anchors, Vector3 AnchorPair::*end) {
-  std::vector<NamedPoint> points;
-  for (const AnchorPair& pair : anchors.pairs) points.push_back({pair.name, pair.*end});
-  return points;
+FileSide side_of(const Anchors& anchors, Vector3 AnchorPair::*end, Points AnchorCurve::*line) {
+  FileSide side;
+  for (const AnchorPair& pair : anchors.pairs) side.points.push_back({pair.name, pair.*end});
+  for (const AnchorCurve& curve : anchors.curves)
+    side.lines.push_back({curve.name, curve.*line, curve.closed});
+  return side;
 }
+
+// ---- what has no place
+
+template <typename Each, typename Has>
+std::string counted_with(const std::vector<Each>& list, const char* one, const char* more, Has has) {
+  const auto count = std::count_if(list.begin(), list.end(), has);
+  return count == 0 ? "" : std::to_string(count) + " " + (count == 1 ? one : more);
+}
+
+std::string of(const char* what, const std::string& owners) { return owners.empty() ? "" : what + owners; }
 
 }  // namespace
 
@@ -211,9 +191,40 @@ Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const
   require_models(format, options);
   if (format == AnchorFormat::json || format == AnchorFormat::csv) return read_anchors(paths[0]);
   if (format == AnchorFormat::indices) return parse_indices(text_of(paths[0]), paths[0].string(), options);
-  return paired(parse_points(text_of(paths[0]), format, paths[0].string(), options.source, options.models),
-                parse_points(text_of(paths[1]), format, paths[1].string(), options.target, options.models),
+  return paired(parse_side(text_of(paths[0]), format, paths[0].string(), options.source, options.models),
+                parse_side(text_of(paths[1]), format, paths[1].string(), options.target, options.models),
                 paths);
+}
+
+bool has_curves(AnchorFormat format) {
+  return format == AnchorFormat::json || format == AnchorFormat::markups;
+}
+
+std::string left_out(const Anchors& anchors, AnchorFormat format) {
+  if (format == AnchorFormat::json) return "";
+  const bool has_names = format != AnchorFormat::wrap && format != AnchorFormat::indices;
+  const auto pairs_with = [&](auto has) { return counted_with(anchors.pairs, "pair", "pairs", has); };
+  const auto curves_with = [&](auto has) { return counted_with(anchors.curves, "curve", "curves", has); };
+  const auto any = [](const auto&) { return true; };
+  std::vector<std::string> parts;
+  if (!anchors.unit.empty()) parts.push_back("the unit (" + anchors.unit + ")");
+  if (!has_names)
+    parts.push_back(
+        of("the names of ", pairs_with([](const AnchorPair& pair) { return !pair.name.empty(); })));
+  if (format != AnchorFormat::csv)
+    parts.push_back(of("the accuracies of ", pairs_with([](const AnchorPair& pair) {
+                         return pair.sigma || std::isfinite(pair.weight);
+                       })));
+  if (has_curves(format))
+    parts.push_back(of("the fixed points of ",
+                       curves_with([](const AnchorCurve& curve) { return !curve.fixed.empty(); })));
+  else
+    parts.push_back(curves_with(any));
+  parts.push_back(counted_with(anchors.patches, "patch", "patches", any));
+  std::string text;
+  for (const std::string& part : parts)
+    if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
+  return text;
 }
 
 std::string anchors_json(const Anchors& anchors) {
@@ -243,8 +254,10 @@ void write_anchor_files(const std::vector<std::filesystem::path>& paths, const A
   if (format == AnchorFormat::json) return write_text(paths[0], anchors_json(anchors));
   if (format == AnchorFormat::csv) return write_text(paths[0], csv_text(anchors));
   if (format == AnchorFormat::indices) return write_text(paths[0], indices_text(anchors, options));
-  write_text(paths[0], points_text(side_of(anchors, &AnchorPair::a), format, options.source, options.models));
-  write_text(paths[1], points_text(side_of(anchors, &AnchorPair::b), format, options.target, options.models));
+  const FileSide a = side_of(anchors, &AnchorPair::a, &AnchorCurve::a);
+  const FileSide b = side_of(anchors, &AnchorPair::b, &AnchorCurve::b);
+  write_text(paths[0], side_text(a, format, options.source, options.models));
+  write_text(paths[1], side_text(b, format, options.target, options.models));
 }
 
 }  // namespace bespoke

@@ -17,7 +17,7 @@ enum class AnchorFormat {
   json,       ///< this project's, both sides in one file
   csv,        ///< this project's, both sides in one file
   meshlab,    ///< MeshLab's PickedPoints (.pp), one file a side
-  markups,    ///< 3D Slicer's markups (.mrk.json), one file a side
+  markups,    ///< 3D Slicer's markups (.mrk.json), one file a side, of one or several lists
   fiducials,  ///< 3D Slicer's older fiducials (.fcsv), one file a side
   landmarks,  ///< Landmark Editor's points (.pts), one file a side
   wrap,  ///< [triangle, u, v] lists (.json of arrays), one file a side: (1 − u − v) p₀ + u p₁ + v p₂
@@ -50,17 +50,26 @@ struct AnchorFileOptions {
       PatientSystem::lps;  ///< what the models' coordinates are; 3D Slicer writes models so
 };
 
-/// Reads the pairs of one file, or of two with a side each: points of one name are a pair where all names are
-/// given and the same on both sides, else the first with the first and so on. Throws FileError, FormatError
-/// naming file and place, InvalidInput where a model or a file is missing.
+/// Whether the format has a place for curves. 3D Slicer's markups keep a line as the control points of a
+/// Curve or a ClosedCurve, without fixed points; 3D Slicer draws a spline through them, here straight lines
+/// join them.
+bool has_curves(AnchorFormat format);
+
+/// Reads what one file holds, or two with a side each: points of one name are a pair where all names are
+/// given and the same on both sides, else the first with the first and so on; curves likewise. Throws
+/// FileError, FormatError naming file and place, InvalidInput where a model or a file is missing.
 Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths,
                           const AnchorFileOptions& options = {});
 
 /// The text of a file of AnchorFormat::json.
 std::string anchors_json(const Anchors& anchors);
 
-/// Writes one file, or two with a side each, as read_anchor_files reads it; each atomically. What a format
-/// has no place for (names, accuracies, units) is left out. `wrap` and `indices` write the place of the mesh
+/// What of the anchors a format has no place for, as a list: "the unit (cm), the names of 9 pairs, 2 curves";
+/// empty for nothing.
+std::string left_out(const Anchors& anchors, AnchorFormat format);
+
+/// Writes one file, or two with a side each, as read_anchor_files reads it; each atomically. What the format
+/// has no place for is left out (left_out). `wrap` and `indices` write the place of the mesh
 /// that is nearest to a point. Throws as reading does.
 void write_anchor_files(const std::vector<std::filesystem::path>& paths, const Anchors& anchors,
                         const AnchorFileOptions& options = {});

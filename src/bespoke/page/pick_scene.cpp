@@ -22,6 +22,8 @@ std::string pick_scene(const PickInput& input, const PickOptions& options) {
                                   {},
                                   ""},
                                  arrays));
+    // What files of vertex and triangle numbers mean: a thinned mesh has others.
+    meshes.back()["exact"] = display.is_whole ? arrays.add_exact_points(model->mesh.vertices) : Json();
   }
   const Json record = {
       {"page", "pick"},

@@ -28,8 +28,9 @@ struct PickOptions {
 };
 
 /// The scene of the page `pick` (README.md, "The scene"). A picked point lies on the mesh as shown: within
-/// 1e-5 of its bounding-box diagonal of the model, where that was not thinned. Throws InvalidInput for models
-/// that are not valid.
+/// 1e-5 of its bounding-box diagonal of the model, where that was not thinned; then the vertices are also
+/// there as they are, for formats that name vertices and triangles. Throws InvalidInput for models that are
+/// not valid.
 std::string pick_scene(const PickInput& input, const PickOptions& options = {});
 
 }  // namespace bespoke

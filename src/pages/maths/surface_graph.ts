@@ -40,7 +40,7 @@ export class SurfaceGraph {
   /** x, y, z of every vertex. */
   readonly places: Float64Array;
 
-  constructor(vertices: Float32Array, faces: Uint32Array) {
+  constructor(vertices: Float32Array | Float64Array, faces: Uint32Array) {
     this.places = Float64Array.from(vertices);
     const number = welded(this.places);
     this.faces = faces.map((vertex) => number[vertex]);

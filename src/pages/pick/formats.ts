@@ -1,16 +1,11 @@
 import type { Triple } from "../scene/scene";
 import { in_order, is_complete_curve, line_of, polyline, type PickedCurve } from "./curves";
-import { is_complete, type PickedPair, type Work } from "./history";
+import { is_complete, type Work } from "./history";
 
 function triple(value: unknown, where: string): Triple {
   if (!Array.isArray(value) || value.length !== 3 || !value.every((x) => typeof x === "number" && Number.isFinite(x)))
     throw new Error(`${where} is not three numbers`);
   return value as Triple;
-}
-
-/** What an anchors file holds: JSON, or CSV by the first letter. */
-export function parse_anchors(text: string): Work {
-  return text.trimStart().startsWith("{") ? parse_json(JSON.parse(text)) : { pairs: parse_csv(text), curves: [], patches: [] };
 }
 
 function list(document: object, key: string): Record<string, unknown>[] {
@@ -62,19 +57,6 @@ function parse_fixed(value: unknown, counts: [number, number], where: string): [
   return value;
 }
 
-function parse_csv(text: string): PickedPair[] {
-  const rows = text.split(/\r?\n/).filter((row) => row.trim() !== "").map((row) => row.split(",").map((field) => field.trim()));
-  const accuracy = rows[0]?.[1] === "ax" ? rows[0].slice(7) : ["weight", "sigma"];
-  return rows.filter((row) => row[1] !== "ax").map((row, i) => {
-    const numbers = row.slice(1, 7).map(Number);
-    const optional = (column: string): number | null => {
-      const field = row[7 + accuracy.indexOf(column)];
-      return accuracy.includes(column) && field !== undefined && field !== "" ? Number(field) : null;
-    };
-    return { name: row[0].replace(/^"|"$/g, ""), a: triple(numbers.slice(0, 3), `row ${i + 1}`), b: triple(numbers.slice(3), `row ${i + 1}`), sigma: optional("sigma"), weight: optional("weight") };
-  });
-}
-
 function curve_json(curve: PickedCurve): object {
   const ordered = in_order(curve) ?? { ...curve, fixed: [] }; // the page has said so (curve_checks.ts)
   const a = polyline(ordered.a, ordered.closed), b = polyline(ordered.b, ordered.closed);
@@ -99,10 +81,4 @@ export function anchors_json({ pairs, curves, patches = [] }: Work, unit: string
   const lines = (entries: object[]): string => `[\n${entries.map((entry) => `  ${JSON.stringify(entry)}`).join(",\n")}\n]`;
   const complete = curves.filter(is_complete_curve).map(curve_json);
   return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${complete.length === 0 ? "" : `, "curves": ${lines(complete)}`}${patches.length === 0 ? "" : `, "patches": ${lines(patches as object[])}`}}\n`;
-}
-
-export function anchors_csv(pairs: PickedPair[]): string {
-  const quoted = (name: string): string => (/[",]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
-  const rows = pairs.filter(is_complete).map((pair) => [quoted(pair.name), ...pair.a, ...pair.b, pair.weight ?? "", pair.weight === null ? (pair.sigma ?? "") : ""].join(","));
-  return ["name,ax,ay,az,bx,by,bz,weight,sigma", ...rows].join("\n") + "\n";
 }

@@ -12,8 +12,11 @@ import { curve_name } from "./curve_checks";
 import { CurveEditor } from "./curve_editor";
 import { CurvePanel } from "./curve_panel";
 import { type Side, sides } from "./curves";
-import { anchors_csv, anchors_json, parse_anchors, parse_json } from "./formats";
-import { History, type PickedPair } from "./history";
+import { ExportPanel } from "./export_panel";
+import { ModelsOfFiles } from "./file_models";
+import { anchors_json, parse_json } from "./formats";
+import { History, type PickedPair, type Work } from "./history";
+import { ImportPanel } from "./import_panel";
 import { type DragMode, ModelSide, type SideListener, type SideMarker } from "./model_side";
 import { Tracer } from "./tracer";
 
@@ -38,6 +41,8 @@ class PickPage {
   private readonly file_message = element("p", { role: "status", "aria-label": "What was read" });
   private readonly editor: CurveEditor;
   private readonly curve_panel: CurvePanel;
+  private readonly export_panel: ExportPanel;
+  private readonly import_panel: ImportPanel;
   /** What a click on a model sets. */
   private mode: "pairs" | "curves" = "pairs";
   private has_planes = false;
@@ -63,6 +68,13 @@ class PickPage {
     const mirror = element("button", { type: "button", onclick: () => this.mirror_curve() }, "Mirror chosen");
     this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, [mirror]);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
+    const files = new ModelsOfFiles(bytes, record.unit, { a: models[0], b: models[1] }, this.editor.tracers);
+    this.export_panel = new ExportPanel(() => this.history.work, record.unit, files, (name, text) => this.save(name, text));
+    this.import_panel = new ImportPanel(files, this.file_message, {
+      read: (work, names) => this.take(work, names),
+      refused: (reason) => this.say_of_files(`Nothing was imported: ${reason}.`, "warn"),
+      asked: (question) => this.say_of_files(question, ""),
+    });
     this.checks = check_pairs(this.history.pairs);
     root.classList.add("pick");
     root.append(this.head(), stage, this.panel());
@@ -124,7 +136,6 @@ class PickPage {
 
   private panel(): HTMLElement {
     const button = (label: string, action: () => void, name = ""): HTMLElement => element("button", { type: "button", class: name, onclick: action }, label);
-    const file = element("input", { type: "file", accept: ".json,.csv", hidden: true, onchange: () => void this.import_file(file) });
     const heads = ["", "name", "σ", "left out", ""].map((head) => element("th", { scope: "col" }, head));
     const pairs = element("section", {},
       element("p", { class: "soft" }, "Click a point on the source, then its counterpart on the target. Drag points to move them."),
@@ -138,13 +149,13 @@ class PickPage {
       checkbox("Show where the next pair would help most", false, (on) => { this.has_hint = on; this.refresh(); }));
     const saving = element("section", {},
       element("h2", {}, "Save"),
-      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.work, this.record.unit)), "main"), " ",
-        button("Save pairs as CSV", () => this.save("anchors.csv", anchors_csv(this.history.pairs)))),
+      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.work, this.record.unit)), "main")),
+      this.export_panel.body,
       element("h2", {}, "Then fit"), this.command,
       element("h2", {}, "Import"),
-      element("p", {}, button("Open JSON or CSV", () => file.click()), file),
-      this.file_message,
-      element("p", { class: "soft" }, "bespoke anchors convert makes JSON of MeshLab, 3D Slicer, Wrap and Landmark Editor files. Work is kept in this browser until it is deleted."));
+      element("p", { class: "soft" }, "JSON and CSV, and files of MeshLab, 3D Slicer, Landmark Editor and Wrap: two, where each model has its own."),
+      this.import_panel.body,
+      element("p", { class: "soft" }, "Work is kept in this browser until it is deleted."));
     return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Curves", body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
   }
 
@@ -261,6 +272,7 @@ class PickPage {
     this.checks = check_pairs(pairs);
     this.editor.settle();
     this.curve_panel.show(this.checks.complete);
+    this.export_panel.show();
     this.draw();
     this.undo_button.disabled = !this.history.can_undo;
     this.redo_button.disabled = !this.history.can_redo;
@@ -354,24 +366,23 @@ class PickPage {
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
 
-  private async import_file(input: HTMLInputElement): Promise<void> {
-    const file = input.files?.[0];
-    if (file === undefined) return;
-    try {
-      const work = parse_anchors(await file.text());
-      this.chosen = -1;
-      this.editor.choose(-1);
-      this.history.change((all) => Object.assign(all, work));
-      const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
-      this.file_message.className = "soft";
-      const patches = work.patches?.length ?? 0;
-      const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
-      this.file_message.textContent = `${counted(work.pairs.length, "pair")} and ${counted(work.curves.length, "curve")} from ${file.name}, in the place of what was there; Undo brings it back.${hidden}`;
-    } catch (error) {
-      this.file_message.className = "warn";
-      this.file_message.textContent = `${file.name} was not taken: ${error instanceof Error ? error.message : String(error)}.`;
-    }
-    input.value = "";
+  /** Lists that a file has no place for stay as they were. */
+  private take(work: Partial<Work>, files: string): void {
+    this.chosen = -1;
+    this.editor.choose(-1);
+    this.history.change((all) => Object.assign(all, work));
+    const counted = (list: unknown[] | undefined, one: string, more = `${one}s`): string[] => (list === undefined ? [] : [`${list.length} ${list.length === 1 ? one : more}`]);
+    const patches = work.patches?.length ?? 0;
+    const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
+    const read = [...counted(work.pairs, "pair"), ...counted(work.curves, "curve")].join(" and ");
+    const stays = (list: "curves" | "patches", one: string, more: string): string[] => (work[list] === undefined && (this.history.work[list]?.length ?? 0) > 0 ? counted(this.history.work[list], one, more) : []);
+    const kept = [...stays("curves", "curve", "curves"), ...stays("patches", "patch", "patches")].join(" and ");
+    this.say_of_files(`${read} from ${files}, in the place of what was there; Undo brings it back.${hidden}${kept === "" ? "" : ` As before: ${kept}.`}`, "soft");
+  }
+
+  private say_of_files(text: string, kind: "soft" | "warn" | ""): void {
+    this.file_message.className = kind;
+    this.file_message.textContent = text;
   }
 
   private pixel(side: Side, point: Triple): number[] {

@@ -1,4 +1,4 @@
-import type { ArrayReference, PointsReference, SceneRecord, ValuesReference } from "./scene";
+import type { ArrayReference, ExactPointsReference, PointsReference, SceneRecord, ValuesReference } from "./scene";
 
 /** The record of a scene with the bytes that its references point into. */
 export interface Scene {
@@ -54,6 +54,19 @@ export function unpacked_points(bytes: Uint8Array, reference: PointsReference): 
   for (let axis = 0; axis < 3; ++axis) {
     const step = (reference.max[axis] - reference.min[axis]) / 65535;
     for (let i = 0; i < count; ++i) points[3 * i + axis] = reference.min[axis] + step * codes[axis * count + i];
+  }
+  return points;
+}
+
+/** x, y, z of one point after the other. */
+export function unpacked_exact_points(bytes: Uint8Array, reference: ExactPointsReference): Float64Array {
+  const low = unpacked(bytes, reference.low), high = unpacked(bytes, reference.high);
+  const points = new Float64Array(low.length), count = low.length / 3;
+  const words = new DataView(points.buffer);
+  for (let k = 0; k < low.length; ++k) {
+    const at = 8 * (3 * (k % count) + Math.floor(k / count));
+    words.setUint32(at, low[k], true);
+    words.setUint32(at + 4, high[k], true);
   }
   return points;
 }

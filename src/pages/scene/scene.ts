@@ -16,6 +16,12 @@ export interface PointsReference {
   max: Triple;
 }
 
+/** Points to the last bit: the lower and the upper 32 bits of every double; all x, then all y, then all z. */
+export interface ExactPointsReference {
+  low: ArrayReference;
+  high: ArrayReference;
+}
+
 /** Numbers in 65,534 steps from `min` to `max`; the code 65,535 stands for "not known". */
 export interface ValuesReference {
   array: ArrayReference;
@@ -45,6 +51,8 @@ export interface MeshRecord {
   /** One for every knot of the motion; a single one for what stands still. */
   places: PointsReference[];
   fields: FieldRecord[];
+  /** The vertices as they are, on the page for picking; null where the mesh was thinned. */
+  exact?: ExactPointsReference | null;
 }
 
 export interface MotionRecord {

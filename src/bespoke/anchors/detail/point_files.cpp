@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "bespoke/anchors/detail/meshlab_points.h"
+#include "bespoke/anchors/detail/patient_system.h"
 #include "bespoke/anchors/detail/point_text.h"
+#include "bespoke/anchors/detail/slicer_markups.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 
@@ -19,17 +21,6 @@ std::string triple(const Vector3& x, const char* separator) {
   return all_digits(x.x()) + separator + all_digits(x.y()) + separator + all_digits(x.z());
 }
 
-/// LPS and RAS differ by half a turn about z; twice is none.
-Vector3 turned(const Vector3& x, PatientSystem from, PatientSystem to) {
-  return from == to ? x : Vector3(-x.x(), -x.y(), x.z());
-}
-
-PatientSystem system_named(const std::string& name, const std::string& where) {
-  if (name == "LPS" || name == "1") return PatientSystem::lps;
-  if (name == "RAS" || name == "0") return PatientSystem::ras;
-  throw FormatError(where + ": the coordinate system is \"" + name + "\", not LPS or RAS");
-}
-
 std::vector<std::string> split(const std::string& row, char separator) {
   std::vector<std::string> fields(1);
   for (const char letter : row)
@@ -40,40 +31,7 @@ std::vector<std::string> split(const std::string& row, char separator) {
   return fields;
 }
 
-// ---- 3D Slicer
-
-std::vector<NamedPoint> parse_markups(const Json& document, const std::string& file, PatientSystem models) {
-  const Json& markup = document.at("markups").at(0);
-  const PatientSystem system = system_named(markup.value("coordinateSystem", "LPS"), file);
-  std::vector<NamedPoint> points;
-  for (const Json& control : markup.at("controlPoints")) {
-    if (control.value("positionStatus", "defined") != "defined") continue;
-    const Json& at = control.at("position");
-    points.push_back(
-        {control.value("label", ""),
-         turned({at.at(0).get<double>(), at.at(1).get<double>(), at.at(2).get<double>()}, system, models)});
-  }
-  return points;
-}
-
-std::string markups_text(const std::vector<NamedPoint>& points, PatientSystem models) {
-  Json controls = Json::array();
-  for (std::size_t i = 0; i < points.size(); ++i)
-    controls.push_back({{"id", std::to_string(i + 1)},
-                        {"label", points[i].name},
-                        {"position", {points[i].x.x(), points[i].x.y(), points[i].x.z()}},
-                        {"positionStatus", "defined"}});
-  const Json markup = {{"type", "Fiducial"},
-                       {"coordinateSystem", models == PatientSystem::lps ? "LPS" : "RAS"},
-                       {"coordinateUnits", "mm"},
-                       {"controlPoints", std::move(controls)}};
-  Json document;
-  document["@schema"] =
-      "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
-      "markups-schema-v1.0.3.json#";
-  document["markups"] = Json::array({markup});
-  return document.dump(1) + "\n";
-}
+// ---- 3D Slicer's older fiducials
 
 std::vector<NamedPoint> parse_fiducials(const std::string& text, const std::string& file,
                                         PatientSystem models) {
@@ -86,15 +44,15 @@ std::vector<NamedPoint> parse_fiducials(const std::string& text, const std::stri
   for (int line = 1; std::getline(rows, row); ++line) {
     const std::string where = file + ":" + std::to_string(line);
     if (!row.empty() && row.back() == '\r') row.pop_back();
-    if (row.starts_with(mark)) system = system_named(row.substr(mark.size()), where);
+    if (row.starts_with(mark)) system = patient_system_named(row.substr(mark.size()), where);
     if (row.empty() || row[0] == '#') continue;
     const std::vector<std::string> fields = split(row, ',');
     constexpr std::size_t label_column = 11;
     if (fields.size() < 4) throw FormatError(where + ": fewer than four columns");
     points.push_back({fields.size() > label_column ? fields[label_column] : "",
-                      turned({finite_number(fields[1], where), finite_number(fields[2], where),
-                              finite_number(fields[3], where)},
-                             system, models)});
+                      in_system({finite_number(fields[1], where), finite_number(fields[2], where),
+                                 finite_number(fields[3], where)},
+                                system, models)});
   }
   return points;
 }
@@ -169,13 +127,27 @@ std::string landmarks_text(const std::vector<NamedPoint>& points) {
 // ---- Wrap
 
 Vector3 point_of(const TriangleMesh& mesh, const Json& entry, const std::string& where) {
-  const auto face = entry.at(0).get<Eigen::Index>();
-  const double u = entry.at(1).get<double>(), v = entry.at(2).get<double>();
+  const auto is_number = [](const Json& value) { return value.is_number(); };
+  if (!entry.is_array() || entry.size() < 3 || !std::all_of(entry.begin(), entry.end(), is_number) ||
+      !entry[0].is_number_integer())
+    throw FormatError(where + " is not [triangle, u, v]");
+  const auto face = entry[0].get<Eigen::Index>();
+  const double u = entry[1].get<double>(), v = entry[2].get<double>();
   if (face < 0 || face >= mesh.faces.cols())
     throw FormatError(where + ": triangle " + std::to_string(face) + " of " +
                       std::to_string(mesh.faces.cols()));
   const auto corner = [&](int k) { return mesh.vertices.col(mesh.faces(k, face)); };
   return (1 - u - v) * corner(0) + u * corner(1) + v * corner(2);
+}
+
+std::vector<NamedPoint> parse_wrap(const std::string& text, const std::string& file,
+                                   const TriangleMesh& mesh) {
+  const Json document = Json::parse(text);
+  if (!document.is_array()) throw FormatError(file + ": is no list of [triangle, u, v]");
+  std::vector<NamedPoint> points;
+  for (const Json& entry : document)
+    points.push_back({"", point_of(mesh, entry, file + ": point " + std::to_string(points.size()))});
+  return points;
 }
 
 std::string wrap_text(const std::vector<NamedPoint>& points, const TriangleMesh& mesh) {
@@ -188,38 +160,28 @@ std::string wrap_text(const std::vector<NamedPoint>& points, const TriangleMesh&
   return list.dump() + "\n";
 }
 
-std::vector<NamedPoint> parse_json_points(const std::string& text, AnchorFormat format,
-                                          const std::string& file, const TriangleMesh* mesh,
-                                          PatientSystem models) {
+}  // namespace
+
+FileSide parse_side(const std::string& text, AnchorFormat format, const std::string& file,
+                    const TriangleMesh* mesh, PatientSystem models) {
+  if (format == AnchorFormat::meshlab) return {parse_meshlab(text, file)};
+  if (format == AnchorFormat::fiducials) return {parse_fiducials(text, file, models)};
+  if (format == AnchorFormat::landmarks) return {parse_landmarks(text, file)};
   try {
-    const Json document = Json::parse(text);
-    if (format == AnchorFormat::markups) return parse_markups(document, file, models);
-    std::vector<NamedPoint> points;
-    for (const Json& entry : document)
-      points.push_back({"", point_of(*mesh, entry, file + ": point " + std::to_string(points.size()))});
-    return points;
+    if (format == AnchorFormat::markups) return parse_markups(text, file, models);
+    return {parse_wrap(text, file, *mesh)};
   } catch (const Json::exception& error) {
-    throw FormatError(file + ": " + error.what());
+    throw FormatError(file + ": not valid JSON: " + error.what());
   }
 }
 
-}  // namespace
-
-std::vector<NamedPoint> parse_points(const std::string& text, AnchorFormat format, const std::string& file,
-                                     const TriangleMesh* mesh, PatientSystem models) {
-  if (format == AnchorFormat::meshlab) return parse_meshlab(text, file);
-  if (format == AnchorFormat::fiducials) return parse_fiducials(text, file, models);
-  if (format == AnchorFormat::landmarks) return parse_landmarks(text, file);
-  return parse_json_points(text, format, file, mesh, models);
-}
-
-std::string points_text(const std::vector<NamedPoint>& points, AnchorFormat format, const TriangleMesh* mesh,
-                        PatientSystem models) {
-  if (format == AnchorFormat::meshlab) return meshlab_text(points);
-  if (format == AnchorFormat::fiducials) return fiducials_text(points, models);
-  if (format == AnchorFormat::landmarks) return landmarks_text(points);
-  if (format == AnchorFormat::markups) return markups_text(points, models);
-  return wrap_text(points, *mesh);
+std::string side_text(const FileSide& side, AnchorFormat format, const TriangleMesh* mesh,
+                      PatientSystem models) {
+  if (format == AnchorFormat::meshlab) return meshlab_text(side.points);
+  if (format == AnchorFormat::fiducials) return fiducials_text(side.points, models);
+  if (format == AnchorFormat::landmarks) return landmarks_text(side.points);
+  if (format == AnchorFormat::markups) return markups_text(side, models);
+  return wrap_text(side.points, *mesh);
 }
 
 }  // namespace bespoke

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -53,6 +54,17 @@ Json PackedArrays::add_points(const Points& points) {
       codes.push_back(code_of(points(axis, i), box.min()[axis], box.max()[axis], largest_code));
   return {
       {"array", add(codes, 16)}, {"min", to_json(Vector3(box.min()))}, {"max", to_json(Vector3(box.max()))}};
+}
+
+Json PackedArrays::add_exact_points(const Points& points) {
+  std::vector<std::uint32_t> low, high;
+  for (int axis = 0; axis < 3; ++axis)
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const auto bits = std::bit_cast<std::uint64_t>(points(axis, i));
+      low.push_back(static_cast<std::uint32_t>(bits));
+      high.push_back(static_cast<std::uint32_t>(bits >> 32));
+    }
+  return {{"low", add(low, 32)}, {"high", add(high, 32)}};
 }
 
 Json PackedArrays::add_values(const std::vector<double>& values) {

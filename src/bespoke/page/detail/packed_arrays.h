@@ -22,6 +22,10 @@ class PackedArrays {
   /// by 1 / 131,070 of it; all x, then all y, then all z.
   Json add_points(const Points& points);
 
+  /// 3×n, mesh units: every double as it is, its 32 lower and its 32 upper bits as arrays of their own; all
+  /// x, then all y, then all z. Coordinates that a float holds leave most of the lower ones 0.
+  Json add_exact_points(const Points& points);
+
   /// Rounded to one of 65,535 steps from the least to the largest; NaN stands for "not known".
   Json add_values(const std::vector<double>& values);
 
