@@ -32,8 +32,12 @@ class CellFinder {
   }
 
   FinestCell find(const Vector3& x) const {
-    for (int level = static_cast<int>(tables_.size()) - 1;; --level) {
-      const LatticeCoordinates node = pyramid_.lattice(level).cell_of(x);
+    // Voxels of a level are halves of those above it: the cells that hold x follow from that of the last.
+    const int last = static_cast<int>(tables_.size()) - 1;
+    const LatticeCoordinates finest = pyramid_.lattice(last).cell_of(x);
+    for (int level = last;; --level) {
+      const int above = last - level;
+      const LatticeCoordinates node{finest[0] >> above, finest[1] >> above, finest[2] >> above};
       if (level == 0 || tables_[static_cast<std::size_t>(level)].find(leaf_of(node)) != no_leaf)
         return {level, node};
     }
@@ -68,8 +72,10 @@ class CellsAlong {
 
  private:
   Corner corner(const Vector3& place) {
-    cells_.push_back(finder_.find(place));
-    return {place, cells_.back()};
+    const FinestCell cell = finder_.find(place);
+    // Neighbours along the surface mostly share one: the list is a third as long to sort.
+    if (cells_.empty() || cells_.back() != cell) cells_.push_back(cell);
+    return {place, cell};
   }
 
   void split_if_longer(const Triangle& triangle) {

@@ -155,15 +155,17 @@ ClosestPointTree& ClosestPointTree::operator=(ClosestPointTree&&) noexcept = def
 
 namespace {
 
+using Distances = Eigen::Array<float, BoxTree::width, 1>;
+
 /// Squared distances, at most the true ones, of a point between `low` and `high` from a node's boxes.
-void measure_boxes(const BoxTree::Node& node, const float (&low)[3], const float (&high)[3],
-                   float (&squared)[BoxTree::width]) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < BoxTree::width; ++i) {
-      const float outside =
-          std::max(std::max(node.low[axis][i] - high[axis], low[axis] - node.high[axis][i]), 0.0f);
-      squared[i] += outside * outside;
-    }
+Distances measure_boxes(const BoxTree::Node& node, const float (&low)[3], const float (&high)[3]) {
+  Distances squared = Distances::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto lows = Distances::MapAligned(node.low[axis]), highs = Distances::MapAligned(node.high[axis]);
+    const Distances outside = (lows - high[axis]).max(low[axis] - highs).max(0.0f);
+    squared += outside * outside;
+  }
+  return squared;
 }
 
 /// The best answer among the triangles asked so far.
@@ -178,11 +180,14 @@ class Nearest {
   float reach() const { return reach_; }
 
   void offer(const Triangle& triangle, const Vector3& normal) {
-    if (query_.normal && !(normal.dot(*query_.normal) > query_.min_cosine)) return;
+    double turned = 0;
+    if (query_.normal) {
+      if (!(normal.dot(*query_.normal) > query_.min_cosine)) return;
+      turned = query_.normal_length * query_.normal_length * (normal - *query_.normal).squaredNorm();
+      if (turned > best_.squared_distance) return;
+    }
     Hit hit = closest_on(triangle, x_);
-    if (query_.normal)
-      hit.squared_distance +=
-          query_.normal_length * query_.normal_length * (normal - *query_.normal).squaredNorm();
+    hit.squared_distance += turned;
     const bool better = hit.squared_distance < best_.squared_distance;
     const bool tie =
         hit.squared_distance == best_.squared_distance && (!triangle_ || triangle.face < triangle_->face);
@@ -234,8 +239,7 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
     const Entry entry = stack[static_cast<std::size_t>(--top)];
     if (entry.squared_distance > nearest.reach()) continue;
     const BoxTree::Node& node = tree_->boxes.nodes[static_cast<std::size_t>(entry.node)];
-    float squared[BoxTree::width] = {};
-    measure_boxes(node, low, high, squared);
+    const Distances squared = measure_boxes(node, low, high);
     // Leaves at once, since they shorten the reach; nodes onto the stack, the nearest on top.
     const int base = top;
     for (int i = 0; i < BoxTree::width; ++i) {

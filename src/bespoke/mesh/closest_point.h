@@ -36,9 +36,9 @@ struct ClosestPointQuery {
 /// answer too when no normal is asked for.
 ///
 /// Microseconds of one core per query, 13,380 queries on a body of 39,998 faces at up to 0.2 / 2 / 50 % of
-/// the diagonal from it: 2.0 / 3.3 / 8.1, with normals 2.1 / 3.6 / 9.8, built in 22 ms. Embree 3.13's point
-/// query with a callback in double precision, which leaves out weights and ties: 1.5 / 3.4 / 11.6, with
-/// normals 1.6 / 3.6 / 14.3, built in 22 ms. So there is no Embree here (closest_point_benchmark, with
+/// the diagonal from it: 1.0 / 1.9 / 6.9, with normals 1.1 / 2.1 / 7.4, built in 22 ms. Embree 3.13's point
+/// query with a callback in double precision, which leaves out weights and ties: 1.1 / 2.4 / 7.4, with
+/// normals 1.2 / 2.4 / 8.9, built in 14 ms. So there is no Embree here (closest_point_benchmark, with
 /// Debian's libembree-dev; the least CPU time of five runs on a busy two-core machine).
 class ClosestPointTree {
  public:
