@@ -23,9 +23,10 @@ export function is_complete(pair: PickedPair): pair is CompletePair {
 /** All that is picked. */
 export interface Work {
   pairs: PickedPair[];
+  /** Borders of patches are among them. */
   curves: PickedCurve[];
-  /** As the file has them: the page keeps patches and has nothing to edit them with. */
-  patches?: unknown[];
+  /** Those given by numbers of faces, as the file has them: kept, with nothing to edit them. */
+  patches: Record<string, unknown>[];
 }
 
 /** The work with everything that can be undone; every change is kept in the browser's storage. */
@@ -33,12 +34,10 @@ export class History {
   private past: Work[] = [];
   private future: Work[] = [];
 
-  constructor(private readonly key: string, public work: Work, private readonly changed: () => void) {
+  constructor(private readonly key: string, public work: Work, read: (kept: string) => Work, private readonly changed: () => void) {
     try {
       const kept = localStorage.getItem(key);
-      // Before there were curves a list of pairs was kept.
-      const parsed = kept === null ? work : (JSON.parse(kept) as Work | PickedPair[]);
-      this.work = Array.isArray(parsed) ? { pairs: parsed, curves: [] } : parsed;
+      if (kept !== null) this.work = read(kept);
     } catch {
       // A browser that keeps nothing for files: the page works, a reload begins anew.
     }

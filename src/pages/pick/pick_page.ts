@@ -10,15 +10,16 @@ import { Model } from "../view/models";
 import { check_pairs, next_place, type PairChecks } from "./checks";
 import { curve_name } from "./curve_checks";
 import { CurveEditor } from "./curve_editor";
-import { CurvePanel } from "./curve_panel";
-import { type Side, sides } from "./curves";
-import { anchors_csv, anchors_json, parse_anchors, parse_json } from "./formats";
-import { History, type PickedPair } from "./history";
+import { CurvePanel, kept_patches } from "./curve_panel";
+import { is_patch, type Side, sides } from "./curves";
+import { anchors_csv, anchors_json, parse_anchors, parse_json, parse_kept } from "./formats";
+import { History, type PickedPair, type Work } from "./history";
 import { type DragMode, ModelSide, type SideListener, type SideMarker } from "./model_side";
 import { Tracer } from "./tracer";
 
 const colours = ["#1d6fd1", "#c2410c", "#0f766e", "#7e22ce", "#a16207", "#be185d", "#4d7c0f", "#334155"];
 const mirror_names: [RegExp, string][] = [[/left/i, "right"], [/right/i, "left"], [/_l$/i, "_r"], [/_r$/i, "_l"], [/\bl\b/i, "r"], [/\br\b/i, "l"]];
+const curves_title = "Curves and patches";
 
 /** The page for picking anchors. */
 export function pick_page(root: HTMLElement, record: PickRecord, bytes: Uint8Array): void {
@@ -53,15 +54,15 @@ class PickPage {
   private checks: PairChecks;
 
   constructor(root: HTMLElement, private readonly record: PickRecord, bytes: Uint8Array) {
-    const given = record.anchors === null ? { pairs: [], curves: [] } : parse_json(record.anchors);
-    this.history = new History(`bespoke-pick-${record.key}`, given, () => this.refresh());
+    const given = record.anchors === null ? { pairs: [], curves: [], patches: [] } : parse_json(record.anchors);
+    this.history = new History(`bespoke-pick-${record.key}`, given, parse_kept, () => this.refresh());
     const models = record.meshes.map((mesh) => new Model(mesh, bytes));
     const tracers = models.map((model) => new Tracer(model.knots[0], model.faces));
     this.editor = new CurveEditor(this.history, { a: tracers[0], b: tracers[1] }, (text) => (this.curve_message.textContent = text));
     this.sides = { a: this.side("a", models[0]), b: this.side("b", models[1]) };
     const stages = { refresh: () => this.refresh(), draw: () => this.draw() };
     const mirror = element("button", { type: "button", onclick: () => this.mirror_curve() }, "Mirror chosen");
-    this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, [mirror]);
+    this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, mirror);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
     this.checks = check_pairs(this.history.pairs);
     root.classList.add("pick");
@@ -72,6 +73,7 @@ class PickPage {
       bespoke: {
         pairs: () => structuredClone(this.history.pairs),
         curves: () => structuredClone(this.history.curves),
+        inside: (side: Side) => this.editor.fills(side).map((fill) => fill.faces.length),
         pixel: (side: Side, point: Triple) => this.pixel(side, point),
         draw: () => [this.sides.a, this.sides.b].forEach((each) => each.stage.draw()),
       },
@@ -98,6 +100,10 @@ class PickPage {
       dragged: (number, point) => {
         if (lays_curves()) this.editor.dragged(name, number, point);
         else this.history.change_again(({ pairs }) => (pairs[number][name] = point));
+      },
+      drag_ended: () => {
+        this.editor.drag_ended();
+        this.refresh();
       },
       turned: () => this.follow(name),
       key: (event) => {
@@ -145,7 +151,7 @@ class PickPage {
       element("p", {}, button("Open JSON or CSV", () => file.click()), file),
       this.file_message,
       element("p", { class: "soft" }, "bespoke anchors convert makes JSON of MeshLab, 3D Slicer, Wrap and Landmark Editor files. Work is kept in this browser until it is deleted."));
-    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Curves", body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
+    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: curves_title, body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
   }
 
   // ---- pairs
@@ -182,7 +188,7 @@ class PickPage {
 
   private set_mode(title: string): void {
     if (title === "Pairs") this.mode = "pairs";
-    if (title === "Curves") this.mode = "curves";
+    if (title === curves_title) this.mode = "curves";
     if (this.sides === undefined) return;
     this.set_drag_mode();
     this.draw();
@@ -217,7 +223,7 @@ class PickPage {
     const planes = this.found_planes();
     const images = { a: (point: Triple) => mirrored(point, planes.a), b: (point: Triple) => mirrored(point, planes.b) };
     const done = this.editor.mirror(images, (name) => this.mirror_name(name, this.history.curves));
-    this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve that has its lines on both models.";
+    this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve or a patch that is complete.";
   }
 
   /** Found once; from then on they are shown until somebody hides them. */
@@ -279,7 +285,7 @@ class PickPage {
       const pairs = this.history.pairs.flatMap((pair, i): SideMarker[] =>
         pair[side] === null ? [] : [{ number: lays_curves ? null : i, point: pair[side], colour: colours[i % colours.length], size: lays_curves ? "small" : i === this.chosen ? "large" : "plain" }],
       );
-      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side));
+      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side), this.editor.fills(side));
       this.sides[side].show_task(task);
     }
   }
@@ -362,11 +368,8 @@ class PickPage {
       this.chosen = -1;
       this.editor.choose(-1);
       this.history.change((all) => Object.assign(all, work));
-      const counted = (count: number, one: string): string => `${count} ${one}${count === 1 ? "" : "s"}`;
       this.file_message.className = "soft";
-      const patches = work.patches?.length ?? 0;
-      const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
-      this.file_message.textContent = `${counted(work.pairs.length, "pair")} and ${counted(work.curves.length, "curve")} from ${file.name}, in the place of what was there; Undo brings it back.${hidden}`;
+      this.file_message.textContent = `${counts_of(work)} from ${file.name}, in the place of what was there; Undo brings it back. ${kept_patches(work.patches.length)}`;
     } catch (error) {
       this.file_message.className = "warn";
       this.file_message.textContent = `${file.name} was not taken: ${error instanceof Error ? error.message : String(error)}.`;
@@ -380,4 +383,11 @@ class PickPage {
     const at = stage.pixel_of(stage.panes[0], new Vector3(...point));
     return [box.left + at.x, box.top + at.y];
   }
+}
+
+function counts_of({ pairs, curves }: Work): string {
+  const counted = (count: number, one: string, more = `${one}s`): string => `${count} ${count === 1 ? one : more}`;
+  const borders = curves.filter(is_patch).length;
+  const all = [counted(pairs.length, "pair"), counted(curves.length - borders, "curve"), ...(borders === 0 ? [] : [counted(borders, "patch", "patches")])];
+  return `${all.slice(0, -1).join(", ")} and ${all[all.length - 1]}`;
 }

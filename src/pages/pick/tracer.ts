@@ -1,10 +1,13 @@
+import { enclosed_faces, type EnclosedFaces } from "../maths/enclosed_faces";
 import { geodesic } from "../maths/geodesic";
 import { SurfaceGraph } from "../maths/surface_graph";
 import type { Triple } from "../scene/scene";
+import { polyline, type PickedLine } from "./curves";
 
 /** Lines along one model. What they need to know of its faces is found out when the first is drawn. */
 export class Tracer {
   private known: SurfaceGraph | null = null;
+  private readonly enclosed_by = new WeakMap<PickedLine, EnclosedFaces>();
 
   constructor(private readonly places: Float32Array, private readonly faces: Uint32Array) {}
 
@@ -20,7 +23,14 @@ export class Tracer {
     return way === null ? null : [from, ...way.slice(1, -1), to];
   }
 
-  private get graph(): SurfaceGraph {
+  /** What a closed line encloses, found once for each. */
+  enclosed(line: PickedLine): EnclosedFaces {
+    const known = this.enclosed_by.get(line) ?? enclosed_faces(this.graph, polyline(line, true).points);
+    this.enclosed_by.set(line, known);
+    return known;
+  }
+
+  get graph(): SurfaceGraph {
     this.known ??= new SurfaceGraph(this.places, this.faces);
     return this.known;
   }
