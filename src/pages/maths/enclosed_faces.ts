@@ -1,6 +1,6 @@
 import { distance } from "./warp";
 import type { Triple } from "../scene/scene";
-import { between, minus, type SurfaceGraph, type SurfacePoint } from "./surface_graph";
+import { between, type SurfaceGraph, type SurfacePoint } from "./surface_graph";
 
 /** What a closed line on a surface encloses: of its two sides, on the connected piece that it runs on, the one with less area. */
 export interface EnclosedFaces {
@@ -87,49 +87,43 @@ const unknown = 2;
 
 /** The side of every vertex of the piece that the line runs on, 0 or 1: the ends of an edge that it crosses lie on different ones. */
 function sides_of_vertices(graph: SurfaceGraph, walk: SurfaceWalk): Uint8Array {
-  const sides = new Uint8Array(graph.places.length / 3).fill(unknown);
-  const is_seen = new Uint8Array(graph.faces.length / 3);
+  const { faces, edges_of, first_at, faces_at } = graph;
+  const sides = new Uint8Array(graph.places.length / 3).fill(unknown), is_seen = new Uint8Array(faces.length / 3);
   const open = [walk.faces[0]];
-  sides[graph.faces[3 * open[0]]] = 0;
+  sides[faces[3 * open[0]]] = 0;
   is_seen[open[0]] = 1;
   for (let face = open.pop(); face !== undefined; face = open.pop()) {
     // Three corners in turn, twice: the first that is known may be the last.
     for (let step = 0; step < 6; ++step) {
-      const k = 3 * face + (step % 3), from = graph.faces[k], to = graph.faces[3 * face + ((step + 1) % 3)];
-      if (sides[from] === unknown) continue;
-      const side = sides[from] ^ walk.is_odd[graph.edges_of[k]];
+      const k = 3 * face + (step % 3), to = faces[3 * face + ((step + 1) % 3)];
+      if (sides[faces[k]] === unknown) continue;
+      const side = sides[faces[k]] ^ walk.is_odd[edges_of[k]];
       if (sides[to] === unknown) sides[to] = side;
       if (sides[to] !== side) throw new Trouble("the border does not separate an inside from an outside; let it go round the patch once");
     }
-    for (const edge of graph.edges_at(face))
-      for (const next of graph.faces_of(edge)) {
-        if (is_seen[next] === 1) continue;
-        is_seen[next] = 1;
-        open.push(next);
+    for (let k = 3 * face; k < 3 * face + 3; ++k)
+      for (let i = first_at[edges_of[k]]; i < first_at[edges_of[k] + 1]; ++i) {
+        if (is_seen[faces_at[i]] === 1) continue;
+        is_seen[faces_at[i]] = 1;
+        open.push(faces_at[i]);
       }
   }
   return sides;
 }
 
-function area_of(graph: SurfaceGraph, face: number): number {
-  const at = graph.corner(face, 0), [ux, uy, uz] = minus(graph.corner(face, 1), at), [wx, wy, wz] = minus(graph.corner(face, 2), at);
-  return Math.hypot(uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx) / 2;
-}
-
 function smaller_side(graph: SurfaceGraph, walk: SurfaceWalk): EnclosedFaces {
-  const sides = sides_of_vertices(graph, walk);
-  const faces: [number[], number[]] = [[], []], areas: [number, number] = [0, 0];
-  for (let face = 0; 3 * face < graph.faces.length; ++face) {
-    const [a, b, c] = [0, 1, 2].map((k) => sides[graph.faces[3 * face + k]]);
-    if (a === unknown) continue; // then the others are
-    const own = a + b + c >= 2 ? 1 : 0;
-    faces[own].push(face);
-    areas[own] += area_of(graph, face);
+  const { faces, face_areas } = graph, sides = sides_of_vertices(graph, walk);
+  const parts: [number[], number[]] = [[], []], areas: [number, number] = [0, 0];
+  for (let face = 0; 3 * face < faces.length; ++face) {
+    if (sides[faces[3 * face]] === unknown) continue; // then the other corners are
+    const own = sides[faces[3 * face]] + sides[faces[3 * face + 1]] + sides[faces[3 * face + 2]] >= 2 ? 1 : 0;
+    parts[own].push(face);
+    areas[own] += face_areas[face];
   }
   const smaller = areas[0] < areas[1] ? 0 : 1, share = areas[smaller] / (areas[0] + areas[1]);
-  if (faces[smaller].length === 0) throw new Trouble("the border encloses no face; it is smaller than the triangles there");
+  if (parts[smaller].length === 0) throw new Trouble("the border encloses no face; it is smaller than the triangles there");
   if (!(share <= clearly_smaller)) throw new Trouble("the border cuts the surface in two about equal parts, and the smaller one is taken for its inside");
-  return { inside: Uint32Array.from(faces[smaller]), crossed: new Set(walk.faces), share, trouble: null };
+  return { inside: Uint32Array.from(parts[smaller]), crossed: new Set(walk.faces), share, trouble: null };
 }
 
 /** border: a closed line on the surface or near it, without a repeat of its first point. */

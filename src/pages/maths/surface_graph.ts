@@ -42,6 +42,7 @@ export class SurfaceGraph {
   readonly places: Float64Array;
 
   private known_tree: FaceTree | null = null;
+  private known_areas: Float64Array | null = null;
 
   constructor(vertices: Float32Array, faces: Uint32Array) {
     this.places = Float64Array.from(vertices);
@@ -125,6 +126,10 @@ export class SurfaceGraph {
     return edge;
   }
 
+  get face_areas(): Float64Array {
+    return (this.known_areas ??= this.areas());
+  }
+
   /** Of the box around all faces. */
   get diagonal(): number {
     return this.tree.diagonal;
@@ -154,6 +159,13 @@ export class SurfaceGraph {
   private is_line(face: number): boolean {
     const [u, v, w] = [this.faces[3 * face], this.faces[3 * face + 1], this.faces[3 * face + 2]];
     return u === v || v === w || w === u;
+  }
+
+  private areas(): Float64Array {
+    return Float64Array.from({ length: this.faces.length / 3 }, (_, face) => {
+      const at = this.corner(face, 0), [ux, uy, uz] = minus(this.corner(face, 1), at), [wx, wy, wz] = minus(this.corner(face, 2), at);
+      return Math.hypot(uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx) / 2;
+    });
   }
 
   private angles(): Float64Array {

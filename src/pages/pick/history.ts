@@ -29,6 +29,11 @@ export interface Work {
   patches: Record<string, unknown>[];
 }
 
+/** A copy that shares points and lines: these are replaced, never changed in place, and what is known of them stays known. */
+function copy_of({ pairs, curves, patches }: Work): Work {
+  return { pairs: pairs.map((pair) => ({ ...pair })), curves: curves.map((curve) => ({ ...curve })), patches };
+}
+
 /** The work with everything that can be undone; every change is kept in the browser's storage. */
 export class History {
   private past: Work[] = [];
@@ -59,7 +64,7 @@ export class History {
 
   /** Changes the work; what `edit` leaves is the new state, and what was there before can be had back. */
   change(edit: (work: Work) => void): void {
-    this.past.push(structuredClone(this.work));
+    this.past.push(copy_of(this.work));
     this.future = [];
     edit(this.work);
     this.keep();
