@@ -36,7 +36,7 @@ export class CurveEditor {
     this.chosen = index;
     this.point = { a: -1, b: -1 };
     this.is_laying = null;
-    this.held = null;
+    this.drag_ended();
   }
 
   /** After a step back or forth: what is no longer there is not chosen. */
@@ -91,11 +91,12 @@ export class CurveEditor {
   drag_started(side: Side, number: number): void {
     this.point[side] = number;
     this.is_laying = null;
-    this.held = this.curve === null ? null : { side, line: this.curve[side] };
+    this.hold(side, number);
     this.history.change(() => undefined);
   }
 
   drag_ended(): void {
+    if (this.held !== null) this.tracers[this.held.side].hold([]);
     this.held = null;
   }
 
@@ -190,6 +191,14 @@ export class CurveEditor {
     return curve[side].points.map((point, number) => ({
       number, point, colour: fixed.has(number) ? fixed_colour : colour_of(this.chosen), size: number === this.point[side] ? "large" : "plain",
     }));
+  }
+
+  private hold(side: Side, number: number): void {
+    if (this.curve === null) return;
+    const line = this.curve[side], count = line.points.length;
+    this.held = { side, line };
+    const neighbours = this.curve.closed ? [(number + count - 1) % count, (number + 1) % count] : [number - 1, number + 1];
+    this.tracers[side].hold([...new Set(neighbours)].filter((i) => i !== number && i >= 0 && i < count).map((i) => line.points[i]));
   }
 
   private join(side: Side): (from: Triple, to: Triple) => Triple[] | null {
