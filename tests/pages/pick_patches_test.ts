@@ -106,7 +106,9 @@ test("a line through clicked places on both models becomes a patch: closed, tint
   const [line] = await curves();
   assert.deepEqual([line.meaning, line.closed, await inside("a")], ["line", true, []]);
   const before_fill = await drawn_pixels(opened.page);
+  await kind("c1").focus();
   await kind("c1").selectOption("patch");
+  assert.equal(await opened.page.evaluate(() => document.activeElement?.getAttribute("aria-label")), "Kind of “c1”", "the list is made anew under the keyboard's focus");
   const [patch] = await curves();
   assert.deepEqual([patch.meaning, patch.closed, patch.a.pieces.length, patch.b.pieces.length], ["patch", true, 4, 4]);
   for (const side of sides) assert.ok((await inside(side))[0] > 20, `${await inside(side)} faces`);
@@ -194,14 +196,21 @@ test("a file's borders can be edited, its patches by face numbers are kept; savi
 
 test("work that an older page kept is taken up: lines without a meaning, patches unseen", async () => {
   const { patches } = await saved(), [line] = await curves();
-  const { meaning: _, ...older } = { ...line, closed: false };
-  await opened.page.evaluate((work) => {
-    const key = Object.keys(localStorage).find((each) => each.startsWith("bespoke-pick-")) as string;
-    localStorage.setItem(key, JSON.stringify(work));
-  }, { pairs: [], curves: [{ ...older, name: "old" }], patches });
-  await opened.page.reload();
-  await opened.page.locator("html[data-ready=yes]").waitFor();
-  await show_curves();
+  const { meaning: _, ...older } = { ...line, name: "old", closed: false };
+  const reload_with = async (work: object): Promise<void> => {
+    await opened.page.evaluate((kept) => {
+      const key = Object.keys(localStorage).find((each) => each.startsWith("bespoke-pick-")) as string;
+      localStorage.setItem(key, JSON.stringify(kept));
+    }, work);
+    await opened.page.reload();
+    await opened.page.locator("html[data-ready=yes]").waitFor();
+    await show_curves();
+  };
+  const wrong = [{ name: "half", a: patches![0].a }];
+  await reload_with({ pairs: [], curves: [older], patches: wrong });
+  assert.deepEqual((await curves()).map(({ name }) => name), ["old"]);
+  assert.deepEqual((await saved()).patches, wrong, "a patch that cannot be read is kept, and the work with it");
+  await reload_with({ pairs: [], curves: [older], patches });
   assert.deepEqual((await curves()).map(({ name, meaning }) => [name, meaning]), [["old", "line"], ["c1", "patch"], ["patch1", "exclude"]]);
   assert.deepEqual((await saved()).patches, patches);
 });

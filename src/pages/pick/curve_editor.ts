@@ -32,6 +32,10 @@ export class CurveEditor {
     return this.history.curves[this.chosen] ?? null;
   }
 
+  get is_dragging(): boolean {
+    return this.held !== null;
+  }
+
   choose(index: number): void {
     this.chosen = index;
     this.point = { a: -1, b: -1 };
@@ -160,8 +164,8 @@ export class CurveEditor {
   /** Null for a curve, and without a whole border there. */
   enclosed(curve: PickedCurve, side: Side): EnclosedFaces | null {
     if (!is_patch(curve) || !is_whole(curve, side)) return null;
-    const is_held = this.held !== null && this.held.side === side && curve === this.curve;
-    return this.tracers[side].enclosed(is_held && this.held !== null ? this.held.line : curve[side]);
+    const held = this.held?.side === side && curve === this.curve ? this.held.line : null;
+    return this.tracers[side].enclosed(held ?? curve[side]);
   }
 
   patched(side: Side): PatchedModel {

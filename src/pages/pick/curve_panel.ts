@@ -23,6 +23,7 @@ export class CurvePanel {
   readonly body: HTMLElement;
   private readonly list = element("tbody", {});
   private readonly warnings = element("ul", { class: "plain", role: "status", "aria-label": "Warnings about curves" });
+  private patch_warnings: string[] = [];
   private readonly kept = element("p", { class: "soft" });
   private readonly detail = element("div", { role: "group", "aria-label": "Chosen curve" });
 
@@ -41,9 +42,9 @@ export class CurvePanel {
 
   show(pairs: CompletePair[]): void {
     const { curves, work } = this.history;
-    const patched = { a: this.editor.patched("a"), b: this.editor.patched("b") };
-    const warnings = [...check_curves(curves, pairs), ...check_patches(work, pairs, patched)];
-    this.warnings.replaceChildren(...warnings.map((text) => element("li", { class: "warn" }, text)));
+    // What borders enclose is found when a drag ends.
+    if (!this.editor.is_dragging) this.patch_warnings = check_patches(work, pairs, { a: this.editor.patched("a"), b: this.editor.patched("b") });
+    this.warnings.replaceChildren(...[...check_curves(curves, pairs), ...this.patch_warnings].map((text) => element("li", { class: "warn" }, text)));
     this.keeping_focus(() => this.list.replaceChildren(...curves.map((curve, i) => this.row(curve, i))));
     this.kept.textContent = kept_patches(work.patches.length);
     this.kept.hidden = work.patches.length === 0;

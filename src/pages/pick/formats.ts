@@ -38,8 +38,17 @@ export function parse_json(document: { pairs?: unknown; curves?: unknown; patche
 export function parse_kept(text: string): Work {
   const parsed = JSON.parse(text) as { pairs: PickedPair[]; curves: PickedCurve[]; patches?: Record<string, unknown>[] } | PickedPair[];
   if (Array.isArray(parsed)) return { pairs: parsed, curves: [], patches: [] };
-  const { borders, kept } = parse_patches(parsed.patches ?? []);
+  const { borders, kept } = unseen_patches(parsed.patches ?? []);
   return { pairs: parsed.pairs, curves: [...parsed.curves.map((curve) => ({ ...curve, meaning: curve.meaning ?? "line" })), ...borders], patches: kept };
+}
+
+/** What an older page kept unseen may be wrong; then it is kept as it is, and the rest of the work with it. */
+function unseen_patches(patches: Record<string, unknown>[]): { borders: PickedCurve[]; kept: Record<string, unknown>[] } {
+  try {
+    return parse_patches(patches);
+  } catch {
+    return { borders: [], kept: patches };
+  }
 }
 
 function parse_curve(curve: Record<string, unknown>, number: number): PickedCurve {
