@@ -112,7 +112,7 @@ export class CurvePanel {
   private inside(curve: PickedCurve): string {
     const shares = sides.flatMap((side) => {
       const enclosed = this.editor.enclosed(curve, side);
-      return enclosed === null || enclosed.trouble !== null ? [] : [`${shown(100 * enclosed.share)} % of the ${model_of[side]}`];
+      return enclosed === null || enclosed.trouble !== null ? [] : [`${Number((100 * enclosed.share).toPrecision(2))} % of the ${model_of[side]}`];
     });
     return shares.length === 0 ? "" : ` Inside: ${shares.join(", ")}.`;
   }
