@@ -194,6 +194,22 @@ test("a file's borders can be edited, its patches by face numbers are kept; savi
   assert.deepEqual([changed[0].b, changed[1], changed[2]], [patches![0].b, patches![1], sole]);
 });
 
+test("an excluded part on one model is mirrored as such; turned round, a border encloses the same; deleted, neither is drawn", async () => {
+  const all = await curves(), tinted = await inside("b");
+  await button("Choose “patch1”").click();
+  await button("Mirror chosen").click();
+  const image = (await curves()).at(-1)!;
+  assert.deepEqual([image.name, image.meaning, image.closed, image.a.points.length, image.b.points.length], ["patch1_mirrored", "exclude", true, all[1].a.points.length, 0]);
+  await button("Choose “c1”").click();
+  await button("Turn round on target").click();
+  assert.notDeepEqual((await curves())[0].b, all[0].b);
+  assert.deepEqual(await inside("b"), tinted);
+  for (const name of ["c1", "patch1", "patch1_mirrored"]) await button(`Delete “${name}”`).click();
+  assert.deepEqual([await curves(), await inside("a"), await inside("b")], [[], [], []]);
+  for (let steps = 0; steps < 5; ++steps) await button("Undo").click();
+  assert.deepEqual(await curves(), all);
+});
+
 test("work that an older page kept is taken up: lines without a meaning, patches unseen", async () => {
   const { patches } = await saved(), [line] = await curves();
   const { meaning: _, ...older } = { ...line, name: "old", closed: false };
