@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { geodesic } from "../../src/pages/maths/geodesic";
+import { StripSearch } from "../../src/pages/maths/strip_search";
 import { SurfaceGraph, type SurfacePoint } from "../../src/pages/maths/surface_graph";
 import { distance } from "../../src/pages/maths/warp";
 
@@ -131,4 +132,20 @@ test("on a mesh of 50,000 triangles a line over a third of it takes less than 10
     return process.cpuUsage(start).user / 1000;
   }).sort((x, y) => x - y);
   assert.ok(times[4] < 100, `${times[4]} ms`);
+});
+
+test("a search that serves for many ends finds the same ways as one for each, near and far, in any order", () => {
+  const graph = sphere(16), from = near(graph, [0.2, 0.9, 0.3]), search = new StripSearch(graph, from);
+  for (let k = 0; k < 60; ++k) {
+    const to = near(graph, [Math.cos(7 * k), Math.sin(5 * k), Math.cos(3 * k)]);
+    assert.deepEqual(geodesic(graph, from, to, search), geodesic(graph, from, to));
+  }
+});
+
+test("between separate pieces there is no way, for a search that serves for many ends too", () => {
+  const one = cube(3), apart = one.places.map((x, i) => x + (i % 3 === 0 ? 5 : 0));
+  const both = new SurfaceGraph(new Float32Array([...one.places, ...apart]), new Uint32Array([...one.faces, ...one.faces.map((vertex) => vertex + one.places.length / 3)]));
+  const from = near(both, [0, 0, 1]), search = new StripSearch(both, from);
+  assert.equal(geodesic(both, from, near(both, [5, 0, 1]), search), null);
+  assert.notEqual(geodesic(both, from, near(both, [0, 0, -1]), search), null);
 });

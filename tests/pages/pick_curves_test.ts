@@ -179,7 +179,7 @@ test("what it saves lies on the models, passes through the clicked places, and c
 
 test("audit and fit take it, beside pairs", async () => {
   const { curves: picked } = await saved();
-  // The page has nothing to edit patches with; what a file has of them it keeps.
+  // The page has nothing to edit patches by face numbers with; what a file has of them it keeps.
   const patches = [{ name: "sole", a: { faces: [0, 1, 2] }, exclude: true }];
   writeFileSync(join(directory, "both.json"), JSON.stringify({ patches, units: "cm", pairs: given.filter((pair) => !clicked.includes(pair.name)), curves: picked.map(({ name, a, b, closed }) => ({ name, a, b, closed })) }));
   bespoke(directory, "pick", "shoe/source.obj", "shoe/target.obj", "--anchors", "both.json", "-o", "again.html");

@@ -184,6 +184,21 @@ test("files without curves leave those that are there", async () => {
   assert.match(await said().innerText(), /As before: 2 curves\./);
 });
 
+test("patches are left out of other programs' files and stay when these are opened", async () => {
+  const [border, line] = curves;
+  writeFileSync(file("patches.json"), JSON.stringify({ pairs: given, curves: [line], patches: [{ name: "inside", a: { border: border.a }, b: { border: border.b } }] }));
+  await imported(["patches.json"]);
+  const patch = (await picked_curves()).at(-1);
+  await opened.page.getByLabel("Format of another program").selectOption("markups");
+  assert.match(await opened.page.getByRole("status", { name: "What the format keeps" }).innerText(), /Left out.*1 patch\./);
+  await exported("markups");
+  assert.deepEqual(converted(formats.markups.files, "RAS").curves, [line]);
+  await imported(formats.markups.files, "RAS");
+  assert.equal((await picked_curves()).length, 2);
+  assert.deepEqual((await picked_curves()).at(-1), patch);
+  assert.match(await said().innerText(), /As before: 1 patch\./);
+});
+
 test("two files are shown with their models, by which they lie; they can be swapped, by keys alone", async () => {
   const { page } = opened;
   await open_files("anchors_b.pp", "anchors_a.pp");

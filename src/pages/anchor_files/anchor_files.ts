@@ -1,4 +1,4 @@
-import { in_order, is_complete_curve, polyline, type Side } from "../pick/curves";
+import { in_order, is_complete_curve, is_patch, type PickedCurve, polyline, type Side } from "../pick/curves";
 import { is_complete, type Work } from "../pick/history";
 import { csv_text, parse_csv } from "./csv";
 import { anchor_formats, type AnchorFormat } from "./format";
@@ -32,8 +32,12 @@ export function parse_side(text: string, format: AnchorFormat, file: string, sid
   return { points, lines: [] };
 }
 
+function complete_lines(work: Work): PickedCurve[] {
+  return work.curves.filter((curve) => is_complete_curve(curve) && !is_patch(curve));
+}
+
 function side_of(work: Work, side: Side): FileSide {
-  const lines = work.curves.filter(is_complete_curve).map((curve) => {
+  const lines = complete_lines(work).map((curve) => {
     const { name, closed, ...both } = in_order(curve) ?? curve; // the page has said so (curve_checks.ts)
     return { name, closed, points: polyline(both[side], closed).points };
   });
@@ -65,14 +69,15 @@ export function file_texts(work: Work, format: AnchorFormat, models: FileModels)
 /** What of the work a format has no place for, as `bespoke anchors convert` says it; empty for nothing. */
 export function left_out(work: Work, unit: string, format: AnchorFormat): string[] {
   const record = anchor_formats[format];
-  const pairs = work.pairs.filter(is_complete), curves = work.curves.filter(is_complete_curve);
+  const pairs = work.pairs.filter(is_complete), curves = complete_lines(work);
+  const borders = work.curves.filter((curve) => is_complete_curve(curve) && is_patch(curve)).length;
   const counted = (what: string, count: number, one: string, more: string): string => (count === 0 ? "" : `${what}${count} ${count === 1 ? one : more}`);
   const parts = [
     unit === "" ? "" : `the unit (${unit})`,
     record.names ? "" : counted("the names of ", pairs.filter((pair) => pair.name !== "").length, "pair", "pairs"),
     record.accuracies ? "" : counted("the accuracies of ", pairs.filter((pair) => pair.sigma !== null || pair.weight !== null).length, "pair", "pairs"),
     record.curves ? counted("the fixed points of ", curves.filter((curve) => curve.fixed.length > 0).length, "curve", "curves") : counted("", curves.length, "curve", "curves"),
-    counted("", work.patches?.length ?? 0, "patch", "patches"),
+    counted("", borders + work.patches.length, "patch", "patches"),
   ];
   return parts.filter((part) => part !== "");
 }
@@ -84,6 +89,6 @@ export function changed(work: Work, format: AnchorFormat): string {
   if (format === "indices") return "Each point becomes the nearest vertex.";
   if (format === "landmarks" && has_name_with(/\s/)) return "Blanks in names become underscores.";
   if (format === "fiducials" && has_name_with(/,/)) return "Commas in names become blanks.";
-  if (format === "markups" && work.curves.some(is_complete_curve)) return "3D Slicer draws a spline through the points of a curve.";
+  if (format === "markups" && complete_lines(work).length > 0) return "3D Slicer draws a spline through the points of a curve.";
   return "";
 }

@@ -26,9 +26,9 @@ export function paired(a: FileSide, b: FileSide, files: [string, string]): { pai
     const is_free = a.points.findIndex((other) => other.name === name) === i;
     return { name: is_free ? name : "", a: x, b: points[i].x, sigma: null, weight: null };
   });
-  const curves = a.lines.map(({ name, points: on_a, closed }, i) => {
+  const curves = a.lines.map(({ name, points: on_a, closed }, i): PickedCurve => {
     if (closed !== lines[i].closed) throw new Error(`curve ${i} ("${name}") is closed in ${files[closed ? 0 : 1]} and open in ${files[closed ? 1 : 0]}`);
-    return { name, closed, a: line_of(on_a, closed, []).line, b: line_of(lines[i].points, closed, []).line, fixed: [] };
+    return { name, meaning: "line", closed, a: line_of(on_a, closed, []).line, b: line_of(lines[i].points, closed, []).line, fixed: [] };
   });
   return { pairs, curves };
 }

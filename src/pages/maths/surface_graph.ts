@@ -1,4 +1,5 @@
 import type { Triple } from "../scene/scene";
+import { FaceTree } from "./face_tree";
 
 /** A point of a surface and the face that it lies in. */
 export interface SurfacePoint {
@@ -39,6 +40,9 @@ export class SurfaceGraph {
 
   /** x, y, z of every vertex. */
   readonly places: Float64Array;
+
+  private known_tree: FaceTree | null = null;
+  private known_areas: Float64Array | null = null;
 
   constructor(vertices: Float32Array | Float64Array, faces: Uint32Array) {
     this.places = Float64Array.from(vertices);
@@ -81,6 +85,33 @@ export class SurfaceGraph {
     return this.ends[2 * edge] === vertex || this.ends[2 * edge + 1] === vertex;
   }
 
+  edges_at(face: number): Uint32Array {
+    return this.edges_of.subarray(3 * face, 3 * face + 3);
+  }
+
+  faces_of(edge: number): Uint32Array {
+    return this.faces_at.subarray(this.first_at[edge], this.first_at[edge + 1]);
+  }
+
+  /** All faces that have a corner in common with a face. */
+  faces_around(face: number): number[] {
+    const around = new Set<number>();
+    for (const vertex of this.faces.subarray(3 * face, 3 * face + 3)) {
+      const open = [face];
+      const is_met = new Set(open);
+      for (let next = open.pop(); next !== undefined; next = open.pop()) {
+        around.add(next);
+        for (const edge of this.edges_at(next))
+          for (const other of this.has_end(edge, vertex) ? this.faces_of(edge) : []) {
+            if (is_met.has(other)) continue;
+            is_met.add(other);
+            open.push(other);
+          }
+      }
+    }
+    return [...around];
+  }
+
   /** The face at the other side of an edge; null at a boundary, and where more than two faces meet. */
   across(edge: number, face: number): number | null {
     const first = this.first_at[edge];
@@ -95,19 +126,46 @@ export class SurfaceGraph {
     return edge;
   }
 
-  /** The nearest point of the surface. */
-  nearest(point: Triple): SurfacePoint {
-    let best: SurfacePoint = { point, face: 0 }, least = Infinity;
-    for (let face = 0; 3 * face < this.faces.length; ++face) {
-      const candidate = nearest_of_triangle(point, this.corner(face, 0), this.corner(face, 1), this.corner(face, 2));
-      const away = minus(candidate, point), squared = dot(away, away);
-      if (squared < least) [best, least] = [{ point: candidate, face }, squared];
-    }
-    return best;
+  get face_areas(): Float64Array {
+    return (this.known_areas ??= this.areas());
   }
 
-  private corner(face: number, k: number): Triple {
+  /** Of the box around all faces. */
+  get diagonal(): number {
+    return this.tree.diagonal;
+  }
+
+  /** The nearest point of the surface. */
+  nearest(point: Triple): SurfacePoint {
+    const on_face = (face: number): Triple => nearest_of_triangle(point, this.corner(face, 0), this.corner(face, 1), this.corner(face, 2));
+    const found = this.tree.nearest(point, (face) => {
+      if (this.is_line(face)) return Infinity;
+      const away = minus(on_face(face), point);
+      return dot(away, away);
+    });
+    return found === null ? { point, face: 0 } : { point: on_face(found.face), face: found.face };
+  }
+
+  corner(face: number, k: number): Triple {
     return this.place(this.faces[3 * face + k]);
+  }
+
+  /** Made when the first place is looked for. */
+  private get tree(): FaceTree {
+    return (this.known_tree ??= new FaceTree(this.places, this.faces));
+  }
+
+  /** Two corners at one place: its edges are one, with other faces at it. */
+  private is_line(face: number): boolean {
+    const [u, v, w] = [this.faces[3 * face], this.faces[3 * face + 1], this.faces[3 * face + 2]];
+    return u === v || v === w || w === u;
+  }
+
+  private areas(): Float64Array {
+    return Float64Array.from({ length: this.faces.length / 3 }, (_, face) => {
+      const at = this.corner(face, 0), [ux, uy, uz] = minus(this.corner(face, 1), at), [wx, wy, wz] = minus(this.corner(face, 2), at);
+      return Math.hypot(uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx) / 2;
+    });
   }
 
   private angles(): Float64Array {

@@ -1,31 +1,36 @@
 import { rigid_warp, distance, type Warp } from "../maths/warp";
 import type { Triple } from "../scene/scene";
-import { in_order, is_complete_curve, is_whole, least_points, line_length, polyline, type PickedCurve, type PickedLine, type Side, sides } from "./curves";
+import { in_order, is_complete_curve, is_patch, is_whole, least_points, line_length, model_of, needed_sides, polyline, type PickedCurve, type PickedLine } from "./curves";
 import type { CompletePair } from "./history";
 
-export const curve_name = (curve: PickedCurve, i: number): string => (curve.name === "" ? `curve ${i + 1}` : `“${curve.name}”`);
+export const curve_name = (curve: PickedCurve, i: number): string => (curve.name === "" ? `${is_patch(curve) ? "patch" : "curve"} ${i + 1}` : `“${curve.name}”`);
 
 const pairs_that_fix_a_turn = 3; // as in anchor_curves.cpp
 const samples = 24;
 
-/** What is wrong or unclear about curves, a line each. */
+/** What is wrong or unclear about curves, and what patches lack, a line each. */
 export function check_curves(curves: PickedCurve[], pairs: CompletePair[]): string[] {
   const warnings: string[] = [];
   const rigid = pairs.length < pairs_that_fix_a_turn ? null : rigid_warp(pairs.map((pair) => pair.a), pairs.map((pair) => pair.b));
   curves.forEach((curve, i) => {
     const name = curve_name(curve, i);
-    const missing = sides.filter((side) => !is_whole(curve, side)).map((side) => lacking(curve, side));
-    if (missing.length > 0) warnings.push(`${name} lacks ${missing.join(" and ")}; saved are complete curves only.`);
-    const twin = curve.name === "" ? -1 : curves.findIndex((other) => other.name === curve.name);
+    if (!is_complete_curve(curve)) warnings.push(`${name} lacks ${lacking(curve)}; saved are complete ${is_patch(curve) ? "patches" : "curves"} only.`);
+    if (is_patch(curve)) return; // more of them in patch_checks.ts
+    const twin = curve.name === "" ? -1 : curves.findIndex((other) => !is_patch(other) && other.name === curve.name);
     if (twin >= 0 && twin < i) warnings.push(`Two curves are named ${name}: reports could not tell them apart.`);
     if (is_complete_curve(curve)) warn_of_way(curve, name, rigid, warnings);
   });
   return warnings;
 }
 
-function lacking(curve: PickedCurve, side: Side): string {
-  const count = least_points(curve) - curve[side].points.length;
-  return `${count} ${count === 1 ? "point" : "points"} on the ${side === "a" ? "source" : "target"}`;
+function lacking(curve: PickedCurve): string {
+  const missing = needed_sides(curve).filter((side) => !is_whole(curve, side));
+  const points = missing.map((side) => {
+    const count = least_points(curve) - curve[side].points.length;
+    return `${count} ${count === 1 ? "point" : "points"} on the ${model_of[side]}`;
+  });
+  const one_is_enough = curve.meaning === "exclude" && missing.length === 2 && missing.every((side) => curve[side].points.length === 0);
+  return points.join(one_is_enough ? " or " : " and ");
 }
 
 function warn_of_way(curve: PickedCurve, name: string, rigid: Warp | null, warnings: string[]): void {

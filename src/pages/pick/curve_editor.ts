@@ -1,23 +1,30 @@
-import { distance } from "../maths/warp";
+import type { EnclosedFaces } from "../maths/enclosed_faces";
 import { between, dot, minus } from "../maths/surface_graph";
+import { distance } from "../maths/warp";
 import type { Triple } from "../scene/scene";
+import type { Fill } from "../stage/fills";
 import type { Line } from "../stage/lines";
-import { is_complete_curve, in_order, new_curve, type PickedCurve, rejoined, renumbered, type Side, with_target_turned } from "./curves";
+import { is_complete_curve, in_order, is_patch, is_whole, type Kind, kind_of, type Meaning, new_curve, type PickedCurve, type PickedLine, rejoined, renumbered, type Side, with_target_turned } from "./curves";
 import type { History } from "./history";
 import type { SideMarker } from "./model_side";
+import type { PatchedModel } from "./patch_checks";
 import type { Tracer } from "./tracer";
 
-export const curve_colours = ["#be185d", "#0f766e", "#7e22ce", "#c2410c", "#1d6fd1", "#4d7c0f", "#a16207", "#334155"];
+const curve_colours = ["#be185d", "#0f766e", "#7e22ce", "#c2410c", "#1d6fd1", "#4d7c0f", "#a16207", "#334155"];
 const fixed_colour = "#111827";
+const fill_opacity = 0.34, chosen_fill_opacity = 0.5;
+export const colour_of = (index: number): string => curve_colours[index % curve_colours.length];
 export const separate_pieces = "No line along the surface joins these points: they lie on separate pieces of the model.";
 
-/** What clicks and keys do to curves, and how these are drawn. */
+/** What clicks and keys do to curves and borders of patches, and how these are drawn. */
 export class CurveEditor {
   chosen = -1;
   /** The chosen point of the chosen curve on each model, −1 without. */
   point: Record<Side, number> = { a: -1, b: -1 };
   /** The last point was just laid: a click on the first one closes the curve. */
   private is_laying: Side | null = null;
+  /** The line of the chosen curve that is being dragged, as it was before: what it encloses is found again at the end. */
+  private held: { side: Side; line: PickedLine } | null = null;
 
   constructor(private readonly history: History, readonly tracers: Record<Side, Tracer>, private readonly say: (text: string) => void) {}
 
@@ -25,10 +32,15 @@ export class CurveEditor {
     return this.history.curves[this.chosen] ?? null;
   }
 
+  get is_dragging(): boolean {
+    return this.held !== null;
+  }
+
   choose(index: number): void {
     this.chosen = index;
     this.point = { a: -1, b: -1 };
     this.is_laying = null;
+    this.drag_ended();
   }
 
   /** After a step back or forth: what is no longer there is not chosen. */
@@ -36,12 +48,13 @@ export class CurveEditor {
     for (const side of ["a", "b"] as const) if (this.point[side] >= (this.curve?.[side].points.length ?? 0)) this.point[side] = -1;
   }
 
-  begin(): void {
-    const taken = new Set(this.history.curves.map((curve) => curve.name));
+  begin(meaning: Meaning = "line"): void {
+    const taken = new Set([...this.history.curves, ...this.history.work.patches].map((other) => other.name));
+    const stem = meaning === "line" ? "c" : "patch";
     let number = 1;
-    while (taken.has(`c${number}`)) ++number;
+    while (taken.has(`${stem}${number}`)) ++number;
     this.choose(this.history.curves.length);
-    this.history.change(({ curves }) => curves.push(new_curve(`c${number}`)));
+    this.history.change(({ curves }) => curves.push(new_curve(`${stem}${number}`, meaning)));
   }
 
   /** A click on a model: on the chosen curve's line, within reach, a point between; else one behind the last. */
@@ -66,21 +79,29 @@ export class CurveEditor {
     const closes = this.is_laying === side && number === 0 && curve !== null && !curve.closed && curve[side].points.length >= 3;
     this.point[side] = number;
     this.is_laying = null;
-    if (closes) this.set_closed(true);
+    if (closes) this.set_kind({ ...kind_of(curve), closed: true });
   }
 
-  set_closed(closed: boolean, index = this.chosen): void {
+  /** A patch has no points that are fixed together. */
+  set_kind({ meaning, closed }: Kind, index = this.chosen): void {
     const curve = this.history.curves[index];
     if (curve === undefined) return;
     const a = rejoined(curve.a, curve.a.points, closed, this.join("a")), b = rejoined(curve.b, curve.b.points, closed, this.join("b"));
     if (a === null || b === null) return this.say(separate_pieces);
-    this.history.change(({ curves }) => (curves[index] = { ...curve, closed, a, b }));
+    this.say("");
+    this.history.change(({ curves }) => (curves[index] = { ...curve, meaning, closed, a, b, fixed: meaning === "line" ? curve.fixed : [] }));
   }
 
   drag_started(side: Side, number: number): void {
     this.point[side] = number;
     this.is_laying = null;
+    this.hold(side, number);
     this.history.change(() => undefined);
+  }
+
+  drag_ended(): void {
+    if (this.held !== null) this.tracers[this.held.side].hold([]);
+    this.held = null;
   }
 
   dragged(side: Side, number: number, place: Triple): void {
@@ -118,7 +139,7 @@ export class CurveEditor {
   /** Joins the chosen points, or parts them. */
   fix(): void {
     const curve = this.curve, { a, b } = this.point;
-    if (curve === null || a < 0 || b < 0) return;
+    if (curve === null || is_patch(curve) || a < 0 || b < 0) return;
     const others = curve.fixed.filter(([i, j]) => i !== a && j !== b);
     const fixed: [number, number][] = this.is_fixed ? others : [...others, [a, b]];
     if (in_order({ ...curve, fixed }) === null) return this.say("Fixed points must come in one order on both models; these would not.");
@@ -138,11 +159,32 @@ export class CurveEditor {
     return true;
   }
 
+  // ---- what borders enclose
+
+  /** Null for a curve, and without a whole border there. */
+  enclosed(curve: PickedCurve, side: Side): EnclosedFaces | null {
+    if (!is_patch(curve) || !is_whole(curve, side)) return null;
+    const held = this.held?.side === side && curve === this.curve ? this.held.line : null;
+    return this.tracers[side].enclosed(held ?? curve[side]);
+  }
+
+  patched(side: Side): PatchedModel {
+    const tracer = this.tracers[side];
+    return { get graph() { return tracer.graph; }, enclosed: (curve) => this.enclosed(curve, side) };
+  }
+
   // ---- what is drawn
+
+  fills(side: Side): Fill[] {
+    return this.history.curves.flatMap((curve, i) => {
+      const faces = this.enclosed(curve, side)?.inside;
+      return faces === undefined ? [] : [{ faces, colour: colour_of(i), opacity: i === this.chosen ? chosen_fill_opacity : fill_opacity, is_hatched: curve.meaning === "exclude" }];
+    });
+  }
 
   lines(side: Side): Line[] {
     return this.history.curves.flatMap((curve, i) =>
-      curve[side].pieces.map((points) => ({ points, colour: curve_colours[i % curve_colours.length], width: i === this.chosen ? 4 : 2.5 })),
+      curve[side].pieces.map((points) => ({ points, colour: colour_of(i), width: i === this.chosen ? 4 : 2.5 })),
     );
   }
 
@@ -151,8 +193,16 @@ export class CurveEditor {
     if (curve === null) return [];
     const fixed = new Set(curve.fixed.map((pair) => pair[side === "a" ? 0 : 1]));
     return curve[side].points.map((point, number) => ({
-      number, point, colour: fixed.has(number) ? fixed_colour : curve_colours[this.chosen % curve_colours.length], size: number === this.point[side] ? "large" : "plain",
+      number, point, colour: fixed.has(number) ? fixed_colour : colour_of(this.chosen), size: number === this.point[side] ? "large" : "plain",
     }));
+  }
+
+  private hold(side: Side, number: number): void {
+    if (this.curve === null) return;
+    const line = this.curve[side], count = line.points.length;
+    this.held = { side, line };
+    const neighbours = this.curve.closed ? [(number + count - 1) % count, (number + 1) % count] : [number - 1, number + 1];
+    this.tracers[side].hold([...new Set(neighbours)].filter((i) => i !== number && i >= 0 && i < count).map((i) => line.points[i]));
   }
 
   private join(side: Side): (from: Triple, to: Triple) => Triple[] | null {

@@ -3,6 +3,7 @@ import type { Triple } from "../scene/scene";
 
 export type Side = "a" | "b";
 export const sides = ["a", "b"] as const;
+export const model_of: Record<Side, string> = { a: "source", b: "target" };
 
 /** A line on one model. */
 export interface PickedLine {
@@ -12,21 +13,48 @@ export interface PickedLine {
   pieces: Triple[][];
 }
 
-/** A curve as it is being picked: either line may still be missing. */
+/** What belongs together on two models: the lines, or what they enclose; or what they enclose attracts nothing. */
+export type Meaning = "line" | "patch" | "exclude";
+
+export interface Kind {
+  label: string;
+  meaning: Meaning;
+  closed: boolean;
+}
+
+/** What a line can be. */
+export const kinds: Kind[] = [
+  { label: "open", meaning: "line", closed: false },
+  { label: "closed", meaning: "line", closed: true },
+  { label: "patch", meaning: "patch", closed: true },
+  { label: "excluded", meaning: "exclude", closed: true },
+];
+
+/** A curve, or the border of a patch, as it is being picked: either line may still be missing. */
 export interface PickedCurve {
   name: string;
+  meaning: Meaning;
+  /** Always, where it borders a patch. */
   closed: boolean;
   a: PickedLine;
   b: PickedLine;
-  /** Points of a and of b, by their numbers, that belong together. */
+  /** Points of a and of b, by their numbers, that belong together; none of a patch. */
   fixed: [number, number][];
 }
 
 /** The way along a surface from one of its points to another; null between separate pieces. */
 export type Join = (from: Triple, to: Triple) => Triple[] | null;
 
-export function new_curve(name: string): PickedCurve {
-  return { name, closed: false, a: { points: [], pieces: [] }, b: { points: [], pieces: [] }, fixed: [] };
+export function new_curve(name: string, meaning: Meaning = "line"): PickedCurve {
+  return { name, meaning, closed: meaning !== "line", a: { points: [], pieces: [] }, b: { points: [], pieces: [] }, fixed: [] };
+}
+
+export function kind_of(curve: PickedCurve): Kind {
+  return kinds.find((kind) => kind.meaning === curve.meaning && kind.closed === curve.closed) as Kind;
+}
+
+export function is_patch(curve: PickedCurve): boolean {
+  return curve.meaning !== "line";
 }
 
 export function least_points(curve: PickedCurve): number {
@@ -37,8 +65,14 @@ export function is_whole(curve: PickedCurve, side: Side): boolean {
   return curve[side].points.length >= least_points(curve);
 }
 
+/** Where it needs a line: what is excluded may be on one model alone. */
+export function needed_sides(curve: PickedCurve): Side[] {
+  const begun = sides.filter((side) => curve[side].points.length > 0);
+  return curve.meaning === "exclude" && begun.length > 0 ? begun : [...sides];
+}
+
 export function is_complete_curve(curve: PickedCurve): boolean {
-  return is_whole(curve, "a") && is_whole(curve, "b");
+  return needed_sides(curve).every((side) => is_whole(curve, side));
 }
 
 /** A line through other points, which keeps the pieces that it can; null where no way joins two of them. */

@@ -1,6 +1,6 @@
 import type { Triple } from "../scene/scene";
-import { in_order, is_complete_curve, line_of, polyline, type PickedCurve } from "./curves";
-import { is_complete, type Work } from "./history";
+import { in_order, is_complete_curve, is_patch, line_of, needed_sides, new_curve, polyline, type PickedCurve, type PickedLine, type Side, sides } from "./curves";
+import { is_complete, type PickedPair, type Work } from "./history";
 
 function triple(value: unknown, where: string): Triple {
   if (!Array.isArray(value) || value.length !== 3 || !value.every((x) => typeof x === "number" && Number.isFinite(x)))
@@ -25,7 +25,25 @@ export function parse_json(document: { pairs?: unknown; curves?: unknown; patche
     sigma: typeof pair.sigma === "number" ? pair.sigma : null,
     weight: typeof pair.weight === "number" ? pair.weight : null,
   }));
-  return { pairs, curves: list(document, "curves").map(parse_curve), patches: list(document, "patches") };
+  const { borders, kept } = parse_patches(list(document, "patches"));
+  return { pairs, curves: [...list(document, "curves").map(parse_curve), ...borders], patches: kept };
+}
+
+/** What this page, or an older one, kept in the browser: first there were pairs alone, then curves without a meaning and all patches unseen. */
+export function parse_kept(text: string): Work {
+  const parsed = JSON.parse(text) as { pairs: PickedPair[]; curves: PickedCurve[]; patches?: Record<string, unknown>[] } | PickedPair[];
+  if (Array.isArray(parsed)) return { pairs: parsed, curves: [], patches: [] };
+  const { borders, kept } = unseen_patches(parsed.patches ?? []);
+  return { pairs: parsed.pairs, curves: [...parsed.curves.map((curve) => ({ ...curve, meaning: curve.meaning ?? "line" })), ...borders], patches: kept };
+}
+
+/** What an older page kept unseen may be wrong; then it is kept as it is, and the rest of the work with it. */
+function unseen_patches(patches: Record<string, unknown>[]): { borders: PickedCurve[]; kept: Record<string, unknown>[] } {
+  try {
+    return parse_patches(patches);
+  } catch {
+    return { borders: [], kept: patches };
+  }
 }
 
 function parse_curve(curve: Record<string, unknown>, number: number): PickedCurve {
@@ -45,7 +63,39 @@ function parse_curve(curve: Record<string, unknown>, number: number): PickedCurv
   const closed = curve.closed === true, fixed = parse_fixed(curve.fixed ?? [], [a.length, b.length], where);
   const on_a = line_of(a, closed, fixed.map(([i]) => i)), on_b = line_of(b, closed, fixed.map(([, j]) => j));
   const numbers = fixed.map(([i, j]): [number, number] => [on_a.number_of.get(i) as number, on_b.number_of.get(j) as number]);
-  return { name, closed, a: on_a.line, b: on_b.line, fixed: numbers };
+  return { name, meaning: "line", closed, a: on_a.line, b: on_b.line, fixed: numbers };
+}
+
+/** Patches by their borders are lines to be edited; those by numbers of faces are kept as they are. */
+function parse_patches(patches: Record<string, unknown>[]): { borders: PickedCurve[]; kept: Record<string, unknown>[] } {
+  const has_faces = (value: unknown): boolean => typeof value === "object" && value !== null && "faces" in value;
+  const is_kept = patches.map((patch) => sides.some((side) => has_faces(patch[side])));
+  return {
+    borders: patches.flatMap((patch, i) => (is_kept[i] ? [] : [parse_patch(patch, i)])),
+    kept: patches.filter((_, i) => is_kept[i]),
+  };
+}
+
+function parse_patch(patch: Record<string, unknown>, number: number): PickedCurve {
+  const name = String(patch.name ?? "");
+  const where = `patch ${number}${name === "" ? "" : ` (“${name}”)`}`;
+  if (patch.exclude !== undefined && typeof patch.exclude !== "boolean") throw new Error(`${where}: "exclude" is neither true nor false`);
+  const read = { ...new_curve(name, patch.exclude === true ? "exclude" : "patch"), a: parse_border(patch, "a", where), b: parse_border(patch, "b", where) };
+  const missing = needed_sides(read).find((side) => read[side].points.length === 0);
+  if (missing !== undefined) throw new Error(`${where}: "${missing}" is missing; only a patch with "exclude": true may lie on one model alone`);
+  return read;
+}
+
+/** Empty where the patch has none; a last point at the place of the first says once more that it is closed. */
+function parse_border(patch: Record<string, unknown>, side: Side, where: string): PickedLine {
+  const value = patch[side];
+  if (value === undefined) return { points: [], pieces: [] };
+  const border = typeof value === "object" && value !== null ? (value as Record<string, unknown>).border : undefined;
+  if (!Array.isArray(border)) throw new Error(`${where}: "${side}" has neither "border" nor "faces"`);
+  const points = border.map((point, i) => triple(point, `${where}: point ${i} of the border of "${side}"`));
+  if (points.length > 1 && points[0].join() === points[points.length - 1].join()) points.pop();
+  if (points.length < 3) throw new Error(`${where}: the border of "${side}" has ${points.length} points; a line around a patch has three at least`);
+  return line_of(points, true, []).line;
 }
 
 function parse_fixed(value: unknown, counts: [number, number], where: string): [number, number][] {
@@ -69,8 +119,13 @@ function curve_json(curve: PickedCurve): object {
   };
 }
 
-/** What `bespoke fit --anchors` reads; pairs with one end and curves without a line on both models are left out. */
-export function anchors_json({ pairs, curves, patches = [] }: Work, unit: string): string {
+function patch_json(patch: PickedCurve): object {
+  const border = (side: Side): object => ({ [side]: { border: polyline(patch[side], true).points } });
+  return { ...(patch.name === "" ? {} : { name: patch.name }), ...Object.assign({}, ...needed_sides(patch).map(border)), ...(patch.meaning === "exclude" ? { exclude: true } : {}) };
+}
+
+/** What `bespoke fit --anchors` reads; pairs with one end and incomplete lines are left out. */
+export function anchors_json({ pairs, curves, patches }: Work, unit: string): string {
   const written = pairs.filter(is_complete).map((pair) => ({
     ...(pair.name === "" ? {} : { name: pair.name }),
     a: pair.a,
@@ -79,6 +134,9 @@ export function anchors_json({ pairs, curves, patches = [] }: Work, unit: string
     ...(pair.sigma === null || pair.weight !== null ? {} : { sigma: pair.sigma }),
   }));
   const lines = (entries: object[]): string => `[\n${entries.map((entry) => `  ${JSON.stringify(entry)}`).join(",\n")}\n]`;
-  const complete = curves.filter(is_complete_curve).map(curve_json);
-  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${complete.length === 0 ? "" : `, "curves": ${lines(complete)}`}${patches.length === 0 ? "" : `, "patches": ${lines(patches as object[])}`}}\n`;
+  const complete = curves.filter(is_complete_curve);
+  const more = (key: string, entries: object[]): string => (entries.length === 0 ? "" : `, "${key}": ${lines(entries)}`);
+  const lines_json = more("curves", complete.filter((curve) => !is_patch(curve)).map(curve_json));
+  const patches_json = more("patches", [...complete.filter(is_patch).map(patch_json), ...patches]);
+  return `{${unit === "" ? "" : `"units": ${JSON.stringify(unit)}, `}"pairs": ${lines(written)}${lines_json}${patches_json}}\n`;
 }

@@ -23,9 +23,15 @@ export function is_complete(pair: PickedPair): pair is CompletePair {
 /** All that is picked. */
 export interface Work {
   pairs: PickedPair[];
+  /** Borders of patches are among them. */
   curves: PickedCurve[];
-  /** As the file has them: the page keeps patches and has nothing to edit them with. */
-  patches?: unknown[];
+  /** Those given by numbers of faces, as the file has them: kept, with nothing to edit them. */
+  patches: Record<string, unknown>[];
+}
+
+/** A copy that shares points and lines: these are replaced, never changed in place, and what is known of them stays known. */
+function copy_of({ pairs, curves, patches }: Work): Work {
+  return { pairs: pairs.map((pair) => ({ ...pair })), curves: curves.map((curve) => ({ ...curve })), patches };
 }
 
 /** The work with everything that can be undone; every change is kept in the browser's storage. */
@@ -33,12 +39,10 @@ export class History {
   private past: Work[] = [];
   private future: Work[] = [];
 
-  constructor(private readonly key: string, public work: Work, private readonly changed: () => void) {
+  constructor(private readonly key: string, public work: Work, read: (kept: string) => Work, private readonly changed: () => void) {
     try {
       const kept = localStorage.getItem(key);
-      // Before there were curves a list of pairs was kept.
-      const parsed = kept === null ? work : (JSON.parse(kept) as Work | PickedPair[]);
-      this.work = Array.isArray(parsed) ? { pairs: parsed, curves: [] } : parsed;
+      if (kept !== null) this.work = read(kept);
     } catch {
       // A browser that keeps nothing for files: the page works, a reload begins anew.
     }
@@ -60,7 +64,7 @@ export class History {
 
   /** Changes the work; what `edit` leaves is the new state, and what was there before can be had back. */
   change(edit: (work: Work) => void): void {
-    this.past.push(structuredClone(this.work));
+    this.past.push(copy_of(this.work));
     this.future = [];
     edit(this.work);
     this.keep();

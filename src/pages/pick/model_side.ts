@@ -5,6 +5,7 @@ import type { Plane as MirrorPlane } from "../maths/mirror";
 import { at_rest } from "../maths/motion";
 import type { Triple } from "../scene/scene";
 import { add_controls } from "../stage/controls";
+import { type Fill, Fills } from "../stage/fills";
 import { type Line, Lines } from "../stage/lines";
 import { type MarkerSize, Markers } from "../stage/markers";
 import { MirrorSheet } from "../stage/mirror_sheet";
@@ -20,6 +21,7 @@ export interface SideListener {
   chosen(number: number): void;
   drag_started(number: number): void;
   dragged(number: number, point: Triple): void;
+  drag_ended(): void;
   turned(): void;
   key(event: KeyboardEvent): void;
 }
@@ -50,6 +52,7 @@ export class ModelSide {
   private readonly markers: Markers;
   private readonly hint: Markers;
   private readonly lines: Lines;
+  private readonly fills: Fills;
   private readonly sheet: MirrorSheet;
   private readonly task = element("span", { class: "task" });
   private shown_markers: SideMarker[] = [];
@@ -69,8 +72,9 @@ export class ModelSide {
     this.markers = new Markers(marker_lift * this.size, 12);
     this.hint = new Markers(marker_lift * this.size, 16);
     this.lines = new Lines(lift);
+    this.fills = new Fills(places, model.faces);
     this.sheet = new MirrorSheet(box, lift);
-    const scene = scene_of([this.surface.object, this.sheet.object, this.lines.object, this.markers.object, this.hint.object]);
+    const scene = scene_of([this.surface.object, this.fills.object, this.sheet.object, this.lines.object, this.markers.object, this.hint.object]);
     this.stage.panes = [{ label, scene, pose: at_rest, left: 0, top: 0, width: 1, height: 1 }];
     this.stage.frame(box.min, box.max);
     this.stage.on_draw(() => this.listener.turned());
@@ -88,10 +92,11 @@ export class ModelSide {
     this.task.textContent = task === "" ? "" : ` · ${task}`;
   }
 
-  show(markers: SideMarker[], lines: Line[]): void {
+  show(markers: SideMarker[], lines: Line[], fills: Fill[]): void {
     this.shown_markers = markers;
     this.markers.set(markers.map((marker) => new Vector3(...marker.point)), markers.map((marker) => marker.colour), markers.map((marker) => marker.size));
     this.lines.set(lines);
+    this.fills.set(fills);
     this.stage.draw_soon();
   }
 
@@ -163,7 +168,7 @@ export class ModelSide {
       has_moved = true;
       this.listener.dragged(marker.number, point);
     };
-    return { move, release: () => undefined };
+    return { move, release: () => has_moved && this.listener.drag_ended() };
   }
 
   private dragged_point(start: Vector3, normal: Vector3, x: number, y: number): Triple | null {

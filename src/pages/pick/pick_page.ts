@@ -10,11 +10,11 @@ import { Model } from "../view/models";
 import { check_pairs, next_place, type PairChecks } from "./checks";
 import { curve_name } from "./curve_checks";
 import { CurveEditor } from "./curve_editor";
-import { CurvePanel } from "./curve_panel";
-import { type Side, sides } from "./curves";
+import { CurvePanel, kept_patches } from "./curve_panel";
+import { is_patch, type Side, sides } from "./curves";
 import { ExportPanel } from "./export_panel";
 import { ModelsOfFiles } from "./file_models";
-import { anchors_json, parse_json } from "./formats";
+import { anchors_json, parse_json, parse_kept } from "./formats";
 import { History, type PickedPair, type Work } from "./history";
 import { ImportPanel } from "./import_panel";
 import { type DragMode, ModelSide, type SideListener, type SideMarker } from "./model_side";
@@ -22,6 +22,7 @@ import { Tracer } from "./tracer";
 
 const colours = ["#1d6fd1", "#c2410c", "#0f766e", "#7e22ce", "#a16207", "#be185d", "#4d7c0f", "#334155"];
 const mirror_names: [RegExp, string][] = [[/left/i, "right"], [/right/i, "left"], [/_l$/i, "_r"], [/_r$/i, "_l"], [/\bl\b/i, "r"], [/\br\b/i, "l"]];
+const curves_title = "Curves and patches";
 
 /** The page for picking anchors. */
 export function pick_page(root: HTMLElement, record: PickRecord, bytes: Uint8Array): void {
@@ -58,15 +59,15 @@ class PickPage {
   private checks: PairChecks;
 
   constructor(root: HTMLElement, private readonly record: PickRecord, bytes: Uint8Array) {
-    const given = record.anchors === null ? { pairs: [], curves: [] } : parse_json(record.anchors);
-    this.history = new History(`bespoke-pick-${record.key}`, given, () => this.refresh());
+    const given = record.anchors === null ? { pairs: [], curves: [], patches: [] } : parse_json(record.anchors);
+    this.history = new History(`bespoke-pick-${record.key}`, given, parse_kept, () => this.refresh());
     const models = record.meshes.map((mesh) => new Model(mesh, bytes));
     const tracers = models.map((model) => new Tracer(model.knots[0], model.faces));
     this.editor = new CurveEditor(this.history, { a: tracers[0], b: tracers[1] }, (text) => (this.curve_message.textContent = text));
     this.sides = { a: this.side("a", models[0]), b: this.side("b", models[1]) };
     const stages = { refresh: () => this.refresh(), draw: () => this.draw() };
     const mirror = element("button", { type: "button", onclick: () => this.mirror_curve() }, "Mirror chosen");
-    this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, [mirror]);
+    this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, mirror);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
     const files = new ModelsOfFiles(bytes, record.unit, { a: models[0], b: models[1] }, this.editor.tracers);
     this.export_panel = new ExportPanel(() => this.history.work, record.unit, files, (name, text) => this.save(name, text));
@@ -84,6 +85,7 @@ class PickPage {
       bespoke: {
         pairs: () => structuredClone(this.history.pairs),
         curves: () => structuredClone(this.history.curves),
+        inside: (side: Side) => this.editor.fills(side).map((fill) => fill.faces.length),
         pixel: (side: Side, point: Triple) => this.pixel(side, point),
         draw: () => [this.sides.a, this.sides.b].forEach((each) => each.stage.draw()),
       },
@@ -110,6 +112,10 @@ class PickPage {
       dragged: (number, point) => {
         if (lays_curves()) this.editor.dragged(name, number, point);
         else this.history.change_again(({ pairs }) => (pairs[number][name] = point));
+      },
+      drag_ended: () => {
+        this.editor.drag_ended();
+        this.refresh();
       },
       turned: () => this.follow(name),
       key: (event) => {
@@ -156,7 +162,7 @@ class PickPage {
       element("p", { class: "soft" }, "JSON and CSV, and files of MeshLab, 3D Slicer, Landmark Editor and Wrap: two, where each model has its own."),
       this.import_panel.body,
       element("p", { class: "soft" }, "Work is kept in this browser until it is deleted."));
-    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: "Curves", body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
+    return element("aside", { class: "panel" }, ...tabs([{ title: "Pairs", body: pairs }, { title: curves_title, body: this.curve_panel.body }, { title: "Save and import", body: saving }], (title) => this.set_mode(title)));
   }
 
   // ---- pairs
@@ -193,7 +199,7 @@ class PickPage {
 
   private set_mode(title: string): void {
     if (title === "Pairs") this.mode = "pairs";
-    if (title === "Curves") this.mode = "curves";
+    if (title === curves_title) this.mode = "curves";
     if (this.sides === undefined) return;
     this.set_drag_mode();
     this.draw();
@@ -228,7 +234,7 @@ class PickPage {
     const planes = this.found_planes();
     const images = { a: (point: Triple) => mirrored(point, planes.a), b: (point: Triple) => mirrored(point, planes.b) };
     const done = this.editor.mirror(images, (name) => this.mirror_name(name, this.history.curves));
-    this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve that has its lines on both models.";
+    this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve or a patch that is complete.";
   }
 
   /** Found once; from then on they are shown until somebody hides them. */
@@ -291,7 +297,7 @@ class PickPage {
       const pairs = this.history.pairs.flatMap((pair, i): SideMarker[] =>
         pair[side] === null ? [] : [{ number: lays_curves ? null : i, point: pair[side], colour: colours[i % colours.length], size: lays_curves ? "small" : i === this.chosen ? "large" : "plain" }],
       );
-      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side));
+      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side), this.editor.fills(side));
       this.sides[side].show_task(task);
     }
   }
@@ -366,18 +372,16 @@ class PickPage {
     setTimeout(() => URL.revokeObjectURL(url), 1000);
   }
 
-  /** Lists that a file has no place for stay as they were. */
+  /** Lists that a file has no place for stay as they were; so do patches, for which only JSON has one. */
   private take(work: Partial<Work>, files: string): void {
     this.chosen = -1;
     this.editor.choose(-1);
-    this.history.change((all) => Object.assign(all, work));
-    const counted = (list: unknown[] | undefined, one: string, more = `${one}s`): string[] => (list === undefined ? [] : [`${list.length} ${list.length === 1 ? one : more}`]);
-    const patches = work.patches?.length ?? 0;
-    const hidden = patches === 0 ? "" : ` ${patches === 1 ? "Its patch is" : `Its ${patches} patches are`} kept for saving, unseen and unchanged.`;
-    const read = [...counted(work.pairs, "pair"), ...counted(work.curves, "curve")].join(" and ");
-    const stays = (list: "curves" | "patches", one: string, more: string): string[] => (work[list] === undefined && (this.history.work[list]?.length ?? 0) > 0 ? counted(this.history.work[list], one, more) : []);
-    const kept = [...stays("curves", "curve", "curves"), ...stays("patches", "patch", "patches")].join(" and ");
-    this.say_of_files(`${read} from ${files}, in the place of what was there; Undo brings it back.${hidden}${kept === "" ? "" : ` As before: ${kept}.`}`, "soft");
+    const patches = work.patches === undefined ? this.history.curves.filter(is_patch) : [];
+    const stays = counts_of(work.curves === undefined ? { curves: this.history.curves } : { curves: patches });
+    const taken = work.curves === undefined ? work : { ...work, curves: [...work.curves, ...patches] };
+    this.history.change((all) => Object.assign(all, taken));
+    const texts = [`${counts_of(work)} from ${files}, in the place of what was there; Undo brings it back.`, kept_patches(this.history.work.patches.length), stays === "" ? "" : `As before: ${stays}.`];
+    this.say_of_files(texts.filter((text) => text !== "").join(" "), "soft");
   }
 
   private say_of_files(text: string, kind: "soft" | "warn" | ""): void {
@@ -391,4 +395,11 @@ class PickPage {
     const at = stage.pixel_of(stage.panes[0], new Vector3(...point));
     return [box.left + at.x, box.top + at.y];
   }
+}
+
+function counts_of({ pairs, curves }: Partial<Work>): string {
+  const borders = (curves ?? []).filter(is_patch).length, lines = (curves ?? []).length - borders;
+  const counted = (count: number, one: string, more = `${one}s`): string[] => (count === 0 ? [] : [`${count} ${count === 1 ? one : more}`]);
+  const all = [...(pairs === undefined ? [] : [`${pairs.length} pair${pairs.length === 1 ? "" : "s"}`]), ...counted(lines, "curve"), ...counted(borders, "patch", "patches")];
+  return all.length < 2 ? all.join("") : `${all.slice(0, -1).join(", ")} and ${all[all.length - 1]}`;
 }

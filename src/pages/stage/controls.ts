@@ -40,6 +40,7 @@ export function add_controls(stage: Stage, listener: ClickListener): void {
     fingers.set(event.pointerId, at);
     travelled = 0;
     is_panning = event.button !== 0 || event.shiftKey;
+    grabbed?.release(); // a second finger ends what the first one drags
     grabbed = fingers.size === 1 && event.button === 0 ? (listener.grab?.(at.x, at.y) ?? null) : null;
   });
 
