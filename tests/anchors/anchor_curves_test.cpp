@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/error.h"
@@ -78,18 +79,109 @@ TEST(CurvePairs, KeepFixedPoints) {
   CurvePairs curves(anchors, 0.5);
   Points nowhere = curves.sources();
   nowhere.setConstant(9);
-  curves.slide(nowhere);  // all but the fixed point go to the end of b
+  curves.slide(nowhere, 9);  // all but the fixed point are drawn to the end of b
   int fixed = 0;
+  double last = -1;
   for (const AnchorPair& pair : curves.pairs(0.1).pairs) {
-    if (*pair.sigma > 0) {
-      EXPECT_EQ(pair.b, Vector3(2, 0, 0));
-      continue;
-    }
-    ++fixed;
-    EXPECT_EQ(pair.a, Vector3(3, 0, 0));
-    EXPECT_EQ(pair.b, Vector3(1, 0, 0));
+    EXPECT_GT(pair.b.x(), last);
+    last = pair.b.x();
+    fixed += *pair.sigma == 0;
+    EXPECT_EQ(*pair.sigma == 0, pair.a == Vector3(3, 0, 0));
+    EXPECT_EQ(*pair.sigma == 0, pair.b == Vector3(1, 0, 0));
   }
   EXPECT_EQ(fixed, 1);
+  EXPECT_EQ(last, 2);
+}
+
+TEST(CurvePairs, KeepAFixedEndThatIsNoEndOfTheOther) {
+  Anchors anchors;
+  anchors.curves = {{"seam", corner, Points{{0, 1, 2}, {0, 0, 0}, {0, 0, 0}}, false, {{2, 1}}}};
+  const Anchors pairs = CurvePairs(anchors, 0.5).pairs(0.1);
+  EXPECT_EQ(pairs.pairs.back().a, Vector3(3, 1, 0));
+  EXPECT_EQ(pairs.pairs.back().b, Vector3(1, 0, 0));
+  EXPECT_EQ(pairs.pairs.back().sigma, 0);
+}
+
+TEST(CurvePairs, SlideToTheNearestPlaces) {
+  Anchors anchors;
+  const Points line{{0, 10}, {0, 0}, {0, 0}};
+  anchors.curves = {{"seam", line, line, false, {}}};
+  CurvePairs curves(anchors, 1);
+  Points places = curves.sources();
+  for (auto&& x : places.colwise()) x += Vector3(0.1 * std::sin(x.x()), 0.3, 0);
+  curves.slide(places, 1);
+  const Anchors slid = curves.pairs(0);
+  for (Eigen::Index i = 1; i + 1 < places.cols(); ++i)
+    EXPECT_NEAR(slid.pairs[static_cast<std::size_t>(i)].b.x(), places(0, i), 1e-12);
+}
+
+// Neither past each other nor onto each other, and no farther than the reach.
+TEST(CurvePairs, SlideInTheirOrder) {
+  Anchors anchors;
+  for (const Vector3& x : {Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, 0, 1)})
+    anchors.pairs.push_back({"", 3 * x, 3 * x});
+  for (const int direction : {1, -1}) {
+    anchors.curves = {{"waist", circle(90, 0, 1), circle(90, 1, direction), true, {}}};
+    CurvePairs curves(anchors, 0.1);
+    const Points sources = curves.sources();
+    std::mt19937 engine(5);
+    std::normal_distribution<double> noise(0, 0.2);
+    Points places = sources;
+    for (double& x : places.reshaped()) x += noise(engine);
+    const double reach = 0.5;
+    curves.slide(places, reach);
+    const auto angle = [](const Vector3& x) { return std::atan2(x.y(), x.x()); };
+    const Anchors slid = curves.pairs(0);
+    const auto count = static_cast<std::size_t>(sources.cols());
+    const double even = 2 * std::numbers::pi / static_cast<double>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const AnchorPair &pair = slid.pairs[3 + i], &next = slid.pairs[3 + (i + 1) % count];
+      EXPECT_GT(std::remainder(angle(next.b) - angle(pair.b), 2 * std::numbers::pi), 0.2 * even);
+      EXPECT_LT(std::abs(std::remainder(angle(pair.b) - angle(pair.a), 2 * std::numbers::pi)), reach + even);
+    }
+  }
+}
+
+/// A straight curve of eleven pairs, its counterpart moved by what `asked` says of a place.
+template <class Asked>
+Anchors bent_line(const Asked& asked) {
+  Anchors anchors;
+  Points a(3, 11), b(3, 11);
+  for (int i = 0; i < 11; ++i) a.col(i) = Vector3(i, 0, 0);
+  for (int i = 0; i < 11; ++i) b.col(i) = a.col(i) + asked(a.col(i));
+  anchors.curves = {{"seam", a, b, false, {}}};
+  return anchors;
+}
+
+/// The pairs of bent_line after they gave way to places along the straight line.
+std::vector<AnchorPair> given_way(const Anchors& anchors, const Points& held) {
+  CurvePairs curves(anchors, 1);
+  curves.slide(anchors.curves[0].b, 9);
+  curves.give_way(anchors.curves[0].a, held);
+  return curves.pairs(0).pairs;
+}
+
+TEST(CurvePairs, GiveNoWayWhereTheyAreGentle) {
+  const Anchors anchors = bent_line([](const Vector3& x) { return Vector3(0, 0.2 * x.x(), 1); });
+  const std::vector<AnchorPair> pairs = given_way(anchors, Points(3, 0));
+  ASSERT_EQ(pairs.size(), 11u);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    EXPECT_LT((pairs[i].b - anchors.curves[0].b.col(static_cast<Eigen::Index>(i))).norm(), 1e-12);
+}
+
+TEST(CurvePairs, GiveWayWhereTheyWouldFoldTheSurface) {
+  const Anchors anchors =
+      bent_line([](const Vector3& x) { return Vector3(0, 2 * std::sin(2 * x.x()), 0.1 * x.x()); });
+  const Points held = Vector3(5, 0, 0);
+  const std::vector<AnchorPair> pairs = given_way(anchors, held);
+  ASSERT_EQ(pairs.size(), 11u);
+  const auto moved = [](const AnchorPair& pair) { return Vector3(pair.b - pair.a); };
+  for (const AnchorPair& pair : pairs) {
+    const double from_held = (pair.a - held.col(0)).norm();
+    EXPECT_LE(moved(pair).cwiseAbs().maxCoeff(), from_held / 4 + 1e-9);
+    for (const AnchorPair& other : pairs)
+      EXPECT_LE((moved(pair) - moved(other)).cwiseAbs().maxCoeff(), (pair.a - other.a).norm() / 4 + 1e-9);
+  }
 }
 
 // A circle that begins elsewhere and runs the other way is the same curve.

@@ -60,6 +60,22 @@ TEST(FitCurves, MeetThemWithinTheTolerance) {
   EXPECT_GT(distance_from_polyline(waist.b, true, mapped), 10 * fit.summary.curves[0].largest_distance);
 }
 
+// Its counterpart goes up and down more steeply than a surface follows without folds.
+TEST(FitCurves, GiveWayWhereTheyWouldFoldTheSurface) {
+  CurveScene scene;
+  Points& wavy = scene.anchors.curves[0].b;
+  for (Eigen::Index i = 0; i < wavy.cols(); ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(wavy.cols());
+    wavy.col(i) = level_curve({1.1, 0.9, 1.2}, 0.1 + 0.1 * std::sin(12 * angle), 1, angle);
+  }
+  const FittedMapping fit = fit_mapping(scene.source, scene.target, scene.anchors, scene.options);
+  const TriangleMesh fitted{fit.target_from_source * fit.fitted_vertices, scene.source.faces};
+  const Points normals = face_normals(fitted);
+  for (Eigen::Index face = 0; face < fitted.faces.cols(); ++face)
+    EXPECT_GT(normals.col(face).dot(fitted.vertices.col(fitted.faces(0, face))), 0) << face;
+  EXPECT_GT(fit.summary.curves[0].largest_distance, 10 * scene.options.fit_tolerance);  // and it is said
+}
+
 TEST(FitCurves, AreRefusedWithAGivenFit) {
   CurveScene scene;
   EXPECT_THROW(fit_mapping_to_fitted(scene.source, scene.source, scene.anchors, scene.options), InvalidInput);

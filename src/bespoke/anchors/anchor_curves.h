@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "bespoke/anchors/anchors.h"
@@ -30,8 +31,15 @@ class CurvePairs {
   Anchors pairs(double sigma) const;
 
   /// Moves the counterparts along their curves to where they are nearest to these places (3×k, target frame)
-  /// of the curves' points; fixed points stay.
-  void slide(const Points& places);
+  /// of the curves' points, at most `reach` (mesh units along the curve) from where equal shares put them,
+  /// and in their order: what would pass its neighbour, or come to lie at it, goes as near as that allows in
+  /// the sense of least squares. Fixed points stay.
+  void slide(const Points& places, double reach);
+
+  /// Draws the counterparts back towards `places` (3×k, target frame), where the surface lay before it was to
+  /// meet the curves, as far as they ask for displacements that no surface follows without folds: a quarter
+  /// of the distance between two points at most is the difference of theirs, and from none at `held` (3×m).
+  void give_way(const Points& places, const Points& held);
 
   Points sources() const;  ///< 3×k: the curves' points on the source
 
@@ -40,9 +48,11 @@ class CurvePairs {
     std::size_t curve = 0;
     AnchorPair pair;
     bool is_fixed = false;
+    double share = 0;  // of b's length, by equal shares; goes on past the beginning of a closed curve
   };
 
   bool is_taken(const Vector3& source, std::size_t curve, double distance) const;
+  void slide_along(std::span<Sample> samples, const Points& places, double reach) const;
 
   Anchors given_;  // without its curves
   std::vector<AnchorCurve> curves_;

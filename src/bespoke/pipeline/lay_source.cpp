@@ -96,16 +96,30 @@ Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, c
   return places;
 }
 
+/// Where exact pairs hold the source.
+Points held_places(const Anchors& anchors) {
+  Points held(3, 0);
+  for (const AnchorPair& pair : anchors.pairs) {
+    if (!is_exact(pair)) continue;
+    held.conservativeResize(3, held.cols() + 1);
+    held.rightCols(1) = pair.b;
+  }
+  return held;
+}
+
 /// The same with curves, in two fits: the first may move along them, and across within what matching by
-/// length leaves open; the second meets them where the first came to lie.
+/// length leaves open; the second meets them where the first came to lie, as far as that needs no fold.
 Anchors lay_by_curves(FittedMapping& result, const LayInput& input, const Anchors& anchors,
                       const Progress& progress) {
   constexpr double spacing = 0.01, sliding = 0.02;  // of the source's diagonal
+  constexpr double reach = 3;                       // standard deviations of the sliding
   const double size = diagonal(input.source.vertices);
   CurvePairs curves(anchors, spacing * size);
   FittedMapping first;
-  lay_by_anchors(first, input, curves.pairs(sliding * size), progress);
-  curves.slide(laid_with_source(first, input.source, curves.sources()));
+  const Anchors rated = lay_by_anchors(first, input, curves.pairs(sliding * size), progress);
+  const Points laid = laid_with_source(first, input.source, curves.sources());
+  curves.slide(laid, reach * sliding * size);
+  curves.give_way(laid, held_places(rated));
   return lay_by_anchors(result, input, curves.pairs(0), progress);
 }
 
