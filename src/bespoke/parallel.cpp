@@ -29,6 +29,13 @@ void happens_after([[maybe_unused]] void* event) {
 #endif
 }
 
+/// Says so when its scope ends, be it by an exception.
+struct AtEnd {
+  void (*say)(void*);
+  void* event;
+  ~AtEnd() { say(event); }
+};
+
 }  // namespace
 
 void parallel_for(std::size_t count, std::size_t grain,
@@ -37,12 +44,12 @@ void parallel_for(std::size_t count, std::size_t grain,
   const std::size_t chunks = (count + grain - 1) / grain;
   char begun = 0, ended = 0;  // their addresses name the two events
   happens_before(&begun);
+  const AtEnd all{happens_after, &ended};
   tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     happens_after(&begun);
+    const AtEnd one{happens_before, &ended};
     body(chunk * grain, std::min(count, (chunk + 1) * grain));
-    happens_before(&ended);
   });
-  happens_after(&ended);
 }
 
 #ifdef BESPOKE_THREAD_SANITIZER
