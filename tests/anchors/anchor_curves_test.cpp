@@ -115,6 +115,23 @@ TEST(CurvePairs, SlideToTheNearestPlaces) {
     EXPECT_NEAR(slid.pairs[static_cast<std::size_t>(i)].b.x(), places(0, i), 1e-12);
 }
 
+// Drawn to one place, and beyond an end, they wait in their order.
+TEST(CurvePairs, StayApartWhereAllAreDrawnToOnePlace) {
+  Anchors anchors;
+  const Points line{{0, 10}, {0, 0}, {0, 0}};
+  anchors.curves = {{"seam", line, line, false, {}}};
+  for (const double drawn : {-20.0, 5.0, 20.0}) {
+    CurvePairs curves(anchors, 1);
+    Points places = curves.sources();
+    places.row(0).setConstant(drawn);
+    curves.slide(places, 9);
+    const std::vector<AnchorPair> slid = curves.pairs(0).pairs;
+    ASSERT_EQ(slid.size(), 11u);
+    for (std::size_t i = 1; i < slid.size(); ++i)
+      EXPECT_GE(slid[i].b.x() - slid[i - 1].b.x(), 0.25 - 1e-12) << drawn;
+  }
+}
+
 // Neither past each other nor onto each other, and no farther than the reach.
 TEST(CurvePairs, SlideInTheirOrder) {
   Anchors anchors;

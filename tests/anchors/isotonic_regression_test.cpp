@@ -57,6 +57,10 @@ TEST(NearestRising, KeepsFixedValues) {
   EXPECT_THAT(nearest_rising({{4}, {2, true}, {1}, {9}, {3, true}, {2}}), ElementsAre(2, 2, 2, 3, 3, 3));
 }
 
+TEST(NearestRising, StaysWithinBounds) {
+  EXPECT_THAT(nearest_rising({{-4}, {2}, {1}, {9}}, 0, 5), ElementsAre(0, 1.5, 1.5, 5));
+}
+
 TEST(NearestRisingRound, HasNoEnds) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const std::vector<SlidingValue> values = random_values(20, seed);

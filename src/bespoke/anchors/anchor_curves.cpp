@@ -121,6 +121,11 @@ Vector3 nearest_along(const Points& polyline, bool closed, const Vector3& x) {
 
 namespace {
 
+/// The same for shares that go on past the beginning of a closed curve, and for rounding at the ends.
+Vector3 place_at(const Points& polyline, bool closed, double share) {
+  return point_along(polyline, closed, closed ? wrapped(share) : std::clamp(share, 0.0, 1.0));
+}
+
 /// Between places, a component of a displacement changes by at most this much of their distance: all three
 /// together by less than a half, so that nothing turns over. With a border around an eye, drawn 0.3 % of the
 /// diagonal beside its place, 1 leaves 285 turned faces, 0.5 leaves 32, this none.
@@ -179,11 +184,8 @@ CurvePairs::CurvePairs(const Anchors& given, double spacing) : given_(given) {
     const std::vector<Knot> knots = knots_of(curve, given);
     const double length = lengths_up_to(curve.a, curve.closed).back();
     const auto add = [&](double a, double b, bool is_fixed) {
-      const auto at = [&](const Points& line, double share) {
-        return point_along(line, curve.closed, curve.closed ? wrapped(share) : std::clamp(share, 0.0, 1.0));
-      };
-      AnchorPair pair{curve.name + '[' + std::to_string(samples_.size()) + ']', at(curve.a, a),
-                      at(curve.b, b)};
+      AnchorPair pair{curve.name + '[' + std::to_string(samples_.size()) + ']',
+                      place_at(curve.a, curve.closed, a), place_at(curve.b, curve.closed, b)};
       if (is_taken(pair.a, k, is_fixed ? 0 : too_near * spacing)) return;
       samples_.push_back({k, std::move(pair), is_fixed, b});
     };
@@ -244,14 +246,13 @@ void CurvePairs::slide_along(std::span<Sample> samples, const Points& places, do
     values.push_back({direction * (share - least_gap * sample.share), sample.is_fixed});
   }
   // What follows the end of a closed curve is its beginning, one turn on.
-  const std::vector<double> rising =
-      curve.closed ? nearest_rising_round(values, 1 - least_gap) : nearest_rising(values);
+  const std::vector<double> rising = curve.closed ? nearest_rising_round(values, 1 - least_gap)
+                                                  : nearest_rising(values, -least_gap * samples.front().share,
+                                                                   1 - least_gap * samples.back().share);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     Sample& sample = samples[i];
     if (sample.is_fixed) continue;
-    const double share = direction * rising[i] + least_gap * sample.share;
-    sample.pair.b =
-        point_along(curve.b, curve.closed, curve.closed ? wrapped(share) : std::clamp(share, 0.0, 1.0));
+    sample.pair.b = place_at(curve.b, curve.closed, direction * rising[i] + least_gap * sample.share);
   }
 }
 

@@ -31,9 +31,9 @@ class CurvePairs {
   Anchors pairs(double sigma) const;
 
   /// Moves the counterparts along their curves to where they are nearest to these places (3×k, target frame)
-  /// of the curves' points, at most `reach` (mesh units along the curve) from where equal shares put them,
-  /// and in their order: what would pass its neighbour, or come to lie at it, goes as near as that allows in
-  /// the sense of least squares. Fixed points stay.
+  /// of the curves' points, among what lies within `reach` (mesh units along the curve) of where equal shares
+  /// put them. Where they would pass one another, or come closer than a quarter of their even spacing, they
+  /// go as near to that as their order allows, in the sense of least squares. Fixed points stay.
   void slide(const Points& places, double reach);
 
   /// Draws the counterparts back towards `places` (3×k, target frame), where the surface lay before it was to

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 
 namespace bespoke {
 namespace {
@@ -30,14 +29,12 @@ void append_rising(const SlidingValue* begin, const SlidingValue* end, double lo
 
 }  // namespace
 
-std::vector<double> nearest_rising(const std::vector<SlidingValue>& values) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
+std::vector<double> nearest_rising(const std::vector<SlidingValue>& values, double low, double high) {
   std::vector<double> rising;
-  double low = -infinity;
   const SlidingValue* const last = values.data() + values.size();
   for (const SlidingValue* begin = values.data(); begin != last;) {
     const SlidingValue* end = std::find_if(begin, last, [](const SlidingValue& v) { return v.is_fixed; });
-    append_rising(begin, end, low, end == last ? infinity : end->value, rising);
+    append_rising(begin, end, low, end == last ? high : end->value, rising);
     if (end == last) break;
     low = end->value;
     rising.push_back(low);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace bespoke {
@@ -11,8 +12,11 @@ struct SlidingValue {
 };
 
 /// The rising sequence nearest to this one by the sum of squares (isotonic regression, by pooling neighbours
-/// that fall; Barlow and others 1972), in which fixed values stay. Neighbours may become equal.
-std::vector<double> nearest_rising(const std::vector<SlidingValue>& values);
+/// that fall; Barlow and others 1972), from `low` to `high`, in which fixed values, that lie between, stay.
+/// Neighbours may become equal.
+std::vector<double> nearest_rising(const std::vector<SlidingValue>& values,
+                                   double low = -std::numeric_limits<double>::infinity(),
+                                   double high = std::numeric_limits<double>::infinity());
 
 /// The same where the first value, raised by `turn`, follows the last.
 std::vector<double> nearest_rising_round(const std::vector<SlidingValue>& values, double turn);
