@@ -69,6 +69,18 @@ export async function open_page(browser: Browser, path: string, options: Browser
   return { page, trouble };
 }
 
+type Triple = [number, number, number];
+
+/** Two sample feet in a directory, their anchors, and the page of `bespoke pick` for them (pick.html), opened with free cameras. */
+export async function open_feet(directory: string): Promise<{ browser: Browser; opened: Opened; given: { name: string; a: Triple; b: Triple }[] }> {
+  bespoke(directory, "samples", ".", "shoe", "--quiet");
+  bespoke(directory, "pick", "shoe/source.obj", "shoe/target.obj", "-o", "pick.html");
+  const browser = await launch();
+  const opened = await open_page(browser, join(directory, "pick.html"));
+  await opened.page.getByLabel("Cameras linked").uncheck();
+  return { browser, opened, given: JSON.parse(readFileSync(join(directory, "shoe/anchors.json"), "utf8")).pairs };
+}
+
 /** Waits, at most ten seconds, for what the page does by and by. (Playwright's own waiting is a string of JavaScript, which the page's policy forbids.) */
 export async function until(condition: () => Promise<boolean>): Promise<void> {
   for (let waited = 0; waited < 100; ++waited) {

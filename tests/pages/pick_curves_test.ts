@@ -7,7 +7,7 @@ import { after, before, test } from "node:test";
 import type { Browser } from "playwright-core";
 
 import { SurfaceGraph } from "../../src/pages/maths/surface_graph";
-import { bespoke, launch, obj_vertices, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
+import { bespoke, obj_vertices, open_feet, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
 
 require_browser();
 
@@ -38,12 +38,7 @@ let given: (Record<Side, Triple> & { name: string })[];
 const clicked = ["shin_front", "shin_outside", "ankle_outside", "ankle_front"]; // seen from this side, in their order round a patch
 
 before(async () => {
-  bespoke(directory, "samples", ".", "shoe", "--quiet");
-  given = JSON.parse(readFileSync(join(directory, "shoe/anchors.json"), "utf8")).pairs;
-  bespoke(directory, "pick", "shoe/source.obj", "shoe/target.obj", "-o", "pick.html");
-  browser = await launch();
-  opened = await open_page(browser, join(directory, "pick.html"));
-  await opened.page.getByLabel("Cameras linked").uncheck();
+  ({ browser, opened, given } = await open_feet(directory));
   await opened.page.getByRole("tab", { name: "Curves" }).click();
 });
 

@@ -6,7 +6,7 @@ import { after, before, test } from "node:test";
 
 import type { Browser, Page } from "playwright-core";
 
-import { bespoke, drawn_pixels, launch, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
+import { bespoke, drawn_pixels, open_feet, require_browser, scratch_directory, until, type Opened } from "./browser";
 
 require_browser();
 
@@ -28,12 +28,7 @@ let opened: Opened;
 let given: Pair[];
 
 before(async () => {
-  bespoke(directory, "samples", ".", "shoe", "--quiet");
-  given = JSON.parse(readFileSync(join(directory, "shoe/anchors.json"), "utf8")).pairs;
-  bespoke(directory, "pick", "shoe/source.obj", "shoe/target.obj", "-o", page_file);
-  browser = await launch();
-  opened = await open_page(browser, page_file);
-  await opened.page.getByLabel("Cameras linked").uncheck();
+  ({ browser, opened, given } = await open_feet(directory));
 });
 
 after(async () => {

@@ -1,6 +1,6 @@
 import { dot, minus, SurfaceGraph } from "../maths/surface_graph";
 import type { CompletePair } from "../pick/history";
-import type { Side } from "../pick/curves";
+import { model_of, type Side } from "../pick/curves";
 import type { Triple } from "../scene/scene";
 import { is_finite, numbered_lines, parsed_json, words_of } from "./file_text";
 import type { NamedPoint } from "./side";
@@ -73,7 +73,7 @@ export function wrap_text(points: NamedPoint[], model: ExactModel): string {
 export function parse_indices(text: string, file: string, models: Record<Side, ExactModel>): CompletePair[] {
   const vertex = (word: string, side: Side, where: string): Triple => {
     const number = Number(word), model = models[side];
-    if (number < 0 || number >= model.vertex_count) throw new Error(`${where}: vertex ${number} of the ${side === "a" ? "source" : "target"}'s ${model.vertex_count}`);
+    if (number < 0 || number >= model.vertex_count) throw new Error(`${where}: vertex ${number} of the ${model_of[side]}'s ${model.vertex_count}`);
     return model.vertex(number);
   };
   return numbered_lines(text, file).flatMap(({ line, where }) => {

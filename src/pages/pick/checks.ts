@@ -1,6 +1,7 @@
 import type { Triple } from "../scene/scene";
 import { box_diagonal, coarse_warp, distance, flatness, left_out_predictions, rigid_warp, type Warp } from "../maths/warp";
 import { shown } from "../maths/numbers";
+import { model_of } from "./curves";
 import { is_complete, type CompletePair, type PickedPair } from "./history";
 
 /** What the pairs say about each other, by the rules of `bespoke fit` (anchors/anchor_audit.h). */
@@ -56,7 +57,7 @@ function warn_of_places(complete: CompletePair[], checks: PairChecks): void {
     for (let i = 0; i < points.length; ++i)
       for (let j = 0; j < i; ++j)
         if (points.length > 2 && distance(points[i], points[j]) <= reach)
-          checks.warnings.push(`${name_of(complete[j], j)} and ${name_of(complete[i], i)} lie at one place of the ${side === "a" ? "source" : "target"}.`);
+          checks.warnings.push(`${name_of(complete[j], j)} and ${name_of(complete[i], i)} lie at one place of the ${model_of[side]}.`);
   }
 }
 

@@ -1,5 +1,5 @@
 import type { Triple } from "../scene/scene";
-import { in_order, is_complete_curve, is_patch, line_of, needed_sides, new_curve, polyline, type PickedCurve, type PickedLine, type Side, sides } from "./curves";
+import { in_order, is_complete_curve, is_patch, line_of, model_of, needed_sides, new_curve, polyline, type PickedCurve, type PickedLine, type Side, sides } from "./curves";
 import { is_complete, type PickedPair, type Work } from "./history";
 
 function triple(value: unknown, where: string): Triple {
@@ -50,7 +50,7 @@ function parse_curve(curve: Record<string, unknown>, number: number): PickedCurv
   const name = String(curve.name ?? "");
   const where = `curve ${number}${name === "" ? "" : ` (“${name}”)`}`;
   const points = (key: "a" | "b"): Triple[] => {
-    const model = key === "a" ? "source" : "target", value = curve[key];
+    const model = model_of[key], value = curve[key];
     if (value === undefined) throw new Error(`${where} has no line on the ${model}: the key "${key}" is missing`);
     if (!Array.isArray(value) || value.length < 2)
       throw new Error(`${where}: its line on the ${model}, "${key}", has ${Array.isArray(value) ? value.length : "no list of"} points; two at least make a line`);
