@@ -67,6 +67,7 @@ TEST_F(FitCommand, PaperIsThePrintedMethod) {
   const json& additions = found["options"]["laplacian"];
   EXPECT_EQ(additions.size(), 6u);
   for (const auto& [name, on] : additions.items()) EXPECT_EQ(on, false) << name;
+  EXPECT_EQ(found["options"]["mend_models"], false);
   ASSERT_EQ(pair_.fit("own.vdb", {"--surface-fit", "laplacian"}).exit_code, 0);
   const json own = info("own.vdb")["options"]["laplacian"];
   EXPECT_EQ(own.size(), 6u);

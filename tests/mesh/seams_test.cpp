@@ -40,6 +40,14 @@ TEST(JoinedAtSeams, LeavesAMeshWithoutSeams) {
   }
 }
 
+TEST(LeftOpen, JoinsNothing) {
+  const TriangleMesh cut = shapes::soup(shapes::icosphere(1));
+  const JoinedMesh same = left_open(cut);
+  EXPECT_EQ(same.joined(), 0u);
+  EXPECT_EQ(same.mesh.faces, cut.faces);
+  EXPECT_EQ(same.mesh.vertices(Eigen::all, same.of_vertex), cut.vertices);
+}
+
 // Two spheres that touch in a vertex, and two triangles that do: no edge in common.
 TEST(JoinedAtSeams, LeavesApartWhatTouches) {
   TriangleMesh both;

@@ -194,6 +194,8 @@ TEST(FitMapping, DoesNotSeeSeams) {
   EXPECT_EQ(fit.summary.seams.target, of_target.size() - 2562);
   EXPECT_EQ(stage_lines(fit.summary, cut.anchors).front().name, "seams");
   EXPECT_FALSE(has_any(expected.summary.seams));
+  cut.options.surface_fit.mend_models = false;
+  EXPECT_FALSE(has_any(cut.fit().summary.seams));
 }
 
 TEST(FitMapping, NamesWhatTheAnchorsLack) {

@@ -51,6 +51,8 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
     EXPECT_TRUE(fit.summary.target_turned_over) << entry.name;
     EXPECT_EQ(fit.vertices, expected.vertices) << entry.name;
     EXPECT_NE(to_string(fit.summary).find("turned over"), std::string::npos);
+    options.mend_models = false;
+    EXPECT_FALSE((Scene{shapes::icosphere(3), inside_out}.fit(options).summary.target_turned_over));
   }
 }
 

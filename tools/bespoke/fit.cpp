@@ -274,8 +274,11 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_flag(
          "--paper", arguments.paper,
          "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, "
-         "--path euler")
+         "--path euler, --as-given")
       ->excludes(surface_fit, elastic, path);
+  fit.add_flag("--as-given", arguments.as_given,
+               "Take the models as they are: by default edges that a file cuts open at the same places are "
+               "joined, and a target that is inside out is turned over");
   fit.add_flag("--add-corners", arguments.add_corners,
                "Add the eight corners of the bounding boxes of the two models, aligned, as anchor pairs");
 }

@@ -1,7 +1,7 @@
 #include "bespoke/mesh/seams.h"
 
 #include <algorithm>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
 #include "bespoke/mesh/disjoint_sets.h"
@@ -41,6 +41,12 @@ JoinedMesh joined_at_seams(const TriangleMesh& mesh) {
   for (int& vertex : result.mesh.faces.reshaped())
     vertex = result.of_vertex[static_cast<std::size_t>(vertex)];
   return result;
+}
+
+JoinedMesh left_open(const TriangleMesh& mesh) {
+  std::vector<int> same(static_cast<std::size_t>(mesh.vertices.cols()));
+  std::iota(same.begin(), same.end(), 0);
+  return {mesh, same, same};
 }
 
 }  // namespace bespoke

@@ -21,4 +21,7 @@ struct JoinedMesh {
 /// What merely touches stays apart. Throws InvalidInput for coordinates that are not finite.
 JoinedMesh joined_at_seams(const TriangleMesh& mesh);
 
+/// The mesh as it is, nothing joined.
+JoinedMesh left_open(const TriangleMesh& mesh);
+
 }  // namespace bespoke

@@ -191,8 +191,10 @@ struct JoinedModels {
   JoinedMesh source, target;
 };
 
-JoinedModels joined_models(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target) {
-  JoinedModels joined{joined_at_seams(source), joined_at_seams(target)};
+JoinedModels joined_models(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                           const FitOptions& options) {
+  const auto join = options.surface_fit.mend_models ? joined_at_seams : left_open;
+  JoinedModels joined{join(source), join(target)};
   result.summary.seams = {joined.source.joined(), joined.target.joined()};
   return joined;
 }
@@ -268,7 +270,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
                           const FitOptions& options, const Progress& progress) {
   FittedMapping result;
   require_models(source, target, anchors, options);
-  const JoinedModels joined = joined_models(result, source, target);
+  const JoinedModels joined = joined_models(result, source, target, options);
   const Anchors rated =
       lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
   hold_parts_apart(result, joined.source.mesh, options, progress);
@@ -286,7 +288,7 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
                                  const Progress& progress) {
   FittedMapping result;
   require_models(source, target, anchors, options);
-  const JoinedModels joined = joined_models(result, source, target);
+  const JoinedModels joined = joined_models(result, source, target, options);
   lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
   part_at_seams(result, joined.source);
   return result;

@@ -29,6 +29,7 @@ std::string recorded_options(const MakeMapOptions& options, RotationPath path, b
     json["max_stretch"] = options.fit.surface_fit.max_stretch;
     json["max_iterations"] = options.fit.surface_fit.max_iterations;
     json["epsilon"] = options.fit.surface_fit.epsilon;
+    if (!options.fit.surface_fit.mend_models) json["mend_models"] = false;
     if (options.fit.surface_fit.method == SurfaceFitMethod::laplacian)
       json["laplacian"] = laplacian_json(options.fit.surface_fit);
   }

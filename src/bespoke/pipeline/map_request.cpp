@@ -8,6 +8,7 @@ namespace {
 void use_printed_method(MakeMapOptions& options) {
   options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
   options.fit.surface_fit.laplacian = no_additions;
+  options.fit.surface_fit.mend_models = false;
   options.fit.elastic = ElasticMethod::csrbf;
   options.path = RotationPath::euler;
   options.fit.steps = 1;
@@ -31,6 +32,7 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
   MakeMapOptions options = default_options(source_diagonal);
   if (request.paper) use_printed_method(options);
   if (request.surface_fit) options.fit.surface_fit.method = *request.surface_fit;
+  if (request.as_given) options.fit.surface_fit.mend_models = false;
   if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
   if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
   if (request.elastic) options.fit.elastic = *request.elastic;

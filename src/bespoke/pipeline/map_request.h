@@ -25,8 +25,9 @@ struct MapRequest {
   std::optional<std::uint64_t> max_memory;  ///< bytes
   bool keep_exact = false;
   bool half = false;
-  bool strict = false;  ///< the tolerance is met everywhere, whatever it takes
-  bool paper = false;   ///< the printed method; needs anchors
+  bool strict = false;    ///< the tolerance is met everywhere, whatever it takes
+  bool as_given = false;  ///< models are not mended (SurfaceFitOptions)
+  bool paper = false;     ///< the printed method; needs anchors
 };
 
 MakeMapOptions make_options(const MapRequest& request, double source_diagonal);

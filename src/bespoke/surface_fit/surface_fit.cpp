@@ -118,7 +118,7 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
                        const Progress& progress) {
   require_consistent(input, options);
   const auto& entry = entry_of(options.method);
-  if (!faces_away({input.warped_vertices, input.source.faces}, input.target))
+  if (!options.mend_models || !faces_away({input.warped_vertices, input.source.faces}, input.target))
     return entry.fit(input, options, progress);
   const TriangleMesh target = turned_over(input.target);
   SurfaceFit fit =

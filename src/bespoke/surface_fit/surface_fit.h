@@ -46,6 +46,9 @@ inline constexpr LaplacianAdditions no_additions{false, false, false, false, fal
 
 struct SurfaceFitOptions {
   SurfaceFitMethod method = SurfaceFitMethod::deformation_graph;
+  /// Models are mended first: seams are joined (seams.h, by who calls fit_surface), and a target that is
+  /// inside out is turned over. Not part of the printed method.
+  bool mend_models = true;
   int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
   double epsilon = 1e-5;     ///< ε of the paper, a fraction of the source's bounding-box diagonal
   /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit, instead of the printed or the scaled one:

@@ -45,6 +45,7 @@ class RequestReader {
     request.keep_exact = flag("keep_exact");
     request.half = flag("half");
     request.strict = flag("strict");
+    request.as_given = flag("as_given");
     request.paper = flag("paper");
     return request;
   }
