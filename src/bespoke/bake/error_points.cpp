@@ -31,6 +31,7 @@ class CellFinder {
     for (const PyramidLevel& level : pyramid.levels) tables_.emplace_back(level.leaves);
   }
 
+  /// Outside all leaves the cell of level 0.
   FinestCell find(const Vector3& x) const {
     // Voxels of a level are halves of those above it: the cells that hold x follow from that of the last.
     const int last = static_cast<int>(tables_.size()) - 1;
@@ -43,6 +44,10 @@ class CellFinder {
     }
   }
 
+  bool is_in_a_leaf(const FinestCell& cell) const {
+    return cell.level > 0 || tables_.front().find(leaf_of(cell.node)) != no_leaf;
+  }
+
  private:
   const Pyramid& pyramid_;
   std::vector<LeafTable> tables_;
@@ -50,12 +55,12 @@ class CellFinder {
 
 struct Corner {
   Vector3 place;
-  FinestCell cell;
+  double cell_size;
 };
 using Triangle = std::array<Corner, 3>;
 
 /// Adds the cells along a triangle: its longest edge is halved until it is no longer than the finest voxel at
-/// its corners.
+/// its corners, or than a leaf where there is none: a step of fine layers may have leaves in few places.
 class CellsAlong {
  public:
   CellsAlong(const Pyramid& pyramid, const CellFinder& finder, std::vector<FinestCell>& cells)
@@ -73,15 +78,16 @@ class CellsAlong {
  private:
   Corner corner(const Vector3& place) {
     const FinestCell cell = finder_.find(place);
-    // Neighbours along the surface mostly share one: the list is a third as long to sort.
+    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+    if (!finder_.is_in_a_leaf(cell)) return {place, leaf_edge * voxel_size};
+    // Neighbours along the surface mostly share one.
     if (cells_.empty() || cells_.back() != cell) cells_.push_back(cell);
-    return {place, cell};
+    return {place, voxel_size};
   }
 
   void split_if_longer(const Triangle& triangle) {
     double finest = std::numeric_limits<double>::infinity();
-    for (const Corner& corner : triangle)
-      finest = std::min(finest, pyramid_.levels[static_cast<std::size_t>(corner.cell.level)].voxel_size);
+    for (const Corner& corner : triangle) finest = std::min(finest, corner.cell_size);
     std::size_t longest = 0;
     double squared = 0;
     for (std::size_t edge = 0; edge < 3; ++edge) {

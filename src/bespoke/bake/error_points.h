@@ -30,7 +30,7 @@ struct FinestCell {
 std::vector<FinestCell> finest_cells_at(const Pyramid& pyramid, const Points& at);
 
 /// The finest cells that the surface passes through, each once, in lattice order: up to some that it only
-/// grazes. `surface` in the source frame, mesh units.
+/// grazes. Cells outside all leaves are none. `surface` in the source frame, mesh units.
 std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMesh& surface);
 
 /// An equal number of points in each cell, 27 at most, each in another of its 3³ parts; where there are more
