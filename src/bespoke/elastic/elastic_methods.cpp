@@ -34,6 +34,17 @@ ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, 
   return {std::move(fit.map), std::move(fit.summary)};
 }
 
+std::size_t multiscale_layers(const ElasticMap& map) {
+  return dynamic_cast<const MultiscaleMap&>(map).layers().size();
+}
+
+std::array<ElasticFit, 2> multiscale_halves(const ElasticFit& fit) {
+  auto [first, second] =
+      halves(dynamic_cast<const MultiscaleMap&>(*fit.map), std::get<MultiscaleSummary>(fit.found));
+  return {
+      {{std::move(first.map), std::move(first.summary)}, {std::move(second.map), std::move(second.summary)}}};
+}
+
 template <class Map>
 ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const Progress&) {
   return {std::make_shared<const Map>(input.source, input.fitted, options.lambda),
@@ -43,13 +54,28 @@ ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const 
 }  // namespace
 
 constinit const std::array<ElasticMethodRow, 5> elastic_methods{
-    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, stored<CsrbfMap, read_csrbf>(1)},
-     {"multiscale", ElasticMethod::multiscale, multiscale<false>, true, false,
+    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, {}, stored<CsrbfMap, read_csrbf>(1)},
+     {"multiscale",
+      ElasticMethod::multiscale,
+      multiscale<false>,
+      true,
+      false,
+      {},
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"diffeomorphic", ElasticMethod::diffeomorphic, multiscale<true>, true, true,
+     {"diffeomorphic",
+      ElasticMethod::diffeomorphic,
+      multiscale<true>,
+      true,
+      true,
+      {multiscale_layers, multiscale_halves},
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, stored<PffdMap, read_pffd>(4)},
-     {"pffd-smooth", ElasticMethod::pffd_smooth, pffd<SmoothPffdMap>, false, false,
+     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, {}, stored<PffdMap, read_pffd>(4)},
+     {"pffd-smooth",
+      ElasticMethod::pffd_smooth,
+      pffd<SmoothPffdMap>,
+      false,
+      false,
+      {},
       stored<SmoothPffdMap, read_pffd_smooth>(3)}}};
 
 const ElasticMethodRow& elastic_method(ElasticMethod method) {

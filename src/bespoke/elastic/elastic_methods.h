@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -39,6 +40,13 @@ struct StoredMapType {
   std::shared_ptr<const ElasticMap> (*read)(ExactMapReader& reader);
 };
 
+/// How maps that are compositions of others come apart; null for methods whose maps are none.
+struct CompositionOfMaps {
+  std::size_t (*parts)(const ElasticMap& map) = nullptr;
+  /// Of a map of two parts or more: the same map as two, one after the other.
+  std::array<ElasticFit, 2> (*halves)(const ElasticFit& fit) = nullptr;
+};
+
 /// All that is known of a method elsewhere: the command line, the asset's record and the exact map's bytes
 /// go through this table.
 struct ElasticMethodRow {
@@ -49,6 +57,7 @@ struct ElasticMethodRow {
   bool meets_points;
   /// Whether its maps fold nowhere, so that a bake's folds are those of its voxels.
   bool keeps_orientation;
+  CompositionOfMaps composition;
   StoredMapType stored;
 };
 

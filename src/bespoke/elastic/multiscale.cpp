@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 #include "bespoke/elastic/detail/exact_map_bytes.h"
@@ -60,11 +61,13 @@ std::string to_string(const MultiscaleSummary& summary) {
   double steepest = 0;
   for (const double bound : summary.gradient_bounds) steepest = std::max(steepest, bound);
   char text[320];
-  std::snprintf(text, sizeof text,
-                "%zu layers, %zu centres, %zu of %zu vertices within tolerance, residual %s",
-                summary.lambdas.size(), centers, summary.within_tolerance, summary.residuals.count,
-                to_string(summary.residuals).c_str());
+  std::snprintf(text, sizeof text, "%zu layers, %zu centres", summary.lambdas.size(), centers);
   std::string line = text;
+  if (summary.residuals.count > 0) {
+    std::snprintf(text, sizeof text, ", %zu of %zu vertices within tolerance, residual %s",
+                  summary.within_tolerance, summary.residuals.count, to_string(summary.residuals).c_str());
+    line += text;
+  }
   if (!summary.gradient_bounds.empty()) {
     std::snprintf(text, sizeof text, ", every layer's gradient below %.3f", steepest);
     line += text;
@@ -78,6 +81,31 @@ std::vector<Figure> figures(const MultiscaleSummary& summary) {
           {"centers", summary.centers},
           {"gradient_bounds", summary.gradient_bounds},
           {"within_tolerance", summary.within_tolerance}};
+}
+
+std::array<MultiscaleFit, 2> halves(const MultiscaleMap& map, const MultiscaleSummary& summary) {
+  if (!map.composed() || map.layers().size() < 2)
+    throw InvalidInput("a map of " + std::to_string(map.layers().size()) +
+                       (map.composed() ? " composed" : " summed") + " layers has no halves");
+  const auto middle = static_cast<std::ptrdiff_t>(map.layers().size() / 2);
+  MultiscaleSummary first, second;
+  const auto part = [&](auto MultiscaleSummary::*member) {
+    const auto& all = summary.*member;
+    (first.*member).assign(all.begin(), all.begin() + middle);
+    (second.*member).assign(all.begin() + middle, all.end());
+  };
+  part(&MultiscaleSummary::lambdas);
+  part(&MultiscaleSummary::centers);
+  part(&MultiscaleSummary::gradient_bounds);
+  second.residuals = summary.residuals;
+  second.within_tolerance = summary.within_tolerance;
+  second.seconds = summary.seconds;
+  const auto layers = [&](auto begin, auto end) { return std::vector<RbfLayer>(begin, end); };
+  const auto begin = map.layers().begin(), end = map.layers().end();
+  return {{{std::make_shared<const MultiscaleMap>(map.affine(), layers(begin, begin + middle), true),
+            std::move(first)},
+           {std::make_shared<const MultiscaleMap>(AffineMap{}, layers(begin + middle, end), true),
+            std::move(second)}}};
 }
 
 void write_exact(const MultiscaleMap& map, ExactMapWriter& writer) {

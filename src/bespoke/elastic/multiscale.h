@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -68,6 +69,11 @@ struct MultiscaleFit {
   std::shared_ptr<const MultiscaleMap> map;
   MultiscaleSummary summary;
 };
+
+/// A composed map as two: the affine part and the first half of the layers, and the other half after it. The
+/// residuals are those at the end, so the first has none. Throws InvalidInput for a map that is summed or has
+/// less than two layers.
+std::array<MultiscaleFit, 2> halves(const MultiscaleMap& map, const MultiscaleSummary& summary);
 
 /// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map (or
 /// similarity) of the pairs, the identity along directions in which the sources have no extent. Centres of a
