@@ -1,18 +1,28 @@
 #include "bespoke/pipeline/elastic_steps.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
 
-#include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/anchors/anchors.h"
+#include "bespoke/pipeline/fit_elastic_map.h"
 #include "bespoke/pipeline/make_map.h"
+#include "bespoke/product/mesh_io.h"
 #include "bespoke/statistics.h"
 #include "flow/bent_tube.h"
+#include "support/arithmetic.h"
+#include "support/error_message.h"
+#include "support/random_points.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+using test::degree;
+using testing::HasSubstr;
 
 FitOptions options_of(const TriangleMesh& source) {
   FitOptions options = default_options(diagonal(source.vertices)).fit;
@@ -73,24 +83,85 @@ TEST(ElasticSteps, CarryAnchorsOffTheSurfaceWithIt) {
   EXPECT_LE(fit.summary.elastic.anchor_residuals.max, 2 * options.fit_tolerance);
 }
 
-TEST(ElasticSteps, CanBeDivided) {
+TEST(ElasticSteps, ComeApartAsTheyAreWhereHalvesOfThePathWouldMiss) {
   const TriangleMesh source = test::tube();
   FitOptions options = options_of(source);
   options.steps = 3;
   FittedMapping fit = fit_bent(source, 90 * degree, options);
-  const std::size_t before = fit.elastic->steps().size();
   const auto maps = fit.elastic->steps();
-  const Points next = fit.step_sources[2];
+  const Points x = 2 * test::random_points(1000, 3), before = (*fit.elastic)(x);
+  const double missed = fit.summary.elastic.vertex_residuals.max;
+  options.fit_tolerance = fit.summary.elastic.vertex_residuals.median / 10;
   divide_step(fit, source, {}, options, 1);
-  EXPECT_EQ(fit.elastic->steps().size(), before + 1);
+  ASSERT_EQ(fit.elastic->steps().size(), maps.size() + 1);
   EXPECT_EQ(fit.elastic->steps().front(), maps.front());
   EXPECT_EQ(fit.elastic->steps().back(), maps.back());
-  EXPECT_EQ(fit.plan->steps(), before + 1);
-  // The second half ends where the whole step did.
-  const Points end = (*fit.elastic->steps()[2])(fit.step_sources[2]);
-  const Eigen::VectorXd missed = (end - next).colwise().norm();
-  EXPECT_LE(summarize({missed.begin(), missed.end()}).p95, options.fit_tolerance);
-  EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+  EXPECT_FALSE(fit.plan.has_value()) << "the chain has left its path";
+  EXPECT_LT(test::largest_distance((*fit.elastic)(x), before), 1e-12);
+  EXPECT_NEAR(fit.summary.elastic.vertex_residuals.max, missed, 1e-12);
+  EXPECT_LT(test::largest_distance((*fit.elastic->steps()[1])(fit.step_sources[1]), fit.step_sources[2]),
+            1e-12);
+}
+
+TEST(ElasticSteps, ComeApartUntilTheyAreSingleLayers) {
+  const TriangleMesh source = test::tube();
+  const FitOptions options = options_of(source);
+  FittedMapping fit = fit_bent(source, 30 * degree, options);
+  const Points before = (*fit.elastic)(source.vertices);
+  for (std::size_t step = 0; step < fit.elastic->steps().size();)
+    is_divisible(fit, step) ? divide_step(fit, source, {}, options, step, true) : static_cast<void>(++step);
+  EXPECT_GT(fit.elastic->steps().size(), 2u);
+  EXPECT_LT(test::largest_distance((*fit.elastic)(source.vertices), before), 1e-12);
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { divide_step(fit, source, {}, options, 0); }),
+              HasSubstr("no such step"));
+}
+
+TEST(ElasticSteps, AreHalvedAlongThePathWhileTheyMeetTheirVertices) {
+  const TriangleMesh source = test::tube();
+  for (const ElasticMethod method : {ElasticMethod::diffeomorphic, ElasticMethod::multiscale}) {
+    FitOptions options = options_of(source);
+    options.elastic = method;
+    options.steps = 3;
+    FittedMapping fit = fit_bent(source, 90 * degree, options);
+    const std::size_t before = fit.elastic->steps().size();
+    const auto maps = fit.elastic->steps();
+    const Points next = fit.step_sources[2];
+    divide_step(fit, source, {}, options, 1);
+    EXPECT_EQ(fit.elastic->steps().size(), before + 1);
+    EXPECT_EQ(fit.elastic->steps().front(), maps.front());
+    EXPECT_EQ(fit.elastic->steps().back(), maps.back());
+    ASSERT_TRUE(fit.plan.has_value());
+    EXPECT_EQ(fit.plan->steps(), before + 1);
+    EXPECT_EQ(fit.summary.elastic.divided_steps, 1u);
+    // The second half ends where the whole step did.
+    const Points end = (*fit.elastic->steps()[2])(fit.step_sources[2]);
+    const Eigen::VectorXd missed = (end - next).colwise().norm();
+    EXPECT_LE(summarize({missed.begin(), missed.end()}).p95, options.fit_tolerance);
+    EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+  }
+}
+
+// Five anchors at the ends of the limbs leave an arm twisted: along its path it swings through the body.
+TEST(ElasticStepsSharedCase, AreOneWhereOnTheWayPartsPassThroughOthers) {
+  const std::string folder = std::string(BESPOKE_SHARED_DIR) + "/cases/d08_pose_body/";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared cases here";
+  const TriangleMesh source = read_triangle_mesh(folder + "reference_a.obj");
+  const TriangleMesh target = read_triangle_mesh(folder + "reference_b.obj");
+  Anchors anchors = read_anchors(folder + "anchors.json");
+  const std::set<std::string> kept{"crown", "bigtoe_tip_l", "middle_tip_l", "middle_tip_r", "sacrum"};
+  std::erase_if(anchors.pairs, [&](const AnchorPair& pair) { return !kept.contains(pair.name); });
+  ASSERT_EQ(anchors.pairs.size(), kept.size());
+  FitOptions options = default_options(diagonal(source.vertices)).fit;
+  const FittedMapping straight = fit_mapping(source, target, anchors, options);
+  EXPECT_TRUE(straight.summary.elastic.straight);
+  EXPECT_EQ(straight.elastic->steps().size(), 1u);
+  EXPECT_LE(straight.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+
+  options.steps = step_count(straight.summary.elastic.motion);
+  EXPECT_GT(*options.steps, 1);
+  const FittedMapping along = fit_mapping(source, target, anchors, options);
+  EXPECT_FALSE(along.summary.elastic.straight);
+  EXPECT_GT(along.summary.elastic.vertex_residuals.p95, 100 * options.fit_tolerance);
 }
 
 /// Three tubes side by side, the middle one moved along the others by `slide`.

@@ -12,6 +12,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/seams.h"
 #include "bespoke/pipeline/elastic_pairs.h"
+#include "bespoke/pipeline/fit_elastic_map.h"
 #include "bespoke/pipeline/lay_source.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
@@ -58,57 +59,6 @@ void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& f
                          "same connectivity");
 }
 
-/// What the elastic map is fitted to, with the anchors that the surface does not carry.
-ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& source,
-                               const Anchors& anchors, const FitOptions& options, ElasticSummary& summary) {
-  // A vertex and an anchor closer than this ask an interpolating map for differences of rounding errors.
-  constexpr double least_distance = 1e-6;  // of the source's diagonal
-  const double off_surface = std::max(options.fit_tolerance, least_distance * diagonal(source.vertices));
-  const std::vector<std::size_t> off = anchors_off_surface(source, anchors, off_surface);
-  ElasticPairs pairs = elastic_pairs(source, fitted.fitted_vertices);
-  summary.unreferenced_vertices = pairs.unreferenced;
-  summary.duplicate_vertices = pairs.duplicates;
-  summary.anchors_off_surface = off.size();
-  summary.meets_anchors_off_surface = elastic_method(options.elastic).meets_points;
-  if (off.empty() || !summary.meets_anchors_off_surface) return pairs;
-  return with_anchors(std::move(pairs), anchors, off, inverse(fitted.target_from_source));
-}
-
-std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors& anchors) {
-  return distances(fitted.target_from_source * (*fitted.elastic)(source_points(anchors)),
-                   target_points(anchors));
-}
-
-/// What can be said only with the whole map at hand.
-void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-           const FitOptions& options) {
-  ElasticSummary& summary = result.summary.elastic;
-  const ElasticMap& elastic = *result.elastic;
-  const std::vector<int>& referenced = result.pairs.referenced;
-  const Points images = elastic(source.vertices);
-  summary.vertex_residuals =
-      summarize(distances(images(Eigen::all, referenced), result.fitted_vertices(Eigen::all, referenced)));
-  if (options.fit_tolerance > 0)
-    summary.unmet = unmet_vertices(
-        source, images, result.fitted_vertices, options.fit_tolerance,
-        result.summary.contact ? result.summary.contact->released : std::vector<ReleasedVertex>{});
-  result.anchor_residual = anchor_residuals(result, anchors);
-  summary.anchor_residuals = summarize(result.anchor_residual);
-}
-
-ElasticOptions elastic_options(const FitOptions& options) {
-  return {options.lambda, options.fit_tolerance, options.max_memory};
-}
-
-void take_steps(FittedMapping& result, ElasticSteps steps) {
-  ElasticSummary& summary = result.summary.elastic;
-  summary.found = std::move(steps.found.front());
-  summary.later_steps.assign(std::make_move_iterator(steps.found.begin() + 1),
-                             std::make_move_iterator(steps.found.end()));
-  result.step_sources = std::move(steps.sources);
-  result.elastic = std::make_shared<const ElasticChain>(std::move(steps.maps));
-}
-
 /// Where the target touches itself no homeomorphism exists: the parts of the fitted source are held apart.
 void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const FitOptions& options,
                       const Progress& progress) {
@@ -120,60 +70,6 @@ void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const F
   if (apart.summary.touching == 0) return;
   result.fitted_vertices = std::move(apart.vertices);
   result.summary.contact = std::move(apart.summary);
-}
-
-/// The elastic map as a chain of so many steps along surfaces between the two, or as one.
-void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-               const FitOptions& options, int count, const Progress& progress) {
-  if (count > 1) {
-    result.plan = plan_steps(source, result.fitted_vertices, result.pairs, count);
-    // Only the path knows turns beyond half a one.
-    const RegionalMotion motion = result.plan->path->motion();
-    if (!options.steps) result.plan->times = equal_times(std::max(count, step_count(motion)));
-    result.summary.elastic.motion = motion;
-    take_steps(result, fit_elastic_steps(source, result.pairs, *result.plan, options.elastic,
-                                         elastic_options(options), progress));
-  } else {
-    ElasticFit fit = elastic_method(options.elastic)
-                         .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
-                              elastic_options(options), progress);
-    take_steps(result, {{std::move(fit.map)}, {std::move(fit.found)}, {source.vertices}});
-  }
-  judge(result, source, anchors, options);
-}
-
-/// Parts that slide along each other neither turn nor stretch, but shear the space between them. Layers that
-/// do not fold cannot follow where that is too steep: where more than one vertex in a hundred is missed there
-/// are twice as many steps, for as long as that helps.
-void divide_where_missed(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-                         const FitOptions& options, const Progress& progress) {
-  constexpr std::size_t most_steps = 32;
-  const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= most_steps) {
-    FittedMapping finer = result;
-    fit_steps(finer, source, anchors, options, 2 * static_cast<int>(result.elastic->steps().size()),
-              progress);
-    if (missed(finer) >= missed(result)) return;
-    result = std::move(finer);
-    result.summary.elastic.divided_where_missed = true;
-  }
-}
-
-/// The elastic map of the fitted vertices (IV.D, IV.E): one for models in about the same pose, else a chain
-/// of them along surfaces between the two.
-void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-                     const FitOptions& options, const Progress& progress) {
-  const Stopwatch watch;
-  progress.step("elastic", 0, 0);
-  ElasticSummary& summary = result.summary.elastic;
-  result.pairs = pairs_for_elastic(result, source, anchors, options, summary);
-  summary.method = options.elastic;
-  summary.lambda = options.lambda;
-  summary.motion = regional_motion(source, result.fitted_vertices);
-  fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
-  const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
-  if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
-  summary.seconds = watch.seconds();
 }
 
 void require_models(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
@@ -237,34 +133,6 @@ void judge_lines(FittedMapping& result, const TriangleMesh& source, const Triang
 }
 
 }  // namespace
-
-void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
-                 const FitOptions& options, std::size_t step, const Progress& progress) {
-  if (step >= fitted.elastic->steps().size()) throw InvalidInput("there is no such step to divide");
-  const Stopwatch watch;
-  const std::vector<std::shared_ptr<const ElasticMap>>& maps = fitted.elastic->steps();
-  if (!fitted.plan) fitted.plan = plan_steps(source, fitted.fitted_vertices, fitted.pairs, 1);
-  fitted.plan = halved(*fitted.plan, step);
-  ElasticSteps halves = fit_halves(source, fitted.pairs, *fitted.plan, *fitted.elastic, step, options.elastic,
-                                   elastic_options(options), progress);
-  ElasticSummary& summary = fitted.summary.elastic;
-  ElasticSteps steps;
-  for (std::size_t k = 0; k < maps.size(); ++k) {
-    for (std::size_t half = 0; half < (k == step ? 2 : 0); ++half) {
-      steps.maps.push_back(std::move(halves.maps[half]));
-      steps.found.push_back(std::move(halves.found[half]));
-      steps.sources.push_back(std::move(halves.sources[half]));
-    }
-    if (k == step) continue;
-    steps.maps.push_back(maps[k]);
-    steps.found.push_back(k == 0 ? summary.found : summary.later_steps[k - 1]);
-    steps.sources.push_back(fitted.step_sources[k]);
-  }
-  take_steps(fitted, std::move(steps));
-  ++summary.divided_steps;
-  judge(fitted, source, anchors, options);
-  summary.seconds += watch.seconds();
-}
 
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress) {

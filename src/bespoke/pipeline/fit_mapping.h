@@ -35,13 +35,9 @@ struct FittedMapping {
   std::vector<double> anchor_sigma;     ///< as the fit took it, mesh units, one per pair; empty without
   FitSummary summary;
   ElasticPairs pairs;            ///< what E was fitted to
-  std::optional<StepPlan> plan;  ///< of a chain of several steps; empty for one
+  std::optional<StepPlan> plan;  ///< of a chain whose steps follow a path; empty for others, and for one step
+  bool follows_path = true;      ///< whether steps are, or would be, along surfaces in between
 };
-
-/// A map with a step, by index, halved; the others stay as they are. Options as before. Throws InvalidInput
-/// where there is no such step, and as fit_mapping.
-void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
-                 const FitOptions& options, std::size_t step, const Progress& progress = {});
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
 /// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact

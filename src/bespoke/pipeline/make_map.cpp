@@ -4,6 +4,7 @@
 
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/pipeline/bake_steps.h"
+#include "bespoke/pipeline/fit_elastic_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
 
@@ -79,18 +80,23 @@ bool may_become_chain(const MakeMapOptions& options) {
 /// after it kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  constexpr int most_halvings = 3;  // of a step and its parts
+  constexpr int most_halvings = 5;                // of a step and its parts
+  constexpr int most_halvings_on_path = 3;        // what folds then does so however small its motion is
+  constexpr std::size_t most_divided_steps = 16;  // each has cost the bake that folded
   std::vector<int> halvings(fit.elastic->steps().size(),
                             fit.plan || may_become_chain(options) ? most_halvings : 0);
   BakedSteps last;
   for (;;) {
     std::vector<bool> divisible;
-    for (const int left : halvings) divisible.push_back(left > 0);
+    for (std::size_t k = 0; k < halvings.size(); ++k)
+      divisible.push_back(halvings[k] > 0 && is_divisible(fit, k) &&
+                          fit.summary.elastic.divided_steps < most_divided_steps);
     BakedSteps baked = bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, divisible,
                                   std::move(last), progress);
     if (!is_to_be_divided(baked, divisible)) return baked;
     const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
-    divide_step(fit, input.source, input.anchors, options.fit, folded, progress);
+    const bool leave_path = most_halvings - halvings[folded] >= most_halvings_on_path;
+    divide_step(fit, input.source, input.anchors, options.fit, folded, leave_path, progress);
     const int left = --halvings[folded];
     halvings.insert(halvings.begin() + static_cast<std::ptrdiff_t>(folded), left);
     baked.steps.erase(baked.steps.begin());

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/pipeline/fit_mapping.h"
+
+namespace bespoke {
+
+/// E of the fitted vertices, the parts of which are held apart (IV.D, IV.E): one map for models in about the
+/// same pose, else a chain of them along surfaces between the two. `fitted` has everything but E and what
+/// follows from it. Throws as fit_mapping.
+void fit_elastic_map(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                     const FitOptions& options, const Progress& progress);
+
+/// |Γ(E(q)) − q'|, mesh units, one per pair.
+std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors& anchors);
+
+/// Whether divide_step can halve a step, by index: not one that is of a single layer. Throws
+/// std::out_of_range.
+bool is_divisible(const FittedMapping& fitted, std::size_t step);
+
+/// A map with a step, by index, halved; the others stay as they are. A step becomes two along the path, each
+/// of all scales and fitted anew; but where they would miss one vertex in twenty, or with `leave_path`, a
+/// composition comes apart into two that are the same map together, as do all steps after that. Options as
+/// before. Throws InvalidInput where there is no such step, and as fit_mapping.
+void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                 const FitOptions& options, std::size_t step, bool leave_path = false,
+                 const Progress& progress = {});
+
+}  // namespace bespoke
