@@ -123,7 +123,7 @@ void go_straight_where_lost(FittedMapping& result, const TriangleMesh& source, c
 }
 
 /// A step that is a composition, in two: the same map, for which nothing is fitted anew.
-ElasticSteps parted(const FittedMapping& fitted, std::size_t step) {
+ElasticSteps in_two_by_layers(const FittedMapping& fitted, std::size_t step) {
   const ElasticSummary& summary = fitted.summary.elastic;
   auto [first, second] = elastic_method(summary.method)
                              .composition.halves({fitted.elastic->steps()[step],
@@ -166,9 +166,9 @@ FittedMapping halved_on_path(const FittedMapping& fitted, const TriangleMesh& so
   return result;
 }
 
-void part(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
-          const FitOptions& options, std::size_t step) {
-  put_in_place(fitted, step, parted(fitted, step));
+void part_by_layers(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                    const FitOptions& options, std::size_t step) {
+  put_in_place(fitted, step, in_two_by_layers(fitted, step));
   fitted.plan.reset();
   fitted.follows_path = false;
   judge(fitted, source, anchors, options);
@@ -212,7 +212,7 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
     follows = follows || on_path.summary.elastic.vertex_residuals.p95 <= options.fit_tolerance;
     if (follows) fitted = std::move(on_path);
   }
-  if (!follows) part(fitted, source, anchors, options, step);
+  if (!follows) part_by_layers(fitted, source, anchors, options, step);
   ++fitted.summary.elastic.divided_steps;
   fitted.summary.elastic.seconds = seconds + watch.seconds();
 }

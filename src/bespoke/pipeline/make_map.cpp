@@ -80,11 +80,13 @@ bool may_become_chain(const MakeMapOptions& options) {
 /// after it kept.
 BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
                        const Progress& progress) {
-  constexpr int most_halvings = 5;                // of a step and its parts
-  constexpr int most_halvings_on_path = 3;        // what folds then does so however small its motion is
+  // Of a step and its parts: what folds after those on the path folds however small its motion is.
+  constexpr int on_path = 3, by_layers = 2;
   constexpr std::size_t most_divided_steps = 16;  // each has cost the bake that folded
-  std::vector<int> halvings(fit.elastic->steps().size(),
-                            fit.plan || may_become_chain(options) ? most_halvings : 0);
+  const bool has_layers = elastic_method(options.fit.elastic).composition.parts != nullptr;
+  const int most_halvings =
+      fit.plan || may_become_chain(options) ? on_path + (has_layers ? by_layers : 0) : 0;
+  std::vector<int> halvings(fit.elastic->steps().size(), most_halvings);
   BakedSteps last;
   for (;;) {
     std::vector<bool> divisible;
@@ -95,7 +97,7 @@ BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const Make
                                   std::move(last), progress);
     if (!is_to_be_divided(baked, divisible)) return baked;
     const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
-    const bool leave_path = most_halvings - halvings[folded] >= most_halvings_on_path;
+    const bool leave_path = has_layers && halvings[folded] <= by_layers;
     divide_step(fit, input.source, input.anchors, options.fit, folded, leave_path, progress);
     const int left = --halvings[folded];
     halvings.insert(halvings.begin() + static_cast<std::ptrdiff_t>(folded), left);
