@@ -45,6 +45,8 @@ struct CompositionOfMaps {
   std::size_t (*parts)(const ElasticMap& map) = nullptr;
   /// Of a map of two parts or more: the same map as two, one after the other.
   std::array<ElasticFit, 2> (*halves)(const ElasticFit& fit) = nullptr;
+
+  explicit operator bool() const { return parts != nullptr; }
 };
 
 /// All that is known of a method elsewhere: the command line, the asset's record and the exact map's bytes

@@ -118,8 +118,12 @@ void go_straight_where_lost(FittedMapping& result, const TriangleMesh& source, c
   ElasticSummary& summary = straight.summary.elastic;
   if (summary.vertex_residuals.p95 > missed / 2) return;
   summary.straight = true;
-  straight.follows_path = false;
   result = std::move(straight);
+}
+
+/// Whether steps are, or would be, along surfaces in between.
+bool follows_path(const FittedMapping& fitted) {
+  return fitted.plan || (fitted.elastic->steps().size() == 1 && !fitted.summary.elastic.straight);
 }
 
 /// A step that is a composition, in two: the same map, for which nothing is fitted anew.
@@ -170,7 +174,6 @@ void part_by_layers(FittedMapping& fitted, const TriangleMesh& source, const Anc
                     const FitOptions& options, std::size_t step) {
   put_in_place(fitted, step, in_two_by_layers(fitted, step));
   fitted.plan.reset();
-  fitted.follows_path = false;
   judge(fitted, source, anchors, options);
 }
 
@@ -196,7 +199,7 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
 
 bool is_divisible(const FittedMapping& fitted, std::size_t step) {
   const CompositionOfMaps& composition = elastic_method(fitted.summary.elastic.method).composition;
-  return !composition.parts || composition.parts(*fitted.elastic->steps().at(step)) > 1;
+  return !composition || composition.parts(*fitted.elastic->steps().at(step)) > 1;
 }
 
 void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
@@ -205,9 +208,8 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
     throw InvalidInput("there is no such step to divide");
   const Stopwatch watch;
   const double seconds = fitted.summary.elastic.seconds;
-  const bool is_composition = elastic_method(options.elastic).composition.parts != nullptr;
-  bool follows = !is_composition;
-  if (follows || (fitted.follows_path && !leave_path)) {
+  bool follows = !elastic_method(options.elastic).composition;
+  if (follows || (follows_path(fitted) && !leave_path)) {
     FittedMapping on_path = halved_on_path(fitted, source, anchors, options, step, progress);
     follows = follows || on_path.summary.elastic.vertex_residuals.p95 <= options.fit_tolerance;
     if (follows) fitted = std::move(on_path);

@@ -36,7 +36,6 @@ struct FittedMapping {
   FitSummary summary;
   ElasticPairs pairs;            ///< what E was fitted to
   std::optional<StepPlan> plan;  ///< of a chain whose steps follow a path; empty for others, and for one step
-  bool follows_path = true;      ///< whether steps are, or would be, along surfaces in between
 };
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight

@@ -83,7 +83,7 @@ BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const Make
   // Of a step and its parts: what folds after those on the path folds however small its motion is.
   constexpr int on_path = 3, by_layers = 2;
   constexpr std::size_t most_divided_steps = 16;  // each has cost the bake that folded
-  const bool has_layers = elastic_method(options.fit.elastic).composition.parts != nullptr;
+  const bool has_layers = bool{elastic_method(options.fit.elastic).composition};
   const int most_halvings =
       fit.plan || may_become_chain(options) ? on_path + (has_layers ? by_layers : 0) : 0;
   std::vector<int> halvings(fit.elastic->steps().size(), most_halvings);
