@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -55,6 +56,15 @@ std::map<std::string, std::string> readme_row(const std::string& id) {
     return result;
   }
   return {};
+}
+
+/// Whether it is among "All but `d08` … meet their tolerance".
+bool may_miss_its_tolerance(const std::string& id) {
+  std::ifstream readme(fs::path(BESPOKE_SOURCE_DIR) / "README.md");
+  const std::string text{std::istreambuf_iterator<char>(readme), {}};
+  const std::size_t end = text.find("meet their tolerance");
+  const std::size_t begin = text.rfind("All but", end);
+  return begin < end && text.substr(begin, end - begin).find("`" + id + "`") != std::string::npos;
 }
 
 /// "0.115 / 0.484".
@@ -114,6 +124,9 @@ class SharedCase : public ::testing::TestWithParam<const char*> {
       return;
     }
     ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+    if (options.empty() && !may_miss_its_tolerance(GetParam())) {
+      EXPECT_EQ(fitted.err.find("exceeds the tolerance"), std::string::npos) << fitted.err;
+    }
     const test::ProgramResult applied =
         test::run_program({BESPOKE_COMMAND, "apply", scratch / "map.vdb", source_path, "-o",
                            scratch / "mapped.obj", "--quiet"});

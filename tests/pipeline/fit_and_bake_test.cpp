@@ -11,9 +11,11 @@
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/pipeline/make_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/statistics.h"
 #include "pipeline/body_pair.h"
+#include "samples.h"
 
 namespace bespoke {
 namespace {
@@ -103,6 +105,23 @@ TEST(FitAndBake, GivenFittedSourceNeedsNoTarget) {
                 mapping.summary.elastic.vertex_residuals.max, 1e-9);
   }
 }
+
+/// The generated pairs, as `bespoke fit` takes them.
+class FitSample : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FitSample, IsACertifiedBijectionWithinTheTolerance) {
+  const Sample sample = make_sample(GetParam());
+  for (const SampleTarget& target : sample.targets) {
+    Anchors anchors;
+    anchors.pairs = target.anchors;
+    const MadeMap map =
+        make_map({sample.source, target.mesh, anchors}, default_options(diagonal(sample.source.vertices)));
+    EXPECT_TRUE(map.fit.summary.bake->tolerance_met) << to_string(*map.fit.summary.bake);
+    for (const MapStep& step : map.asset.steps) EXPECT_TRUE(step.certificate.is_bijection());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FitSample, ::testing::Values("dress", "glasses", "glove", "shoe"));
 
 // ---- what scans bring with them
 

@@ -16,7 +16,7 @@ namespace {
 // around those that missed it, then everywhere.
 constexpr int quick_rounds = 2;
 constexpr int local_rounds = 6;
-constexpr int full_rounds = 3;
+constexpr int full_rounds = 6;
 // A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
 // are as small as they get, the worst points stay however often they are found.
 constexpr double most_left_by_a_round = 0.7;
@@ -56,6 +56,7 @@ class AdaptiveBake {
     measurement_.fully(result_.pyramid, summary());
     for (int round = 1; round < full_rounds && summary().error.max > options_.tolerance; ++round) {
       if (!refine_around_worst()) break;
+      if (round > 1) measurement_.name_more();
       measurement_.fully(result_.pyramid, summary());
     }
     summary().measure_seconds += watch_.lap();

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint64_t error_seed = 3;
 // Points of an error above this share of the tolerance are refined when a round does not meet it: what one
 // sample finds just below, the next will find just above.
-constexpr double refined_share = 0.85;
+constexpr double named_share = 0.85;
 // Of BakeOptions::error_points: points on the surface that the record counts, and points of a search at most
 // (one a cell where there are fewer cells).
 constexpr std::size_t recorded_surface_points = 2;
@@ -53,7 +53,8 @@ Measurement::Measurement(const ElasticMap& map, const Lattice& band_lattice,
       band_(std::move(band)),
       options_(options),
       progress_(progress),
-      seed_(error_seed) {}
+      seed_(error_seed),
+      named_share_(named_share) {}
 
 double Measurement::quickly(Pyramid& pyramid) { return search(pyramid, surface_cells(pyramid)); }
 
@@ -75,6 +76,8 @@ double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
   return summary.error.max;
 }
 
+void Measurement::name_more() { named_share_ *= named_share; }
+
 std::vector<FinestCell> Measurement::surface_cells(const Pyramid& pyramid) const {
   return options_.surface ? finest_cells_on(pyramid, *options_.surface) : cells_in_all_leaves(pyramid, seed_);
 }
@@ -91,7 +94,7 @@ double Measurement::measure(Pyramid& pyramid, const Points& x) {
   pyramid = std::move(baked).release();
   std::vector<Eigen::Index> worst;
   for (std::size_t i = 0; i < errors_.size(); ++i)
-    if (!(errors_[i] <= refined_share * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
+    if (!(errors_[i] <= named_share_ * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
   // The largest first, should there not be leaves for all.
   std::stable_sort(worst.begin(), worst.end(), [&](Eigen::Index a, Eigen::Index b) {
     return errors_[static_cast<std::size_t>(a)] > errors_[static_cast<std::size_t>(b)];

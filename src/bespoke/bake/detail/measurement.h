@@ -29,6 +29,10 @@ class Measurement {
 
   const Points& worst() const { return worst_; }
 
+  /// From now on worst() has points of a smaller error too: where rounds find ever new ones just above the
+  /// tolerance.
+  void name_more();
+
  private:
   std::vector<FinestCell> surface_cells(const Pyramid& pyramid) const;
   double search(Pyramid& pyramid, const std::vector<FinestCell>& cells);
@@ -40,6 +44,7 @@ class Measurement {
   const BakeOptions& options_;
   const Progress& progress_;
   std::uint64_t seed_;
+  double named_share_;  // of the tolerance, above which points are among the worst
   std::vector<double> errors_;
   Points worst_;
 };
