@@ -117,22 +117,24 @@ struct AnchorSettings {
 
 /// The source bent by its anchors alone (anchor_pose.h). Errors are mean distances from the truth, diagonals.
 struct PoseSettings {
-  int nodes = 400;  ///< over the whole surface, as at the first level of the fit. Not varied.
-  /// Weight of the differences between the similarities of neighbouring nodes. Falls geometrically, so that
-  /// far turns spread before they settle at the joints. Last value 1, 0.1, 0.02: 0.639, 0.608, 0.611 % over
-  /// d01, d04, d08 and d10 (geometric mean).
+  /// Over the whole surface, few first, as at the levels of the fit. Few alone bend fingers at the wrong
+  /// places: x 1.11 over d04, d05, d08, d10 and the reversed d10; many alone, with five anchors, x 1.10.
+  std::array<int, 2> nodes = {400, 2500};
+  /// Weight of the differences between the similarities of neighbouring nodes, of the few; the many get the
+  /// same stiffness. Falls geometrically, so that far turns spread before they settle at the joints. Last
+  /// value 1, 0.1, 0.02: 0.639, 0.608, 0.611 % over d01, d04, d08 and d10 (geometric mean), with few alone.
   double first_smoothness = 100, last_smoothness = 0.1;
-  int iterations = 60;  ///< of places and similarities in turn. Not varied.
-  int sweeps = 3;       ///< over the similarities, an iteration. Not varied.
+  /// Of places and similarities in turn, at either level. The second 5, 10, 20, 40: no difference.
+  std::array<int, 2> iterations = {60, 10};
+  int sweeps = 3;  ///< over the similarities, an iteration. Not varied.
   /// Spacings: expected misfit of an edge; with an anchor's accuracy it weighs anchors against shape. 0.1:
   /// 0.745 % instead of 0.608 %.
   double edge_misfit = 0.5;
   double least_sigma = 1e-3;          ///< diagonals: no anchor is taken for more accurate. Not varied.
   double sigma_of_weight_one = 0.01;  ///< diagonals: the accuracy that a soft anchor's weight of 1 stands for
-  /// Degrees: the fit starts from the bent source where some part turns farther. Bent always, d08 (111
-  /// degrees) has 0.271 instead of 0.329 % and 2 instead of 204 flips, but d10 (81) 0.335 instead of 0.291 %
-  /// and d04 (28) 0.522 instead of 0.472 %.
-  double least_turn = 90;
+  /// Accuracies: an anchor may be so much farther from its target than closest points reach
+  /// (NodeFitSettings::max_distance), before the fit starts from the bent source. Not varied.
+  double anchor_reach = 3;
   /// Degrees: the same of models that are rigid (NodeGoals::rigidity above 1), since what keeps its shape
   /// goes where its anchors say: x 0.846 / 0.982 on bodies in two poses (ShapeSettings), and no flip where
   /// there were 26. Smaller turns are found anyway. Not varied.

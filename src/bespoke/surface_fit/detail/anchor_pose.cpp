@@ -38,10 +38,10 @@ struct Follower {
 /// similarities.
 class NodePose {
  public:
-  NodePose(const AnchorPoseInput& input, const PoseSettings& settings)
+  NodePose(const AnchorPoseInput& input, const PoseSettings& settings, int count)
       : sweeps_(settings.sweeps),
         nodes_(make_deformation_nodes(
-            input.rest, node_spacing(vertex_areas(input.rest).sum(), settings.nodes, settings.node_settings),
+            input.rest, node_spacing(vertex_areas(input.rest).sum(), count, settings.node_settings),
             settings.node_settings)),
         edges_(edges()),
         places_(nodes_.rest),
@@ -57,6 +57,19 @@ class NodePose {
     factorise();
   }
 
+  /// As fewer nodes have bent the surface.
+  void start_from(const NodePose& few) {
+    for (int node = 0; node < nodes_.size(); ++node) {
+      const int vertex = nodes_.vertices[static_cast<std::size_t>(node)];
+      places_.col(node) = few.carried(nodes_.rest.col(node), vertex);
+      Matrix3& shape = shapes_[static_cast<std::size_t>(node)];
+      shape.setZero();
+      for (const NodeWeight& followed : few.nodes_.at_vertex(vertex))
+        shape += followed.weight * few.shapes_[static_cast<std::size_t>(followed.node)];
+    }
+  }
+
+  /// smoothness: β.
   void iterate(double smoothness) {
     update_shapes(smoothness);
     update_places();
@@ -81,6 +94,7 @@ class NodePose {
   }
 
   const std::vector<Follower>& anchors() const { return anchors_; }
+  double spacing() const { return nodes_.spacing; }
 
   double rotation_spread() const {
     Matrix3 sum = Matrix3::Zero();
@@ -209,23 +223,28 @@ class NodePose {
 AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& settings) {
   AnchorPose result{input.rest.vertices, input.anchor_sources, 0, 0};
   if (input.anchor_sources.cols() == 0) return result;
-  NodePose pose(input, settings);
-  for (int iteration = 0; iteration < settings.iterations; ++iteration) {
+  NodePose few(input, settings, settings.nodes[0]);
+  for (int iteration = 0; iteration < settings.iterations[0]; ++iteration) {
     // A large β first spreads a turn over a whole limb; a small one later lets it gather at the joint.
-    const double share = double(iteration) / std::max(1, settings.iterations - 1);
-    pose.iterate(settings.first_smoothness *
-                 std::pow(settings.last_smoothness / settings.first_smoothness, share));
+    const double share = double(iteration) / std::max(1, settings.iterations[0] - 1);
+    few.iterate(settings.first_smoothness *
+                std::pow(settings.last_smoothness / settings.first_smoothness, share));
   }
+  NodePose many(input, settings, settings.nodes[1]);
+  many.start_from(few);
+  // A surface resists bending by β h².
+  const double smoothness = settings.last_smoothness * std::pow(few.spacing() / many.spacing(), 2);
+  for (int iteration = 0; iteration < settings.iterations[1]; ++iteration) many.iterate(smoothness);
   constexpr std::size_t grain = 256;
   parallel_for(static_cast<std::size_t>(result.vertices.cols()), grain,
                [&](std::size_t begin, std::size_t end) {
                  for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
-                   result.vertices.col(i) = pose.carried(input.rest.vertices.col(i), i);
+                   result.vertices.col(i) = many.carried(input.rest.vertices.col(i), i);
                });
-  for (std::size_t k = 0; k < pose.anchors().size(); ++k)
-    result.anchor_sources.col(static_cast<Eigen::Index>(k)) = pose.carried(pose.anchors()[k]);
-  result.rotation_spread = pose.rotation_spread();
-  result.strain = pose.strain();
+  for (std::size_t k = 0; k < many.anchors().size(); ++k)
+    result.anchor_sources.col(static_cast<Eigen::Index>(k)) = many.carried(many.anchors()[k]);
+  result.rotation_spread = few.rotation_spread();
+  result.strain = few.strain();
   return result;
 }
 

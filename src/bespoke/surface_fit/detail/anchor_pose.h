@@ -7,10 +7,11 @@ namespace bespoke {
 
 /// A surface bent by its anchors alone.
 struct AnchorPose {
-  Points vertices;             ///< 3×n, mesh units
-  Points anchor_sources;       ///< 3×k, carried along
-  double rotation_spread = 0;  ///< largest angle between a node's rotation and the mean one, radians
-  double strain = 0;           ///< root mean square misfit of the edges between nodes, no unit
+  Points vertices;        ///< 3×n, mesh units
+  Points anchor_sources;  ///< 3×k, carried along
+  /// Of the few: largest angle between a node's rotation and the mean one, radians.
+  double rotation_spread = 0;
+  double strain = 0;  ///< of the few: root mean square misfit of the edges between nodes, no unit
 };
 
 struct AnchorPoseInput {
@@ -25,8 +26,9 @@ struct AnchorPoseInput {
 /// to what it was, with similarities Mᵢ that change little from node to node:
 ///   Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ.
 /// where h is the spacing of the nodes. So a limb turns by more than a right angle without shrinking before
-/// any closest point is asked. Alternates between the similarities and the places, from no motion on. Without
-/// anchors nothing moves. Same bytes at any thread count. Throws SolverError.
+/// any closest point is asked. Alternates between the similarities and the places, from no motion on: few
+/// nodes first, which find the turns of whole limbs, then many from there. Without anchors nothing moves.
+/// Same bytes at any thread count. Throws SolverError.
 AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& settings = {});
 
 }  // namespace bespoke

@@ -193,8 +193,15 @@ AnchorPose anchor_pose(const Scene& scene, const Points& anchors, const PoseSett
   return pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
 }
 
-/// The nodes' fit, from the aligned source or from one that the anchors have bent: that where they turn a
-/// part far, or some way and the models keep their shape.
+/// Whether closest points cannot find what some anchor tells: it is farther from its target than they reach.
+bool is_out_of_reach(const Scene& scene, const Points& anchors, const DeformationGraphSettings& settings) {
+  const double reach = settings.nodes.max_distance * scene.diagonal;
+  const Eigen::VectorXd distances = (anchors - scene.anchors.targets).colwise().norm();
+  return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).any();
+}
+
+/// The nodes' fit, from the aligned source or from one that the anchors have bent: that where an anchor is
+/// far from its target, or a part turns some way and the models keep their shape.
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOptions& options,
                   const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
                   const Progress& progress) {
@@ -202,7 +209,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   const double degrees = pose.rotation_spread * 180 / std::numbers::pi;
   const bool may_bend = pose.strain <= settings.pose.most_strain;
   summary.anchor_turn_degrees = degrees;
-  summary.posed_by_anchors = may_bend && degrees > settings.pose.least_turn;
+  summary.posed_by_anchors = may_bend && is_out_of_reach(scene, anchors, settings);
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
     return NodeFitting(
         {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
