@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bespoke/error.h"
+#include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "support/arithmetic.h"
 #include "support/bent_tube.h"
@@ -78,25 +79,37 @@ TEST(FitSurfaceDeformationGraph, FollowsASmoothBendWithoutFlipsAndMeetsExactAnch
   for (const double confidence : fit.confidence) EXPECT_GT(confidence, 0.5);
 }
 
+/// Of a tube and the same with a bend, its thickness growing along it.
+SurfaceFitSummary fit_bent_tube(double degrees, double growth) {
+  Scene scene{shapes::tube(), shapes::tube()};
+  scene.anchor_sources = scene.source.vertices(Eigen::all, shapes::tube_marks());
+  scene.anchor_targets = scene.anchor_sources;
+  scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
+  for (Points* points : {&scene.target.vertices, &scene.anchor_targets})
+    for (auto&& x : points->colwise()) {
+      x.tail<2>() *= 1 + growth * x[0];
+      x = shapes::bent(x, degrees);
+    }
+  const RigidTransform back =
+      align_rigidly(scene.anchor_targets, scene.anchor_sources, scene.anchor_weights.cwiseMin(1));
+  scene.target.vertices = back * scene.target.vertices;
+  scene.anchor_targets = back * scene.anchor_targets;
+  return scene.fit().summary;
+}
+
 TEST(FitSurfaceDeformationGraph, ALimbThatKeepsItsShapeGoesWhereItsAnchorsBendIt) {
-  const auto fit_bent = [](double growth) {
-    Scene scene{shapes::tube(), shapes::tube()};
-    scene.anchor_sources = scene.source.vertices(Eigen::all, shapes::tube_marks());
-    scene.anchor_targets = scene.anchor_sources;
-    scene.anchor_weights = Eigen::VectorXd::Constant(scene.anchor_sources.cols(), infinity);
-    for (Points* points : {&scene.target.vertices, &scene.anchor_targets})
-      for (auto&& x : points->colwise()) {
-        x.tail<2>() *= 1 + growth * x[0];
-        x = shapes::bent(x, 35);
-      }
-    return scene.fit().summary;
-  };
-  const SurfaceFitSummary same = fit_bent(0);
+  const SurfaceFitSummary same = fit_bent_tube(35, 0);
   EXPECT_TRUE(same.posed_by_anchors);
   EXPECT_GT(same.rigidity, 1);
-  const SurfaceFitSummary other = fit_bent(0.2);
+  const SurfaceFitSummary other = fit_bent_tube(35, 0.2);
   EXPECT_FALSE(other.posed_by_anchors);
   EXPECT_EQ(other.rigidity, 1);
+}
+
+TEST(FitSurfaceDeformationGraph, ALimbBeyondTheReachOfClosestPointsGoesWhereItsAnchorsBendIt) {
+  const SurfaceFitSummary far = fit_bent_tube(70, 0.2);
+  EXPECT_TRUE(far.posed_by_anchors);
+  EXPECT_EQ(far.rigidity, 1);
 }
 
 TEST(FitSurfaceDeformationGraph, AccuraciesOfZeroChangeNoBit) {

@@ -132,7 +132,7 @@ struct PoseSettings {
   double edge_misfit = 0.5;
   double least_sigma = 1e-3;          ///< diagonals: no anchor is taken for more accurate. Not varied.
   double sigma_of_weight_one = 0.01;  ///< diagonals: the accuracy that a soft anchor's weight of 1 stands for
-  /// Accuracies: an anchor may be so much farther from its target than closest points reach
+  /// Accuracies: anchors may be so much farther from their targets than closest points reach
   /// (NodeFitSettings::max_distance), before the fit starts from the bent source. Not varied.
   double anchor_reach = 3;
   /// Degrees: the same of models that are rigid (NodeGoals::rigidity above 1), since what keeps its shape

@@ -193,15 +193,16 @@ AnchorPose anchor_pose(const Scene& scene, const Points& anchors, const PoseSett
   return pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
 }
 
-/// Whether closest points cannot find what some anchor tells: it is farther from its target than they reach.
-bool is_out_of_reach(const Scene& scene, const Points& anchors, const DeformationGraphSettings& settings) {
+/// Whether closest points cannot find what anchors tell: two at least, since one alone may be a slip, are
+/// farther from their targets than closest points reach.
+bool are_out_of_reach(const Scene& scene, const Points& anchors, const DeformationGraphSettings& settings) {
   const double reach = settings.nodes.max_distance * scene.diagonal;
   const Eigen::VectorXd distances = (anchors - scene.anchors.targets).colwise().norm();
-  return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).any();
+  return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).count() > 1;
 }
 
-/// The nodes' fit, from the aligned source or from one that the anchors have bent: that where an anchor is
-/// far from its target, or a part turns some way and the models keep their shape.
+/// The nodes' fit, from the aligned source or from one that the anchors have bent: that where anchors are
+/// far from their targets, or a part turns some way and the models keep their shape.
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOptions& options,
                   const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
                   const Progress& progress) {
@@ -209,7 +210,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   const double degrees = pose.rotation_spread * 180 / std::numbers::pi;
   const bool may_bend = pose.strain <= settings.pose.most_strain;
   summary.anchor_turn_degrees = degrees;
-  summary.posed_by_anchors = may_bend && is_out_of_reach(scene, anchors, settings);
+  summary.posed_by_anchors = may_bend && are_out_of_reach(scene, anchors, settings);
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
     return NodeFitting(
         {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
