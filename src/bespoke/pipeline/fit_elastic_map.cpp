@@ -105,25 +105,9 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
   }
 }
 
-/// Where surfaces of the path pass through themselves no chain follows it, however fine its steps; the way
-/// straight to the end need not pass through itself. So where more than one vertex in twenty is missed one
-/// step is tried, and taken if it halves what is missed.
-void go_straight_where_lost(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-                            const FitOptions& options, const Progress& progress) {
-  const double missed = result.summary.elastic.vertex_residuals.p95;
-  if (!result.plan || missed <= options.fit_tolerance) return;
-  FittedMapping straight = result;
-  straight.plan.reset();
-  fit_steps(straight, source, anchors, options, 1, progress);
-  ElasticSummary& summary = straight.summary.elastic;
-  if (summary.vertex_residuals.p95 > missed / 2) return;
-  summary.straight = true;
-  result = std::move(straight);
-}
-
 /// Whether steps are, or would be, along surfaces in between.
 bool follows_path(const FittedMapping& fitted) {
-  return fitted.plan || (fitted.elastic->steps().size() == 1 && !fitted.summary.elastic.straight);
+  return fitted.plan || fitted.elastic->steps().size() == 1;
 }
 
 /// A step that is a composition, in two: the same map, for which nothing is fitted anew.
@@ -190,10 +174,7 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.motion = regional_motion(source, result.fitted_vertices);
   fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
   const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
-  if (follows && !options.steps) {
-    go_straight_where_lost(result, source, anchors, options, progress);
-    if (!summary.straight) divide_where_missed(result, source, anchors, options, progress);
-  }
+  if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
   summary.seconds = watch.seconds();
 }
 

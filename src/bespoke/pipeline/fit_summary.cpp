@@ -44,7 +44,7 @@ std::string motion_text(const RegionalMotion& motion) {
 
 std::string steps_text(const ElasticSummary& summary) {
   std::vector<std::string> reasons;
-  if (step_count(summary.motion) > 1 && !summary.straight) reasons.push_back(motion_text(summary.motion));
+  if (step_count(summary.motion) > 1) reasons.push_back(motion_text(summary.motion));
   if (summary.divided_where_missed) reasons.emplace_back("fewer miss vertices");
   if (summary.divided_steps > 0)
     reasons.push_back(std::to_string(summary.divided_steps) + " folded when baked");
@@ -65,7 +65,6 @@ std::string to_string(const ElasticSummary& summary) {
   std::snprintf(text, sizeof text, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
                 summary.vertex_residuals.p95, summary.vertex_residuals.max, summary.anchor_residuals.max);
   line += text;
-  if (summary.straight) line += "; straight to the fitted source, since on the way parts pass through others";
   if (!summary.unmet.empty()) line += "; " + to_string(summary.unmet);
   if (summary.unreferenced_vertices > 0)
     line += "; " + std::to_string(summary.unreferenced_vertices) + " unreferenced vertices left out";

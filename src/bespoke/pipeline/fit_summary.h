@@ -39,7 +39,6 @@ struct ElasticSummary {
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
   bool divided_where_missed = false;         ///< more steps than the motion asks for, to meet the vertices
-  bool straight = false;                     ///< not along a path, whose surfaces pass through themselves
   std::size_t divided_steps = 0;             ///< halved as their bakes folded
   double lambda = 0;                         ///< effective distance, mesh units
   Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units
