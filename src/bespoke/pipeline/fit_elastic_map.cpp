@@ -106,9 +106,7 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
 }
 
 /// Whether steps are, or would be, along surfaces in between.
-bool follows_path(const FittedMapping& fitted) {
-  return fitted.plan || fitted.elastic->steps().size() == 1;
-}
+bool follows_path(const FittedMapping& fitted) { return fitted.plan || fitted.elastic->steps().size() == 1; }
 
 /// A step that is a composition, in two: the same map, for which nothing is fitted anew.
 ElasticSteps in_two_by_layers(const FittedMapping& fitted, std::size_t step) {
