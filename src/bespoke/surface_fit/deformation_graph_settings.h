@@ -117,8 +117,9 @@ struct AnchorSettings {
 
 /// The source bent by its anchors alone (anchor_pose.h). Errors are mean distances from the truth, diagonals.
 struct PoseSettings {
-  /// Over the whole surface, few first, as at the levels of the fit. Few alone bend fingers at the wrong
-  /// places: x 1.11 over d04, d05, d08, d10 and the reversed d10; many alone, with five anchors, x 1.10.
+  /// Over the whole surface, few first, as at the levels of the fit. Over d04, d05, d08, d10, d10 reversed
+  /// and d01's source on d08: few alone, which bend fingers at the wrong places, x 1.09; many alone x 0.99,
+  /// but with five anchors x 1.31.
   std::array<int, 2> nodes = {400, 2500};
   /// Weight of the differences between the similarities of neighbouring nodes, of the few; the many get the
   /// same stiffness. Falls geometrically, so that far turns spread before they settle at the joints. Last
