@@ -54,7 +54,7 @@ TEST(ImageFormats, NrrdOfModelsInRasIsTurned) {
 // VTK carries points through the file as the image itself does.
 TEST(ImageFormats, VtkMovesPointsAsTheImageDoes) {
   if (test::run_program({"/usr/bin/python3", "-c", "import vtkmodules"}).exit_code != 0)
-    GTEST_SKIP() << "VTK for Python (python3-vtk9) is not installed";
+    GTEST_SKIP() << "VTK for Python (python3-paraview or python3-vtk9) is not installed";
   const test::ScratchDirectory directory;
   write_displacement_image(directory / "map.vti", ramp(), {"from here to there"});
   test::write_text(directory / "read.py", R"(

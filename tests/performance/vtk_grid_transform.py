@@ -3,7 +3,7 @@
     bespoke export map.vdb --grid 0.5% -o map.vti
     /usr/bin/python3 tests/performance/vtk_grid_transform.py map.vti
 
-One thread, a million points of the image's box: in rows along x, and in random order. Needs Debian's python3-vtk9.
+One thread, a million points of the image's box: in rows along x, and in random order. Needs Debian's python3-paraview or python3-vtk9.
 """
 
 import sys

@@ -25,25 +25,26 @@ struct BentTube {
   BentTube() {
     for (auto&& x : targets.colwise()) x = bent(x);
   }
-  AnchorPose pose() const {
-    return pose_by_anchors({rest, sources, targets, sigmas, diagonal(rest.vertices)});
+  PosingByAnchors posing() const {
+    return PosingByAnchors({rest, sources, targets, sigmas, diagonal(rest.vertices)});
   }
 };
 
-TEST(PoseByAnchors, MovesNothingWithoutAnchorsOrWithAnchorsInPlace) {
+TEST(PosingByAnchors, MovesNothingWithoutAnchorsOrWithAnchorsInPlace) {
   BentTube scene;
   scene.targets = scene.sources;
-  EXPECT_LT((scene.pose().vertices - scene.rest.vertices).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((scene.posing().bent().vertices - scene.rest.vertices).cwiseAbs().maxCoeff(), 1e-9);
   const Points none(3, 0);
   const Eigen::VectorXd no_sigmas(0);
-  const AnchorPose still = pose_by_anchors({scene.rest, none, none, no_sigmas, 4});
+  const AnchorPose still = PosingByAnchors({scene.rest, none, none, no_sigmas, 4}).bent();
   EXPECT_EQ(still.vertices, scene.rest.vertices);
 }
 
-TEST(PoseByAnchors, TurnsALimbBeyondARightAngleWithoutShrinkingIt) {
+TEST(PosingByAnchors, TurnsALimbBeyondARightAngleWithoutShrinkingIt) {
   const BentTube scene;
-  const AnchorPose pose = scene.pose();
-  EXPECT_NEAR(pose.rotation_spread * 180 / std::numbers::pi, bend_degrees / 2, 0.2 * bend_degrees);
+  const PosingByAnchors posing = scene.posing();
+  EXPECT_NEAR(posing.rotation_spread() * 180 / std::numbers::pi, bend_degrees / 2, 0.2 * bend_degrees);
+  const AnchorPose pose = posing.bent();
   EXPECT_LT((pose.anchor_sources - scene.targets).colwise().norm().maxCoeff(), 0.02);
   for (Eigen::Index i = 0; i < pose.vertices.cols(); ++i) {
     const double way = std::abs(scene.rest.vertices(0, i) - elbow);
@@ -53,14 +54,14 @@ TEST(PoseByAnchors, TurnsALimbBeyondARightAngleWithoutShrinkingIt) {
   }
 }
 
-TEST(PoseByAnchors, LetsAnInaccurateAnchorPullLess) {
+TEST(PosingByAnchors, LetsAnInaccurateAnchorPullLess) {
   BentTube scene;
   scene.targets = scene.sources;
   scene.targets.col(3) += Vector3(0, 0.4, 0);
   double last = 1;
   for (const double sigma : {0.0, 0.2, 1.0}) {
     scene.sigmas[3] = sigma;
-    const double pulled = (scene.pose().anchor_sources.col(3) - scene.sources.col(3)).norm();
+    const double pulled = (scene.posing().bent().anchor_sources.col(3) - scene.sources.col(3)).norm();
     EXPECT_LT(pulled, last);
     last = pulled;
   }

@@ -118,14 +118,15 @@ struct AnchorSettings {
 /// The source bent by its anchors alone (anchor_pose.h). Errors are mean distances from the truth, diagonals.
 struct PoseSettings {
   /// Over the whole surface, few first, as at the levels of the fit. Over d04, d05, d08, d10, d10 reversed
-  /// and d01's source on d08: few alone, which bend fingers at the wrong places, x 1.09; many alone x 0.99,
-  /// but with five anchors x 1.31.
+  /// and d01's source on d08, all bent: few alone, which bend fingers at the wrong places, x 1.09; many alone
+  /// x 1.00, but with five anchors x 1.25.
   std::array<int, 2> nodes = {400, 2500};
   /// Weight of the differences between the similarities of neighbouring nodes, of the few; the many get the
   /// same stiffness. Falls geometrically, so that far turns spread before they settle at the joints. Last
   /// value 1, 0.1, 0.02: 0.639, 0.608, 0.611 % over d01, d04, d08 and d10 (geometric mean), with few alone.
   double first_smoothness = 100, last_smoothness = 0.1;
-  /// Of places and similarities in turn, at either level. The second 5, 10, 20, 40: no difference.
+  /// Of places and similarities in turn, at either level. The second 5, 20, 40: x 1.00, 1.00, 1.00, with five
+  /// anchors x 1.00, 1.00, 1.05.
   std::array<int, 2> iterations = {60, 10};
   int sweeps = 3;  ///< over the similarities, an iteration. Not varied.
   /// Spacings: expected misfit of an edge; with an anchor's accuracy it weighs anchors against shape. 0.1:

@@ -56,7 +56,8 @@ class AdaptiveBake {
     measurement_.fully(result_.pyramid, summary());
     for (int round = 1; round < full_rounds && summary().error.max > options_.tolerance; ++round) {
       if (!refine_around_worst()) break;
-      if (round > 1) measurement_.name_more();
+      // Rounds that find ever new points just above the tolerance take more around them.
+      if (round > 1) measurement_.widen_worst();
       measurement_.fully(result_.pyramid, summary());
     }
     summary().measure_seconds += watch_.lap();

@@ -11,7 +11,8 @@ namespace {
 constexpr std::uint64_t error_seed = 3;
 // Points of an error above this share of the tolerance are refined when a round does not meet it: what one
 // sample finds just below, the next will find just above.
-constexpr double named_share = 0.85;
+// Widened, its square, its cube, and so on.
+constexpr double worst_share = 0.85;
 // Of BakeOptions::error_points: points on the surface that the record counts, and points of a search at most
 // (one a cell where there are fewer cells).
 constexpr std::size_t recorded_surface_points = 2;
@@ -54,7 +55,7 @@ Measurement::Measurement(const ElasticMap& map, const Lattice& band_lattice,
       options_(options),
       progress_(progress),
       seed_(error_seed),
-      named_share_(named_share) {}
+      worst_share_(worst_share) {}
 
 double Measurement::quickly(Pyramid& pyramid) { return search(pyramid, surface_cells(pyramid)); }
 
@@ -76,7 +77,7 @@ double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
   return summary.error.max;
 }
 
-void Measurement::name_more() { named_share_ *= named_share; }
+void Measurement::widen_worst() { worst_share_ *= worst_share; }
 
 std::vector<FinestCell> Measurement::surface_cells(const Pyramid& pyramid) const {
   return options_.surface ? finest_cells_on(pyramid, *options_.surface) : cells_in_all_leaves(pyramid, seed_);
@@ -94,7 +95,7 @@ double Measurement::measure(Pyramid& pyramid, const Points& x) {
   pyramid = std::move(baked).release();
   std::vector<Eigen::Index> worst;
   for (std::size_t i = 0; i < errors_.size(); ++i)
-    if (!(errors_[i] <= named_share_ * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
+    if (!(errors_[i] <= worst_share_ * options_.tolerance)) worst.push_back(static_cast<Eigen::Index>(i));
   // The largest first, should there not be leaves for all.
   std::stable_sort(worst.begin(), worst.end(), [&](Eigen::Index a, Eigen::Index b) {
     return errors_[static_cast<std::size_t>(a)] > errors_[static_cast<std::size_t>(b)];

@@ -29,9 +29,8 @@ class Measurement {
 
   const Points& worst() const { return worst_; }
 
-  /// From now on worst() has points of a smaller error too: where rounds find ever new ones just above the
-  /// tolerance.
-  void name_more();
+  /// From now on worst() has points of a smaller error too.
+  void widen_worst();
 
  private:
   std::vector<FinestCell> surface_cells(const Pyramid& pyramid) const;
@@ -44,7 +43,7 @@ class Measurement {
   const BakeOptions& options_;
   const Progress& progress_;
   std::uint64_t seed_;
-  double named_share_;  // of the tolerance, above which points are among the worst
+  double worst_share_;  // of the tolerance, above which points are among the worst
   std::vector<double> errors_;
   Points worst_;
 };

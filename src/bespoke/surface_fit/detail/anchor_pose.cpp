@@ -32,13 +32,15 @@ struct Follower {
   Vector3 rest;
 };
 
+}  // namespace
+
 /// As similar as possible (after Sorkine, Alexa 2007): places x' and similarities M of nodes that minimise
 ///   Σ |x'ⱼ − x'ᵢ − Mᵢ (xⱼ − xᵢ)|² + β Σ |Mᵢ − Mⱼ|² + Σ wₖ |carried anchor k − its target|²
 /// over edges (i, j) and anchors k, in alternation: similarities with fixed places, then places with fixed
 /// similarities.
-class NodePose {
+class PosingByAnchors::Nodes {
  public:
-  NodePose(const AnchorPoseInput& input, const PoseSettings& settings, int count)
+  Nodes(const AnchorPoseInput& input, const PoseSettings& settings, int count)
       : sweeps_(settings.sweeps),
         nodes_(make_deformation_nodes(
             input.rest, node_spacing(vertex_areas(input.rest).sum(), count, settings.node_settings),
@@ -58,7 +60,7 @@ class NodePose {
   }
 
   /// As fewer nodes have bent the surface.
-  void start_from(const NodePose& few) {
+  void start_from(const Nodes& few) {
     for (int node = 0; node < nodes_.size(); ++node) {
       const int vertex = nodes_.vertices[static_cast<std::size_t>(node)];
       places_.col(node) = few.carried(nodes_.rest.col(node), vertex);
@@ -218,33 +220,40 @@ class NodePose {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
-}  // namespace
-
-AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& settings) {
-  AnchorPose result{input.rest.vertices, input.anchor_sources, 0, 0};
-  if (input.anchor_sources.cols() == 0) return result;
-  NodePose few(input, settings, settings.nodes[0]);
+PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSettings& settings)
+    : input_(input), settings_(settings) {
+  if (input.anchor_sources.cols() == 0) return;
+  few_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
   for (int iteration = 0; iteration < settings.iterations[0]; ++iteration) {
     // A large β first spreads a turn over a whole limb; a small one later lets it gather at the joint.
     const double share = double(iteration) / std::max(1, settings.iterations[0] - 1);
-    few.iterate(settings.first_smoothness *
-                std::pow(settings.last_smoothness / settings.first_smoothness, share));
+    few_->iterate(settings.first_smoothness *
+                  std::pow(settings.last_smoothness / settings.first_smoothness, share));
   }
-  NodePose many(input, settings, settings.nodes[1]);
-  many.start_from(few);
+}
+
+PosingByAnchors::~PosingByAnchors() = default;
+
+double PosingByAnchors::rotation_spread() const { return few_ ? few_->rotation_spread() : 0; }
+
+double PosingByAnchors::strain() const { return few_ ? few_->strain() : 0; }
+
+AnchorPose PosingByAnchors::bent() const {
+  AnchorPose result{input_.rest.vertices, input_.anchor_sources};
+  if (!few_) return result;
+  Nodes many(input_, settings_, settings_.nodes[1]);
+  many.start_from(*few_);
   // A surface resists bending by β h².
-  const double smoothness = settings.last_smoothness * std::pow(few.spacing() / many.spacing(), 2);
-  for (int iteration = 0; iteration < settings.iterations[1]; ++iteration) many.iterate(smoothness);
+  const double smoothness = settings_.last_smoothness * std::pow(few_->spacing() / many.spacing(), 2);
+  for (int iteration = 0; iteration < settings_.iterations[1]; ++iteration) many.iterate(smoothness);
   constexpr std::size_t grain = 256;
   parallel_for(static_cast<std::size_t>(result.vertices.cols()), grain,
                [&](std::size_t begin, std::size_t end) {
                  for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
-                   result.vertices.col(i) = many.carried(input.rest.vertices.col(i), i);
+                   result.vertices.col(i) = many.carried(input_.rest.vertices.col(i), i);
                });
   for (std::size_t k = 0; k < many.anchors().size(); ++k)
     result.anchor_sources.col(static_cast<Eigen::Index>(k)) = many.carried(many.anchors()[k]);
-  result.rotation_spread = few.rotation_spread();
-  result.strain = few.strain();
   return result;
 }
 

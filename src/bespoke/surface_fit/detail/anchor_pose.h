@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 
@@ -9,9 +11,6 @@ namespace bespoke {
 struct AnchorPose {
   Points vertices;        ///< 3×n, mesh units
   Points anchor_sources;  ///< 3×k, carried along
-  /// Of the few: largest angle between a node's rotation and the mean one, radians.
-  double rotation_spread = 0;
-  double strain = 0;  ///< of the few: root mean square misfit of the edges between nodes, no unit
 };
 
 struct AnchorPoseInput {
@@ -28,7 +27,27 @@ struct AnchorPoseInput {
 /// where h is the spacing of the nodes. So a limb turns by more than a right angle without shrinking before
 /// any closest point is asked. Alternates between the similarities and the places, from no motion on: few
 /// nodes first, which find the turns of whole limbs, then many from there. Without anchors nothing moves.
-/// Same bytes at any thread count. Throws SolverError.
-AnchorPose pose_by_anchors(const AnchorPoseInput& input, const PoseSettings& settings = {});
+/// Same bytes at any thread count.
+class PosingByAnchors {
+ public:
+  /// Poses the few nodes. What `input` refers to must outlive it. Throws SolverError.
+  explicit PosingByAnchors(const AnchorPoseInput& input, const PoseSettings& settings = {});
+  ~PosingByAnchors();
+
+  /// Largest angle between a node's rotation and the mean one, radians.
+  double rotation_spread() const;
+
+  /// Root mean square misfit of the edges between nodes, no unit.
+  double strain() const;
+
+  /// As many nodes pose it. Throws SolverError.
+  AnchorPose bent() const;
+
+ private:
+  class Nodes;
+  AnchorPoseInput input_;
+  PoseSettings settings_;
+  std::unique_ptr<Nodes> few_;  // null without anchors
+};
 
 }  // namespace bespoke

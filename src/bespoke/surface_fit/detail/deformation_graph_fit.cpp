@@ -185,12 +185,10 @@ void measure_distances(const SurfaceFitInput& input, const TargetSurface& target
   fit.summary.after = distances(target, fit.vertices(Eigen::all, measured));
 }
 
-/// The surface as the anchors alone bend it; its anchors are carried along.
-AnchorPose anchor_pose(const Scene& scene, const Points& anchors, const PoseSettings& settings) {
-  const Eigen::VectorXd sigmas =
-      (settings.sigma_of_weight_one * scene.diagonal * scene.anchors.weights.cwiseSqrt().cwiseInverse())
-          .cwiseMax(scene.anchors.sigmas);
-  return pose_by_anchors({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal}, settings);
+/// Accuracies that the pose takes the anchors for; a soft anchor's weight stands for one too.
+Eigen::VectorXd pose_sigmas(const Scene& scene, const PoseSettings& settings) {
+  return (settings.sigma_of_weight_one * scene.diagonal * scene.anchors.weights.cwiseSqrt().cwiseInverse())
+      .cwiseMax(scene.anchors.sigmas);
 }
 
 /// Whether closest points cannot find what anchors tell: two at least, since one alone may be a slip, are
@@ -206,9 +204,11 @@ bool are_out_of_reach(const Scene& scene, const Points& anchors, const Deformati
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOptions& options,
                   const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
                   const Progress& progress) {
-  const AnchorPose pose = anchor_pose(scene, anchors, settings.pose);
-  const double degrees = pose.rotation_spread * 180 / std::numbers::pi;
-  const bool may_bend = pose.strain <= settings.pose.most_strain;
+  const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
+  const PosingByAnchors posing({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal},
+                               settings.pose);
+  const double degrees = posing.rotation_spread() * 180 / std::numbers::pi;
+  const bool may_bend = posing.strain() <= settings.pose.most_strain;
   summary.anchor_turn_degrees = degrees;
   summary.posed_by_anchors = may_bend && are_out_of_reach(scene, anchors, settings);
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
@@ -223,6 +223,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
     summary.posed_by_anchors = may_bend && degrees > settings.pose.least_rigid_turn && rigidity > 1;
     if (!summary.posed_by_anchors) return straight.fit_fine();
   }
+  const AnchorPose pose = posing.bent();
   const TriangleMesh bent{pose.vertices, scene.surface.faces};
   NodeFitting posed = fitting(bent, pose.anchor_sources);
   posed.fit_coarse();
