@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Core>
 #include <set>
 #include <vector>
 
@@ -41,6 +42,13 @@ TEST(RunDispatched, RunsTheLoopOnceWithEverySet) {
 }
 
 #if defined(__x86_64__)
+// A sum's order, and so its last bits, follows from how Eigen cuts matrix products.
+TEST(InstructionSet, MatrixProductsAreCutTheSameWayWhateverTheCaches) {
+  EXPECT_EQ(Eigen::l1CacheSize(), 32 << 10);
+  EXPECT_EQ(Eigen::l2CacheSize(), 256 << 10);
+  EXPECT_EQ(Eigen::l3CacheSize(), 2 << 20);
+}
+
 struct OwnAddress {
   [[gnu::always_inline]] static void run(const void*& address) {
     asm volatile("lea 0(%%rip), %0" : "=r"(address));

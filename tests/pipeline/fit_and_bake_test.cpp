@@ -8,6 +8,7 @@
 #include "bespoke/bake/bake.h"
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/error.h"
+#include "bespoke/instruction_set.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/pipeline/fit_mapping.h"
@@ -79,19 +80,23 @@ TEST(FitAndBake, MotionBeginsAtTheSourceAndIsAffineFarAway) {
   }
 }
 
-TEST(FitAndBake, SameBytesAtAnyNumberOfThreads) {
+TEST(FitAndBake, SameBytesAtAnyNumberOfThreadsWithAnyInstructionSet) {
   const BodyPair pair = body_pair();
+  const std::vector<InstructionSet> sets = supported_instruction_sets();
+  std::size_t next_set = 0;
   std::string first;
   for (const std::size_t threads : {1, 2, 8}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    use_instruction_set(sets[next_set++ % sets.size()]);
     std::string bytes;
     for (const FittedMapping& mapping : fit_by_all_methods(pair)) {
       bytes += serialize_exact_map(*mapping.elastic);
       for (const StageJson& stage : stages_json(mapping.summary, pair.anchors)) bytes += stage.json.dump();
     }
     if (first.empty()) first = bytes;
-    EXPECT_TRUE(bytes == first) << threads << " threads";
+    EXPECT_TRUE(bytes == first) << threads << " threads, instruction set " << int(instruction_set());
   }
+  use_instruction_set(sets.back());
 }
 
 TEST(FitAndBake, GivenFittedSourceNeedsNoTarget) {
