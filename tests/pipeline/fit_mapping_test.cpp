@@ -128,6 +128,23 @@ TEST(FitMapping, FitsAsIfSwappedAnchorsWereNotThere) {
               HasSubstr("\"anchor 2\" and \"anchor 7\" look swapped"));
 }
 
+TEST(FitMapping, FitsAsIfASlippedAnchorWereNotThereUnlessSomebodyStandsByIt) {
+  Pair without, slipped;
+  without.anchors.pairs.erase(without.anchors.pairs.begin() + 4);
+  AnchorPair& wrong = slipped.anchors.pairs[4];
+  wrong.b = ClosestPointTree(slipped.target)
+                .closest(wrong.b + 0.7 * (slipped.anchors.pairs[9].b - wrong.b).normalized())
+                ->point;
+  const FittedMapping fit = slipped.fit();
+  EXPECT_EQ(fit.fitted_vertices, without.fit().fitted_vertices);
+  ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
+  EXPECT_EQ(fit.summary.accuracy.left_out[0].index, 4u);
+  EXPECT_NEAR(fit.anchor_residual[4], fit.summary.accuracy.left_out[0].distance, 0.05);
+  EXPECT_THAT(stage_lines(fit.summary, slipped.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
+  wrong.sigma = 0;
+  EXPECT_LT(slipped.fit().anchor_residual[4], 1e-6);
+}
+
 TEST(FitMapping, SaysWhatEveryStageFound) {
   const Pair pair;
   const FitSummary summary = pair.fit().summary;

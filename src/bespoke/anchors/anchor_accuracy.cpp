@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/statistics.h"
@@ -15,8 +16,6 @@ constexpr double resolution = 1e-3;          // of the same: the least σ that i
 constexpr double inlier_sigmas = 3;          // farther ones do not shape the estimate: 0.3 % of normal errors
 constexpr double slipped_sigmas = 4;         // 1 in 16,000 of normal errors
 constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
-
-bool is_unrated(const AnchorPair& pair) { return !pair.sigma && std::isinf(pair.weight); }
 
 /// How far each unrated pair of the surface lies off the target beyond what it lies off the source.
 std::vector<SlippedAnchor> offsets(const Anchors& anchors, const TriangleMesh& source,
@@ -45,20 +44,24 @@ double robust_deviation(const std::vector<SlippedAnchor>& offsets) {
   return distances.empty() ? 0 : std::sqrt(squares / double(distances.size()));
 }
 
-Anchors without_swapped(Anchors anchors, const std::vector<SwappedAnchors>& swapped) {
-  std::vector<char> drop(anchors.pairs.size(), 0);
-  for (const SwappedAnchors& pair : swapped) drop[pair.first] = drop[pair.second] = 1;
-  std::vector<AnchorPair> kept;
-  for (std::size_t i = 0; i < anchors.pairs.size(); ++i)
-    if (!drop[i]) kept.push_back(std::move(anchors.pairs[i]));
-  anchors.pairs = std::move(kept);
-  return anchors;
+/// Takes pairs, by their numbers among those given, out of what the fit uses.
+void drop(RatedAnchors& rated, const std::vector<std::size_t>& dropped) {
+  std::vector<AnchorPair> pairs;
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < rated.kept.size(); ++k) {
+    if (std::find(dropped.begin(), dropped.end(), rated.kept[k]) != dropped.end()) continue;
+    pairs.push_back(std::move(rated.anchors.pairs[k]));
+    kept.push_back(rated.kept[k]);
+  }
+  rated.anchors.pairs = std::move(pairs);
+  rated.kept = std::move(kept);
 }
 
 }  // namespace
 
 RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target) {
-  RatedAnchors rated{anchors, {}, {}};
+  RatedAnchors rated{anchors, std::vector<std::size_t>(anchors.pairs.size()), {}, {}};
+  std::iota(rated.kept.begin(), rated.kept.end(), 0);
   AnchorAccuracy& accuracy = rated.accuracy;
   accuracy.swapped = swapped_anchors(anchors);
   // Who gives an accuracy stands by the pair.
@@ -82,10 +85,20 @@ RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, co
   for (AnchorPair& pair : rated.anchors.pairs)
     if (is_unrated(pair)) pair.sigma = 0;
   for (const AnchorPair& pair : rated.anchors.pairs) rated.sigmas.push_back(pair.sigma.value_or(0));
-  for (const SwappedAnchors& pair : accuracy.swapped)
+  for (const SwappedAnchors& pair : accuracy.swapped) {
     rated.sigmas[pair.first] = rated.sigmas[pair.second] =
         (anchors.pairs[pair.first].b - anchors.pairs[pair.second].b).norm();
-  rated.anchors = without_swapped(std::move(rated.anchors), accuracy.swapped);
+    drop(rated, {pair.first, pair.second});
+  }
+  return rated;
+}
+
+RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_out) {
+  for (const LeftOutAnchor& anchor : left_out) {
+    rated.sigmas[anchor.index] = anchor.distance;
+    rated.accuracy.left_out.push_back(anchor);
+    drop(rated, {anchor.index});
+  }
   return rated;
 }
 
@@ -100,6 +113,11 @@ std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors) {
   for (const SlippedAnchor& slipped : accuracy.slipped) {
     std::snprintf(number, sizeof number, " lies %.4g beside the target and hardly pulls", slipped.distance);
     text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, slipped.index) + number;
+  }
+  for (const LeftOutAnchor& anchor : accuracy.left_out) {
+    std::snprintf(number, sizeof number, " lies %.4g from where the surfaces put it and is left out",
+                  anchor.distance);
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + number;
   }
   if (!accuracy.swapped.empty()) text += (text.empty() ? "" : "; ") + to_string(accuracy.swapped, anchors);
   return text;

@@ -16,19 +16,27 @@ struct SlippedAnchor {
   double distance = 0;  ///< mesh units
 };
 
+/// A pair that the others contradict, and that the surfaces laid without it put elsewhere.
+struct LeftOutAnchor {
+  std::size_t index = 0;
+  double distance = 0;  ///< of its target from where they put it, mesh units
+};
+
 /// What the models say about anchors that came without a weight and without a σ.
 struct AnchorAccuracy {
   std::size_t estimated = 0;  ///< pairs whose σ was estimated
   double sigma = 0;           ///< of these, mesh units; 0: nothing speaks against meeting them exactly
   std::vector<SlippedAnchor> slipped;
   std::vector<SwappedAnchors> swapped;
+  std::vector<LeftOutAnchor> left_out;
 };
 
 /// Anchors as the fit uses them.
 struct RatedAnchors {
-  Anchors anchors;  ///< without swapped pairs; every pair without a weight has its σ
-  std::vector<double>
-      sigmas;  ///< of all pairs given, mesh units; a swapped one's is the way to the other's target
+  Anchors anchors;                ///< without pairs left out; every pair without a weight has its σ
+  std::vector<std::size_t> kept;  ///< of the pairs given, ascending: those that `anchors` has
+  std::vector<double> sigmas;  ///< of all pairs given, mesh units; a swapped one's is the way to the other's
+                               ///< target, of one that is left out the distance
   AnchorAccuracy accuracy;
 };
 
@@ -41,6 +49,9 @@ struct RatedAnchors {
 /// slipped. Swapped pairs (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for
 /// unusable meshes.
 RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
+
+/// The same without these pairs too, which `accuracy` then lists.
+RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_out);
 
 /// One line, empty where nothing was estimated above 0 and nothing found.
 std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors);

@@ -181,6 +181,8 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
 
 bool is_exact(const AnchorPair& pair) { return std::isinf(pair.weight) && !(pair.sigma.value_or(0) > 0); }
 
+bool is_unrated(const AnchorPair& pair) { return !pair.sigma && std::isinf(pair.weight); }
+
 Points source_points(const Anchors& anchors) { return points(anchors, &AnchorPair::a); }
 
 Points target_points(const Anchors& anchors) { return points(anchors, &AnchorPair::b); }

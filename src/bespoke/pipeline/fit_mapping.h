@@ -39,7 +39,8 @@ struct FittedMapping {
 };
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
-/// and σ get a σ first, swapped ones are left out of everything but the residuals (anchor_accuracy.h). Exact
+/// and σ get a σ first; swapped ones, and those that slipped, are left out of everything but the residuals
+/// (anchor_accuracy.h). Exact
 /// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
 /// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
 /// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with

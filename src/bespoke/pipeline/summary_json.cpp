@@ -110,9 +110,12 @@ Json to_json(const RigidSummary& summary) {
 }
 
 Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
-  Json slipped = Json::array(), swapped = Json::array();
+  Json slipped = Json::array(), swapped = Json::array(), left_out = Json::array();
   for (const SlippedAnchor& anchor : accuracy.slipped)
     slipped.push_back(
+        {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
+  for (const LeftOutAnchor& anchor : accuracy.left_out)
+    left_out.push_back(
         {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
   for (const SwappedAnchors& pair : accuracy.swapped)
     swapped.push_back({{"indices", {pair.first, pair.second}},
@@ -121,7 +124,8 @@ Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
   return {{"estimated", accuracy.estimated},
           {"sigma", accuracy.sigma},
           {"slipped_anchors", std::move(slipped)},
-          {"swapped_anchors", std::move(swapped)}};
+          {"swapped_anchors", std::move(swapped)},
+          {"left_out_anchors", std::move(left_out)}};
 }
 
 Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
