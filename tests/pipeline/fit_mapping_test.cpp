@@ -142,7 +142,7 @@ TEST(FitMapping, FitsAsIfASlippedAnchorWereNotThereUnlessSomebodyStandsByIt) {
   EXPECT_NEAR(fit.anchor_residual[4], fit.summary.accuracy.left_out[0].distance, 0.05);
   EXPECT_THAT(stage_lines(fit.summary, slipped.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
   wrong.sigma = 0;
-  EXPECT_LT(slipped.fit().anchor_residual[4], 1e-6);
+  EXPECT_LT(slipped.fit().anchor_residual[4], 1e-3 * fit.anchor_residual[4]);
 }
 
 TEST(FitMapping, SaysWhatEveryStageFound) {

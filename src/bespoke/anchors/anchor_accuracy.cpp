@@ -11,8 +11,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double near = 0.02;                // of the source's diagonal: an anchor of the surface
-constexpr double resolution = 1e-3;          // of the same: the least σ that is estimated
+constexpr double resolution = 1e-3;          // of the source's diagonal: the least σ that is estimated
 constexpr double inlier_sigmas = 3;          // farther ones do not shape the estimate: 0.3 % of normal errors
 constexpr double slipped_sigmas = 4;         // 1 in 16,000 of normal errors
 constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
@@ -70,7 +69,7 @@ RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, co
   });
   const double source_diagonal = diagonal(source.vertices);
   const double least = resolution * source_diagonal;
-  const std::vector<SlippedAnchor> off = offsets(anchors, source, target, near * source_diagonal);
+  const std::vector<SlippedAnchor> off = offsets(anchors, source, target, near_surface * source_diagonal);
   if (!off.empty()) {
     const double deviation = robust_deviation(off);
     accuracy.estimated = off.size();

@@ -40,14 +40,16 @@ struct RatedAnchors {
   AnchorAccuracy accuracy;
 };
 
-/// Estimates σ of the pairs near the source's surface (2 % of its diagonal; farther ones are points of space
-/// and stay exact). If q is on the source, q' should be on the target: however the surface fit, freed of the
-/// anchors, slides along the target, it moves q' by this distance at least. An inaccurate pair is off in all
-/// three directions alike, so the root mean square of the distances, those beyond three standard deviations
-/// left out, is σ. Below 0.1 % of the diagonal it cannot be told from the tessellation, and the pairs count
-/// as exact. A pair left out has its own distance as σ; beyond four times the others' it is listed as
-/// slipped. Swapped pairs (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for
-/// unusable meshes.
+/// Of the source's diagonal: anchors within it belong to the surface, farther ones are points of space.
+inline constexpr double near_surface = 0.02;
+
+/// Estimates σ of the pairs near the source's surface; points of space stay exact. If q is on the source, q'
+/// should be on the target: however the surface fit, freed of the anchors, slides along the target, it moves
+/// q' by this distance at least. An inaccurate pair is off in all three directions alike, so the root mean
+/// square of the distances, those beyond three standard deviations left out, is σ. Below 0.1 % of the
+/// diagonal it cannot be told from the tessellation, and the pairs count as exact. A pair left out has its
+/// own distance as σ; beyond four times the others' it is listed as slipped. Swapped pairs
+/// (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for unusable meshes.
 RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
 
 /// The same without these pairs too, which `accuracy` then lists.
