@@ -21,8 +21,7 @@ test::ProgramResult run_setup(std::vector<std::string> options) {
 
 // Packages that exclude each other are refused by apt.
 TEST(Setup, WhatItInstallsCanBeHadTogether) {
-  // Lists that were never fetched, and systems without apt, know none of them.
-  if (test::run_program({"sh", "-c", "apt-cache show libopenvdb-dev paraview snakemake"}).exit_code != 0)
+  if (test::run_program({"sh", "-c", "ls /var/lib/apt/lists/*_Packages*"}).exit_code != 0)
     GTEST_SKIP() << "apt has no lists of packages here: apt-get update";
   std::vector<std::string> options = everything;
   options.push_back("--dry-run");
