@@ -94,6 +94,17 @@ TEST(RateAnchors, NamesAClickBesideTheTargetAndTrustsItNoFarther) {
   EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p8\" lies"));
 }
 
+TEST(RateAnchors, NamesAPairLeftOutAsNothingElse) {
+  Pair pair;
+  pair.anchors.pairs[8].b += Vector3(0, pair.size(), 0);
+  const RatedAnchors rest = without(pair.rate(), {{8, 1.5}});
+  EXPECT_EQ(rest.anchors.pairs.size(), pair_count - 1);
+  EXPECT_EQ(rest.sigmas[8], 1.5);
+  EXPECT_TRUE(rest.accuracy.slipped.empty());
+  const std::string text = to_string(rest.accuracy, pair.anchors);
+  EXPECT_EQ(text.find("p8"), text.rfind("p8"));
+}
+
 TEST(RateAnchors, LeavesOutASwappedPairAndNamesIt) {
   Pair pair;
   std::swap(pair.anchors.pairs[3].b, pair.anchors.pairs[40].b);

@@ -49,6 +49,16 @@ TEST(AuditAnchors, NamesAMisplacedPairAndHowFarOffItIs) {
   EXPECT_NEAR(audit.suspicious[0].distance, 0.8, 0.15);
 }
 
+TEST(AuditAnchors, APairFarAstrayHidesNoOther) {
+  Anchors anchors = bent(30);
+  anchors.pairs[7].b += Vector3(0, 0, 0.8);
+  anchors.pairs[20].b += Vector3(1000, 0, 0);
+  const AnchorAudit audit = audit_anchors(anchors);
+  ASSERT_EQ(audit.suspicious.size(), 2u);
+  EXPECT_EQ(audit.suspicious[0].name, "p20");
+  EXPECT_EQ(audit.suspicious[1].name, "p7");
+}
+
 TEST(AuditAnchors, BearsFewCoplanarAndDuplicatePairs) {
   EXPECT_TRUE(audit_anchors({}).suspicious.empty());
   EXPECT_TRUE(audit_anchors(bent(7)).suspicious.empty());

@@ -25,6 +25,13 @@ TEST(BiharmonicWarp, PredictsAPairByTheOthers) {
   EXPECT_NEAR(warp.left_out(14), (others(warped_sources.col(14)) - warped_targets.col(14)).norm(), 1e-2);
 }
 
+TEST(BiharmonicWarp, KnowsTheEnergyWithoutAPair) {
+  Points sources = warped_sources;
+  sources.col(14) = sources.leftCols(14).rowwise().mean();  // the smoothing is relative to the sources' box
+  const double without = BiharmonicWarp(sources.leftCols(14), warped_targets.leftCols(14)).energy();
+  EXPECT_NEAR(BiharmonicWarp(sources, warped_targets).energy_without(14), without, 1e-9 * without);
+}
+
 TEST(BiharmonicWarp, KnowsTheEnergyOfInterchangedTargets) {
   const BiharmonicWarp warp(warped_sources, warped_targets);
   EXPECT_GT(warp.energy(), 0);

@@ -34,6 +34,19 @@ TEST_F(FitRefusals, NeedsAnchorsForWhatIsMadeOfThem) {
                  1, "--add-corners");
 }
 
+TEST_F(FitRefusals, TakesNothingOfTheSurfaceFittingWhereThatIsSkipped) {
+  const std::vector<std::vector<std::string>> options = {{"--confidence-out", pair_.file("confidence.txt")},
+                                                         {"--surface-fit", "laplacian"},
+                                                         {"--boundaries", "free"},
+                                                         {"--max-stretch", "3"},
+                                                         {"--as-given"}};
+  for (std::vector<std::string> option : options) {
+    const std::string name = option.front();
+    option.insert(option.end(), {"--fitted", pair_.file("source.obj")});
+    expect_refusal(pair_.fit("map.vdb", option), 1, name);
+  }
+}
+
 TEST_F(FitRefusals, NeedsItsPositionalArguments) {
   EXPECT_EQ(bespoke({"fit"}).exit_code, 1);
   EXPECT_EQ(bespoke({"fit", pair_.file("source.obj")}).exit_code, 1);

@@ -277,6 +277,16 @@ TEST(FitMapping, RefusesModelsInTwoUnits) {
   }
 }
 
+TEST(FitMapping, FitsAsIfAnAnchorFarAstrayWereNotThere) {
+  Pair without, astray;
+  without.anchors.pairs.erase(without.anchors.pairs.begin() + 4);
+  astray.anchors.pairs[4].b += Vector3(0, 1000, 0);
+  const FittedMapping fit = astray.fit();
+  const double off = (fit.fitted_vertices - without.fit().fitted_vertices).cwiseAbs().maxCoeff();
+  EXPECT_LT(off, 1e-3 * diagonal(without.source.vertices));  // the least σ that is estimated
+  EXPECT_THAT(stage_lines(fit.summary, astray.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
+}
+
 TEST(FitMappingToFitted, TakesTheFittedMeshAsItIs) {
   Pair pair;
   TriangleMesh fitted = pair.source;

@@ -50,8 +50,15 @@ void require_consistent(const FitArguments& arguments) {
     throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
   if (arguments.anchor_sigma && arguments.anchors.empty())
     throw CLI::ValidationError("--anchor-sigma", "is of the pairs of --anchors, which is missing");
-  if (!arguments.confidence_out.empty() && !arguments.fitted.empty())
-    throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
+  const std::pair<const char*, bool> of_surface_fitting[] = {
+      {"--confidence-out", !arguments.confidence_out.empty()},
+      {"--surface-fit", arguments.surface_fit.has_value()},
+      {"--boundaries", arguments.boundaries.has_value()},
+      {"--max-stretch", arguments.max_stretch.has_value()},
+      {"--as-given", arguments.as_given}};
+  for (const auto& [option, is_given] : of_surface_fitting)
+    if (is_given && !arguments.fitted.empty())
+      throw CLI::ValidationError(option, "belongs to the surface fitting, which --fitted skips");
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
 }
 

@@ -96,6 +96,8 @@ RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_
   for (const LeftOutAnchor& anchor : left_out) {
     rated.sigmas[anchor.index] = anchor.distance;
     rated.accuracy.left_out.push_back(anchor);
+    std::erase_if(rated.accuracy.slipped,
+                  [&](const SlippedAnchor& slipped) { return slipped.index == anchor.index; });
     drop(rated, {anchor.index});
   }
   return rated;

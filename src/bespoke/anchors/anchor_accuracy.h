@@ -52,7 +52,7 @@ inline constexpr double near_surface = 0.02;
 /// (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for unusable meshes.
 RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
 
-/// The same without these pairs too, which `accuracy` then lists.
+/// The same without these pairs too, which `accuracy` then lists as left out alone.
 RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_out);
 
 /// One line, empty where nothing was estimated above 0 and nothing found.

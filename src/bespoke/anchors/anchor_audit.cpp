@@ -27,17 +27,18 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
   std::iota(trusted.begin(), trusted.end(), 0);
   if (trusted.size() < min_audited_pairs) return audit;
 
-  const double least = least_share * diagonal(targets);
   const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_audited_pairs - 2);
   std::vector<Eigen::Index> doubted;
   for (;;) {
-    const BiharmonicWarp warp(sources(Eigen::all, trusted), targets(Eigen::all, trusted));
+    const Points trusted_targets = targets(Eigen::all, trusted);
+    const BiharmonicWarp warp(sources(Eigen::all, trusted), trusted_targets);
     std::vector<double> distances;
     for (std::size_t k = 0; k < trusted.size(); ++k)
       distances.push_back(warp.left_out(static_cast<Eigen::Index>(k)));
     audit.typical_distance = median(distances);
     const auto worst = std::max_element(distances.begin(), distances.end());
-    const double limit = std::max(least, typical_factor * *audit.typical_distance);
+    const double limit =
+        std::max(least_share * diagonal(trusted_targets), typical_factor * *audit.typical_distance);
     if (!(*worst > limit) || trusted.size() <= must_stay) {
       for (const Eigen::Index i : doubted) {
         const double distance = (warp(sources.col(i)) - targets.col(i)).norm();

@@ -26,8 +26,8 @@ struct AnchorAudit {
 
 /// Leave-one-out audit: each pair is predicted by a smooth warp (biharmonic spline with an affine tail) of
 /// the others; the worst is set aside until none lies farther off than four typical distances and 4 % of the
-/// targets' diagonal. At most a third of the pairs is set aside. Fewer than 8 pairs cannot be audited:
-/// nothing is suspicious then. Throws InvalidInput for values that are not finite.
+/// diagonal of the targets left. At most a third of the pairs is set aside. Fewer than 8 pairs cannot be
+/// audited: nothing is suspicious then. Throws InvalidInput for values that are not finite.
 AnchorAudit audit_anchors(const Anchors& anchors);
 
 /// One line, empty without suspicion: every suspicious pair, how far off it is, what it may be swapped with.

@@ -10,6 +10,7 @@
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/median.h"
 #include "bespoke/mesh/seams.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/fit_elastic_map.h"
@@ -36,9 +37,17 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
 /// centimetre a tenth of a decimetre.
 constexpr double largest_size_ratio = 8;
 
-/// source and target: places that correspond, or all of either model.
-void require_one_unit(const Points& source, const Points& target, const std::string& what) {
-  const double a = diagonal(source), b = diagonal(target);
+/// Twice the median distance from the middle: a few places far astray do not decide it.
+double typical_size(const Points& places) {
+  Vector3 middle;
+  for (int axis = 0; axis < 3; ++axis)
+    middle[axis] = median({places.row(axis).begin(), places.row(axis).end()});
+  const Eigen::VectorXd off = (places.colwise() - middle).colwise().norm();
+  return 2 * median({off.begin(), off.end()});
+}
+
+/// a, b: the models' sizes, by what they were measured.
+void require_one_unit(double a, double b, const std::string& what) {
   if (std::max(a, b) <= largest_size_ratio * std::min(a, b)) return;
   if (!(a > 0 && b > 0)) return;  // what is wrong with these is told where they are used
   throw InvalidInput("the target is " + in_digits(b / a, 3) + " times as large as the source by " + what +
@@ -77,9 +86,10 @@ void require_models(const TriangleMesh& source, const TriangleMesh& target, cons
   require_usable(source, anchors, options);
   require_valid(target, "target");
   if (anchors.pairs.size() > 2)
-    require_one_unit(source_points(anchors), target_points(anchors), "their anchors");
+    require_one_unit(typical_size(source_points(anchors)), typical_size(target_points(anchors)),
+                     "their anchors");
   else
-    require_one_unit(source.vertices, target.vertices, "their bounding boxes");
+    require_one_unit(diagonal(source.vertices), diagonal(target.vertices), "their bounding boxes");
 }
 
 /// The models as the surface fitting takes them: along a seam a surface does not end.
@@ -168,7 +178,7 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   require_usable(source, anchors, options);
   require_valid(fitted, "fitted source");
   require_same_connectivity(source, fitted);
-  require_one_unit(source.vertices, fitted.vertices, "their vertices");
+  require_one_unit(diagonal(source.vertices), diagonal(fitted.vertices), "their vertices");
   if (!anchors.curves.empty())
     throw InvalidInput("curves lead the surface fitting, but the fitted source is given; leave them out");
   if (!anchors.patches.empty())

@@ -1,7 +1,5 @@
 #include "bespoke/pipeline/map_request.h"
 
-#include <cmath>
-
 namespace bespoke {
 namespace {
 
@@ -51,7 +49,7 @@ void rate_anchors(Anchors& anchors, const MapRequest& request, double source_dia
   if (!request.anchor_sigma && !request.paper) return;
   const double sigma = request.anchor_sigma ? request.anchor_sigma->in_mesh_units(source_diagonal) : 0;
   for (AnchorPair& pair : anchors.pairs)
-    if (!pair.sigma && std::isinf(pair.weight)) pair.sigma = sigma;
+    if (is_unrated(pair)) pair.sigma = sigma;
 }
 
 }  // namespace bespoke

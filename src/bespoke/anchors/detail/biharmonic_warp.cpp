@@ -35,14 +35,18 @@ Vector3 BiharmonicWarp::operator()(const Vector3& x) const {
   return (row * coefficients_).transpose();
 }
 
-double BiharmonicWarp::left_out(Eigen::Index i) const {
-  return coefficients_.row(i).norm() / std::max(std::abs(inverse_(i, i)), 1e-300);
-}
+double BiharmonicWarp::left_out(Eigen::Index i) const { return coefficients_.row(i).norm() / stiffness(i); }
+
+double BiharmonicWarp::stiffness(Eigen::Index i) const { return std::max(std::abs(inverse_(i, i)), 1e-300); }
 
 // The energy is Σ B_ij y_i·y_j over the targets y, with B the inverse's block of the pairs; the rows of B y
 // are the coefficients.
 double BiharmonicWarp::energy() const {
   return targets_.transpose().cwiseProduct(coefficients_.topRows(targets_.cols())).sum();
+}
+
+double BiharmonicWarp::energy_without(Eigen::Index i) const {
+  return energy() - coefficients_.row(i).squaredNorm() / stiffness(i);
 }
 
 double BiharmonicWarp::energy_interchanged(Eigen::Index i, Eigen::Index j) const {

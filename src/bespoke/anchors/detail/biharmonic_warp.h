@@ -21,10 +21,15 @@ class BiharmonicWarp {
   /// Bending energy of the warp.
   double energy() const;
 
+  /// The same without pair i, without solving again.
+  double energy_without(Eigen::Index i) const;
+
   /// The same if the targets of pairs i and j were interchanged, without solving again.
   double energy_interchanged(Eigen::Index i, Eigen::Index j) const;
 
  private:
+  double stiffness(Eigen::Index i) const;  // how much moving target i by a length bends the warp
+
   Points sources_, targets_;
   Eigen::MatrixXd inverse_, coefficients_;
 };
