@@ -91,6 +91,44 @@ TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
   }
 }
 
+TEST(MendTurnedFaces, LeavesWhatWasCrumpledSmoothAndTakesBackWhatWasCrumpled) {
+  const TriangleMesh smooth = shapes::square_grid(side);
+  TriangleMesh crumpled = smooth;
+  crumpled.vertices.col(vertex_at(smooth, 0.5, 0.5)) += Vector3(0, 0, 2.5 * square);
+  const double limit = std::cos(MendingSettings{}.most_degrees * std::numbers::pi / 180);
+  ASSERT_LT(least_cosine(smooth, crumpled.vertices), limit);
+  EXPECT_EQ(mend_turned_faces(crumpled, smooth.vertices).vertices, smooth.vertices);
+  EXPECT_TRUE(mend_turned_faces(smooth, crumpled.vertices).vertices.isApprox(smooth.vertices, 1e-6));
+}
+
+TEST(MendTurnedFaces, ReleasesNoMoreRingsThanHelp) {
+  // Tilted up to the limit all over, so that what the neighbours do hardly helps.
+  const double tilt = (MendingSettings{}.most_degrees - 1) * std::numbers::pi / 180;
+  const Matrix3 turn = Eigen::AngleAxisd(tilt, Vector3::UnitX()).toRotationMatrix();
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> shift(-0.4, 0.4);
+  int stubborn = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    TriangleMesh before = shapes::square_grid(4 * side);
+    for (auto&& x : before.vertices.colwise())
+      x += square / 4 * Vector3(shift(random), shift(random), shift(random));
+    Points after = turn * before.vertices;
+    after.col(vertex_at(before, 0.5, 0.5)) += Vector3(0, square, 0);
+    const MendedSurface all = mend_turned_faces(before, after);
+    stubborn += all.turned_faces > 0 ? 1 : 0;
+    for (int most = 1; most < MendingSettings{}.most_rings; ++most) {
+      MendingSettings settings;
+      settings.most_rings = most;
+      const MendedSurface fewer = mend_turned_faces(before, after, settings);
+      EXPECT_LE(all.turned_faces, fewer.turned_faces);
+      if (all.turned_faces == fewer.turned_faces) {
+        EXPECT_LE(all.mended_vertices, fewer.mended_vertices);
+      }
+    }
+  }
+  EXPECT_GT(stubborn, 0);
+}
+
 TEST(MendTurnedFaces, LeavesTheFitWhereMostOfItTurned) {
   const TriangleMesh grid = shapes::square_grid(4 * side);
   Points after = grid.vertices;

@@ -236,7 +236,7 @@ struct DetailSettings {
 struct MendingSettings {
   /// A face that turned farther against the coarse deformation was drawn to the wrong side of a fold. Flipped
   /// faces at 45, 50, 55, 60, 65 degrees: 9 5 2 2 2 on the shared cases, 47 45 73 99 110 on the further
-  /// pairs.
+  /// pairs, where smoothing a crease still counted as turning (d05: 3 flipped faces instead of none, x 1.02).
   double most_degrees = 55;
   /// Factor by which a length in a face may grow or shrink against the coarse deformation, which is nearly a
   /// similarity about a face (SurfaceFitOptions::max_stretch). Of the true correspondences 99.9 % of all

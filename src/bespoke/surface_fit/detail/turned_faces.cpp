@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,18 +19,39 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
+/// Radians; 0 where a direction is zero.
+double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+/// How the faces of a surface lie, and how the surface around each does.
+struct FaceNormals {
+  Points own;     // 3×m, unit; zero for a face without area
+  Points around;  // 3×m, sums of the corners' normals
+
+  explicit FaceNormals(const TriangleMesh& mesh)
+      : own(face_normals(mesh)), around(Points::Zero(3, mesh.faces.cols())) {
+    const Points corners = vertex_normals(mesh);
+    for (Eigen::Index face = 0; face < around.cols(); ++face)
+      for (const int vertex : mesh.faces.col(face)) around.col(face) += corners.col(vertex);
+  }
+
+  bool has_area(Eigen::Index face) const { return own.col(face).squaredNorm() > 0; }
+  /// Angle between a face and the surface around it.
+  double crease(Eigen::Index face) const { return angle(own.col(face), around.col(face)); }
+};
+
 /// What became of a surface, face by face.
 class FaceChanges {
  public:
   FaceChanges(const TriangleMesh& before, const MendingSettings& settings)
       : before_(before),
-        normals_(face_normals(before)),
-        least_cosine_(std::cos(settings.most_degrees * std::numbers::pi / 180)),
+        normals_(before),
+        most_turned_(settings.most_degrees * std::numbers::pi / 180),
         most_stretch_(settings.most_stretch) {}
 
   struct Bad {
     std::vector<Eigen::Index> turned, stretched;  // a face that turned is not called stretched as well
-    bool empty() const { return turned.empty() && stretched.empty(); }
+    std::size_t size() const { return turned.size() + stretched.size(); }
+    bool empty() const { return size() == 0; }
     std::vector<Eigen::Index> all() const {
       std::vector<Eigen::Index> faces = turned;
       faces.insert(faces.end(), stretched.begin(), stretched.end());
@@ -39,11 +61,10 @@ class FaceChanges {
 
   /// A face without area has not turned.
   Bad bad(const Points& after) const {
-    const Points normals = face_normals({after, before_.faces});
+    const FaceNormals normals({after, before_.faces});
     Bad found;
-    for (Eigen::Index face = 0; face < normals.cols(); ++face) {
-      if (normals.col(face).squaredNorm() * normals_.col(face).squaredNorm() > 0 &&
-          normals.col(face).dot(normals_.col(face)) < least_cosine_)
+    for (Eigen::Index face = 0; face < before_.faces.cols(); ++face) {
+      if (normals.has_area(face) && normals_.has_area(face) && turn(normals, face) > most_turned_)
         found.turned.push_back(face);
       else if (stretch(after, face) > most_stretch_)
         found.stretched.push_back(face);
@@ -52,6 +73,12 @@ class FaceChanges {
   }
 
  private:
+  /// Radians. A face that stood off the surface around it turns as that is smoothed, over no fold.
+  double turn(const FaceNormals& after, Eigen::Index face) const {
+    const double smoothed = std::max(0.0, normals_.crease(face) - after.crease(face));
+    return angle(after.own.col(face), normals_.own.col(face)) - smoothed;
+  }
+
   /// The larger of the largest factor by which a length in the face grew, and by which one shrank.
   double stretch(const Points& after, Eigen::Index face) const {
     const Matrix2 from = metric(before_.vertices, face), to = metric(after, face);
@@ -75,8 +102,8 @@ class FaceChanges {
   }
 
   const TriangleMesh& before_;
-  Points normals_;
-  double least_cosine_, most_stretch_;
+  FaceNormals normals_;
+  double most_turned_, most_stretch_;
 };
 
 /// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
@@ -136,11 +163,15 @@ std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacen
   return patch;
 }
 
-/// Each once, by index, and only those that were released.
-void keep_released(const std::vector<char>& is_free, std::vector<int>& vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::erase_if(vertices, [&](int vertex) { return !is_free[vertex]; });
+/// The corners of the faces that were released, by index.
+std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Eigen::Index>& faces,
+                                  std::vector<int> released) {
+  std::set<int> corners;
+  for (const Eigen::Index face : faces)
+    for (const int vertex : mesh.faces.col(face)) corners.insert(vertex);
+  std::sort(released.begin(), released.end());
+  std::erase_if(released, [&](int vertex) { return !corners.contains(vertex); });
+  return released;
 }
 
 }  // namespace
@@ -149,15 +180,14 @@ MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
                                 const MendingSettings& settings) {
   const FaceChanges changes(before, settings);
   const VertexAdjacency adjacency = vertex_adjacency(before);
-  Points mended = after;
-  FaceChanges::Bad bad = changes.bad(after);
-  MendedSurface result;
-  for (const Eigen::Index face : bad.stretched)
-    for (const int vertex : before.faces.col(face)) result.stretched_vertices.push_back(vertex);
+  const FaceChanges::Bad drawn = changes.bad(after);
+  const auto most_free = std::max(settings.released_at_least,
+                                  static_cast<std::size_t>(settings.most_released * double(after.cols())));
+  MendedSurface best{after, 0, {}, drawn.turned.size()};
+  std::size_t fewest = drawn.size();
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
-  const auto most_free = std::max(settings.released_at_least,
-                                  static_cast<std::size_t>(settings.most_released * double(is_free.size())));
+  FaceChanges::Bad bad = drawn;
   for (int rings = 0; rings < settings.most_rings && !bad.empty(); ++rings) {
     std::vector<int> released;
     for (const int vertex : around(before, adjacency, bad.all(), rings))
@@ -165,15 +195,17 @@ MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
     if (free.size() + released.size() > most_free) break;
     for (const int vertex : released) is_free[vertex] = 1;
     free.insert(free.end(), released.begin(), released.end());
-    mended = before.vertices +
-             spread_harmonically(before.vertices, adjacency, free, after - before.vertices, settings);
+    Points mended = before.vertices +
+                    spread_harmonically(before.vertices, adjacency, free, after - before.vertices, settings);
     bad = changes.bad(mended);
+    // More rings than help would only undo more of the fit.
+    if (bad.size() >= fewest) continue;
+    fewest = bad.size();
+    best = {std::move(mended), free.size(), {}, bad.turned.size()};
   }
-  keep_released(is_free, result.stretched_vertices);
-  result.vertices = std::move(mended);
-  result.mended_vertices = free.size();
-  result.turned_faces = bad.turned.size();
-  return result;
+  free.resize(best.mended_vertices);
+  best.stretched_vertices = released_corners(before, drawn.stretched, std::move(free));
+  return best;
 }
 
 }  // namespace bespoke

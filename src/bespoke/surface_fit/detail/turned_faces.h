@@ -19,8 +19,10 @@ struct MendedSurface {
 /// `before`: a surface that a smooth deformation has brought here; `after` (3×n, mesh units): where its
 /// vertices were drawn then. Where a face turned or was stretched or squeezed by more than the limits of the
 /// settings, its vertices give up their displacements and take the mean of their neighbours' (harmonic along
-/// the edges), in as many rings around the face as it takes and the settings allow, and as long as that is a
-/// small part of the vertices: where more has turned, mending would undo the fit. Throws SolverError.
+/// the edges), in as many rings around the face as help and the settings allow, and as long as that is a
+/// small part of the vertices: where more has turned, mending would undo the fit. By as much as a face comes
+/// nearer to the surface around it, that of its corners' normals, it has not turned: the fit smooths what is
+/// crumpled on the source. Throws SolverError.
 MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
                                 const MendingSettings& settings = {});
 
