@@ -45,6 +45,25 @@ Scene bent_scene() {
   return scene;
 }
 
+/// An upright ellipsoid like a finger.
+TriangleMesh finger(double x) {
+  return shapes::moved(shapes::icosphere(3), {Vector3(0.06, 1, 0.06).asDiagonal(), Vector3(x, 0, 0)});
+}
+
+TEST(FitSurfaceDeformationGraph, LeavesAFingerThatTheTargetLacksBesideItsNeighbour) {
+  const double apart = 0.15;
+  Scene scene{shapes::joined(finger(0), finger(apart)), finger(0)};
+  for (auto&& x : scene.target.vertices.colwise()) x[2] += 0.02 * x[1] * x[1];
+  const Eigen::Index half = scene.target.vertices.cols();
+  scene.anchor_sources = scene.source.vertices.leftCols(12);
+  scene.anchor_targets = scene.target.vertices.leftCols(12);
+  scene.anchor_weights = Eigen::VectorXd::Constant(12, infinity);
+  const SurfaceFit fit = scene.fit();
+  const Points moved = fit.vertices - scene.source.vertices;
+  EXPECT_LT(moved.rightCols(half).topRows(1).cwiseAbs().maxCoeff(), 0.1 * apart);
+  EXPECT_LT((fit.vertices.leftCols(half) - scene.target.vertices).colwise().norm().mean(), 0.01);
+}
+
 TEST(FitSurfaceDeformationGraph, IsTheDefault) {
   EXPECT_EQ(SurfaceFitOptions{}.method, SurfaceFitMethod::deformation_graph);
 }

@@ -4,6 +4,7 @@
 
 #include "bespoke/mesh/box_tree.h"
 #include "bespoke/parallel.h"
+#include "bespoke/surface_fit/detail/reciprocity.h"
 
 namespace bespoke {
 namespace {
@@ -63,10 +64,8 @@ std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, cons
       const auto counterpart = target.match(x, normal, limits);
       if (!counterpart || !faces_source(x, normal) || faces_target(counterpart->point, counterpart->normal))
         continue;
-      const auto claim = source.match(counterpart->point, counterpart->normal, limits);
-      const double distance = (counterpart->point - x).norm();
-      hidden[k] = claim && (claim->point - counterpart->point).norm() < settings.much_nearer * distance &&
-                  !faces_source(claim->point, claim->normal);
+      const auto claim = nearer_claim({x, *counterpart, limits}, source, settings.much_nearer);
+      hidden[k] = claim && !faces_source(claim->point, claim->normal);
     }
   });
   return hidden;

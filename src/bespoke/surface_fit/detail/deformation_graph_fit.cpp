@@ -150,11 +150,7 @@ struct Scene {
   std::vector<char> hidden;  // n: in a cavity that the target lacks
 
   DetailInput details() const {
-    DetailInput input{
-        surface, target, exact_sources, exact_targets, diagonal, hidden, vertex_patches(surface, patches)};
-    for (std::size_t i = 0; i < std::min(hidden.size(), input.patches.size()); ++i)
-      if (input.patches[i] == FacePatches::excluded) input.hidden[i] = 1;
-    return input;
+    return {surface, target, exact_sources, exact_targets, diagonal, hidden, patches};
   }
 };
 

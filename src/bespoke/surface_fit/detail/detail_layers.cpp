@@ -10,6 +10,7 @@
 #include "bespoke/rbf/conjugate_gradients.h"
 #include "bespoke/rbf/kernels.h"
 #include "bespoke/rbf/point_grid.h"
+#include "bespoke/surface_fit/detail/reciprocity.h"
 
 namespace bespoke {
 namespace {
@@ -107,26 +108,28 @@ struct Residual {
 struct DetailStep {
   const DetailInput& input;
   const DetailSettings& settings;
-  const TriangleMesh& moved;
+  const TargetSurface& moved;
   const Points& anchors;         // 3×k, where they are now
   const Eigen::VectorXd& areas;  // of the vertices
   double lambda;                 // mesh units
 };
 
 std::vector<Residual> residuals(const DetailStep& step) {
-  const Points& vertices = step.moved.vertices;
+  const Points& vertices = step.moved.mesh().vertices;
+  const Points& normals = step.moved.normals();
   std::vector<Residual> all(static_cast<std::size_t>(vertices.cols()));
-  const Points normals = vertex_normals(step.moved);
   const MatchLimits limits{step.settings.min_cosine,
                            std::max(step.lambda, step.settings.min_reach * step.input.diagonal)};
   parallel_for(all.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       MatchLimits own = limits;
-      if (!step.input.patches.empty()) own.patch = step.input.patches[k];
+      own.patch = step.moved.patch(i);
       const auto found = step.input.target.match(vertices.col(i), normals.col(i), own);
       if (!found) continue;
-      const double weight = step.areas[i] * found->agreement * found->agreement;
+      const double weight =
+          step.areas[i] * found->agreement * found->agreement *
+          reciprocity({vertices.col(i), *found, own}, step.moved, step.settings.reciprocity);
       all[k].form =
           weight * (found->halfway * found->halfway.transpose() + step.settings.slide * Matrix3::Identity());
       all[k].pull = all[k].form * (found->point - vertices.col(i));
@@ -161,10 +164,11 @@ Samples sample(const DetailStep& step) {
   constexpr double tiny = 1e-300;  // no move, no division by zero
   const std::vector<Residual> found = residuals(step);
   const double spacing = step.lambda / step.settings.centers_per_radius;
-  Points candidates(3, step.anchors.cols() + step.moved.vertices.cols());
-  candidates << step.anchors, step.moved.vertices;
+  const Points& vertices = step.moved.mesh().vertices;
+  Points candidates(3, step.anchors.cols() + vertices.cols());
+  candidates << step.anchors, vertices;
   const std::vector<int> kept = thin_points(candidates, spacing);
-  const PointGrid grid(step.moved.vertices, spacing);
+  const PointGrid grid(vertices, spacing);
   Samples samples{candidates(Eigen::all, kept), Points(3, static_cast<Eigen::Index>(kept.size()))};
   parallel_for(kept.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
@@ -205,23 +209,26 @@ double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchor
 }  // namespace
 
 DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress) {
-  Eigen::VectorXd areas = vertex_areas(input.surface);
-  for (std::size_t i = 0; i < input.hidden.size(); ++i)
-    if (input.hidden[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+  const TargetSurface surface(input.surface, input.patches);
+  Eigen::VectorXd areas = surface.areas();
+  for (Eigen::Index i = 0; i < areas.size(); ++i) {
+    const bool is_hidden = !input.hidden.empty() && input.hidden[static_cast<std::size_t>(i)];
+    if (is_hidden || surface.is_excluded(i)) areas[i] = 0;
+  }
   const int layers = settings.scales * settings.steps_per_scale;
-  TriangleMesh moved = input.surface;
   DetailFit fit;
+  fit.vertices = input.surface.vertices;
   fit.anchor_sources = input.anchor_sources;
   double lambda = settings.coarsest * input.diagonal;
   for (int scale = 0; scale < settings.scales; ++scale, lambda *= settings.ratio)
     for (int step = 0; step < settings.steps_per_scale; ++step, ++fit.layers) {
       progress.step("surface-fit details", static_cast<std::size_t>(fit.layers),
                     static_cast<std::size_t>(layers));
+      const TargetSurface moved = surface.moved(fit.vertices);
       const Samples samples = sample({input, settings, moved, fit.anchor_sources, areas, lambda});
       Layer layer(lambda, samples.centers, samples.values, settings);
-      fit.last_step = apply(layer, settings.max_gradient, moved.vertices, fit.anchor_sources);
+      fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
     }
-  fit.vertices = std::move(moved.vertices);
   return fit;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "bespoke/progress.h"
@@ -17,7 +16,7 @@ struct DetailInput {
   const Points& anchor_targets;   ///< 3×k
   double diagonal = 0;            ///< of the aligned source
   std::vector<char> hidden = {};  ///< n: vertices without counterpart; empty where all may have one
-  std::vector<std::optional<int>> patches = {};  ///< n, as TargetSurface::patch; empty without patches
+  FacePatches patches = {};       ///< of the faces of `surface`; excluded ones have no counterparts
 };
 
 struct DetailFit {

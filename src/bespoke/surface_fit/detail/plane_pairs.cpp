@@ -1,6 +1,7 @@
 #include "bespoke/surface_fit/detail/plane_pairs.h"
 
 #include "bespoke/parallel.h"
+#include "bespoke/surface_fit/detail/reciprocity.h"
 
 namespace bespoke {
 namespace {
@@ -12,6 +13,7 @@ struct Search {
   const Eigen::VectorXd& areas;
   const Eigen::VectorXd& source_areas;
   MatchLimits limits;
+  const ReciprocitySettings& reciprocity;
   std::size_t samples;
   double share;
 };
@@ -33,7 +35,9 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
       if (!match) continue;
       found[k] = make_pair(i, *match);
       found[k].normal = match->halfway;
-      found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement * match->agreement;
+      found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement *
+                        match->agreement *
+                        reciprocity({points.col(i), *match, limits}, search.asking, search.reciprocity);
     }
   });
   for (const PlanePair& pair : found)
@@ -48,8 +52,8 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
                            settings.normal_length * surfaces.diagonal};
   std::vector<PlanePair> pairs;
   append_pairs(
-      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits, level.samples,
-       1},
+      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
+       settings.reciprocity, level.samples, 1},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
@@ -57,7 +61,7 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
       {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
-       level.back_samples, settings.back_share},
+       settings.reciprocity, level.back_samples, settings.back_share},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);
