@@ -12,6 +12,7 @@ namespace {
 const Vector3 centre(0.5, 0.5, 0);
 const Vector3 upwards = Vector3::UnitZ();
 const MatchLimits within_one{0.3, 1.0};
+const ReciprocitySettings half_as_far{.much_nearer = 0.5};
 
 /// The unit square at this height.
 TriangleMesh plane_at(double height) {
@@ -23,18 +24,17 @@ double reciprocity_beside(const TriangleMesh& other) {
   const TargetSurface asking(shapes::joined(plane_at(1), other)), answering(plane_at(0));
   const Vector3 point = centre + upwards;
   const SurfaceMatch match = *answering.match(point, upwards, within_one);
-  return reciprocity({point, match, within_one}, asking, {});
+  return reciprocity({point, match, within_one}, asking, half_as_far);
 }
 
 TEST(Reciprocity, IsWholeBetweenParallelSurfaces) { EXPECT_EQ(reciprocity_beside(plane_at(1)), 1); }
 
 TEST(Reciprocity, FallsAsAnotherPlaceComesNearer) {
-  const ReciprocitySettings settings;
-  EXPECT_EQ(reciprocity_beside(plane_at(settings.much_nearer * 1.01)), 1);
+  EXPECT_EQ(reciprocity_beside(plane_at(half_as_far.much_nearer * 1.01)), 1);
   double before = 1;
   for (const double share : {0.9, 0.5, 0.1}) {
-    const double found = reciprocity_beside(plane_at(share * settings.much_nearer));
-    EXPECT_NEAR(found, std::pow(share, settings.power), 1e-12);
+    const double found = reciprocity_beside(plane_at(share * half_as_far.much_nearer));
+    EXPECT_NEAR(found, std::pow(share, half_as_far.power), 1e-12);
     EXPECT_LT(found, before);
     before = found;
   }
@@ -55,7 +55,7 @@ TEST(Reciprocity, HeedsNoBoundary) {
 TEST(Reciprocity, IsWholeOfAPointOnItsMatch) {
   const TargetSurface surface(plane_at(0));
   const SurfaceMatch match = *surface.match(centre, upwards, within_one);
-  EXPECT_EQ(reciprocity({centre, match, within_one}, surface, {}), 1);
+  EXPECT_EQ(reciprocity({centre, match, within_one}, surface, half_as_far), 1);
 }
 
 TEST(NearerClaim, IsThePlaceThatIsNearerThanItsShare) {
