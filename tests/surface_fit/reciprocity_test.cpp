@@ -12,7 +12,7 @@ namespace {
 const Vector3 centre(0.5, 0.5, 0);
 const Vector3 upwards = Vector3::UnitZ();
 const MatchLimits within_one{0.3, 1.0};
-const ReciprocitySettings half_as_far{.much_nearer = 0.5};
+const ReciprocitySettings half_as_far;
 
 /// The unit square at this height.
 TriangleMesh plane_at(double height) {

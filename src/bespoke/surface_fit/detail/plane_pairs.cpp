@@ -13,7 +13,7 @@ struct Search {
   const Eigen::VectorXd& areas;
   const Eigen::VectorXd& source_areas;
   MatchLimits limits;
-  const ReciprocitySettings& reciprocity;
+  const ReciprocitySettings* reciprocity;  // null: pairs do not fade
   std::size_t samples;
   double share;
 };
@@ -35,9 +35,11 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
       if (!match) continue;
       found[k] = make_pair(i, *match);
       found[k].normal = match->halfway;
-      found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement *
-                        match->agreement *
-                        reciprocity({points.col(i), *match, limits}, search.asking, search.reciprocity);
+      const double fading = search.reciprocity ? reciprocity({points.col(i), *match, limits}, search.asking,
+                                                             *search.reciprocity)
+                                               : 1;
+      found[k].weight =
+          search.share * search.areas[i] * double(stride) * match->agreement * match->agreement * fading;
     }
   });
   for (const PlanePair& pair : found)
@@ -53,7 +55,7 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
   std::vector<PlanePair> pairs;
   append_pairs(
       {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.samples, 1},
+       &settings.reciprocity, level.samples, 1},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
@@ -61,7 +63,7 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
       {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.back_samples, settings.back_share},
+       level.back_reciprocity ? &settings.reciprocity : nullptr, level.back_samples, settings.back_share},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);
