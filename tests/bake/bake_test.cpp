@@ -310,5 +310,18 @@ TEST(Bake, KeepsToItsLeavesAndNamesWhereItMissesTheTolerance) {
     }
 }
 
+// What is kept for folds goes to the tolerance where nothing folds.
+TEST(Bake, UsesAllOfItsLeavesWhereNothingFolds) {
+  const AnalyticMap map = two_bumps();
+  BakeOptions options;
+  options.tolerance = 1e-4;
+  options.error_points = 50000;
+  options.max_leaves = bake(map, options).pyramid.leaf_count() * 21 / 20;
+  const Bake limited = bake(map, options);
+  EXPECT_LE(limited.pyramid.leaf_count(), *options.max_leaves);
+  EXPECT_TRUE(limited.summary.tolerance_met);
+  EXPECT_TRUE(limited.summary.relaxed.empty());
+}
+
 }  // namespace
 }  // namespace bespoke

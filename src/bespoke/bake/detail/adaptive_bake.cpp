@@ -20,6 +20,9 @@ constexpr int full_rounds = 6;
 // A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
 // are as small as they get, the worst points stay however often they are found.
 constexpr double most_left_by_a_round = 0.7;
+// Leaves for folds have rims of their own, at which the tolerance may be missed, and leaves for the tolerance
+// may fold: so often they take turns.
+constexpr int turns = 3;
 
 class AdaptiveBake {
  public:
@@ -36,8 +39,15 @@ class AdaptiveBake {
 
   Bake run() && {
     refine();
+    search();
+    measure();
     meet_tolerance();
-    mend();
+    const std::vector<FoldedCell> folds = mend();
+    summary().evaluated_points = builder_->evaluated_points();
+    summary().peak_bytes = builder_->byte_count();
+    summary().relaxed = builder_->relaxed();
+    builder_.reset();
+    move(folds);
     return std::move(result_);
   }
 
@@ -50,25 +60,53 @@ class AdaptiveBake {
     summary().refine_seconds += watch_.lap();
   }
 
-  void meet_tolerance() {
+  void search() {
     for (int round = 0; round < quick_rounds; ++round)
       if (measurement_.quickly(result_.pyramid) > options_.tolerance) refine_around_worst();
+  }
+
+  void measure() {
     measurement_.fully(result_.pyramid, summary());
-    for (int round = 1; round < full_rounds && summary().error.max > options_.tolerance; ++round) {
-      if (!refine_around_worst()) break;
-      // Rounds that find ever new points just above the tolerance take more around them.
-      if (round > 1) measurement_.widen_worst();
-      measurement_.fully(result_.pyramid, summary());
-    }
     summary().measure_seconds += watch_.lap();
   }
 
-  void mend() {
-    mend_folds(map_, std::move(builder_), result_, progress_);
+  // From the last measurement on. Returns whether anything was refined.
+  bool meet_tolerance() {
+    bool refined = false;
+    for (int round = 1; round < full_rounds && summary().error.max > options_.tolerance; ++round) {
+      if (!refine_around_worst()) break;
+      refined = true;
+      // Rounds that find ever new points just above the tolerance take more around them.
+      if (round > 1) measurement_.widen_worst();
+      measure();
+    }
+    return refined;
+  }
+
+  // Returns what still folds.
+  std::vector<FoldedCell> mend() {
+    std::vector<FoldedCell> folds = refine_folds();
+    if (builder_->free_reserve()) {
+      refine();
+      measure();
+      folds = refine_folds();
+    }
+    for (int turn = 0; turn < turns && meet_tolerance(); ++turn) folds = refine_folds();
+    return folds;
+  }
+
+  std::vector<FoldedCell> refine_folds() {
+    const std::size_t leaves = result_.pyramid.leaf_count();
+    std::vector<FoldedCell> folds = bespoke::refine_folds(map_, builder_, result_, progress_);
     summary().mend_seconds += watch_.lap();
-    if (summary().refined_folds > 0 || summary().repaired_cells > 0)
-      measurement_.fully(result_.pyramid, summary());
-    summary().measure_seconds += watch_.lap();
+    if (result_.pyramid.leaf_count() != leaves) measure();
+    return folds;
+  }
+
+  void move(const std::vector<FoldedCell>& folds) {
+    move_folds(map_, folds, result_, progress_);
+    summary().mend_seconds += watch_.lap();
+    if (summary().repaired_cells > 0) measure();
   }
 
   // Around what a sample has found, until nothing more is. Returns whether anything was refined.

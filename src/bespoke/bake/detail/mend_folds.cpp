@@ -45,8 +45,8 @@ Points needless_folds(const ElasticMap& map, const Pyramid& pyramid, const std::
   return x(Eigen::all, needless);
 }
 
-// Refines folds for as long as that leaves fewer of them: where the map itself is nearly flat it does not,
-// because finer leaves bring rims of their own. Returns what still folds.
+}  // namespace
+
 std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder,
                                      Bake& bake, const Progress& progress) {
   std::vector<FoldedCell> folds = certify_listing_all(bake.pyramid, map.affine(), 1, progress).places;
@@ -67,9 +67,8 @@ std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<Pyra
   return folds;
 }
 
-// All folds or none: half a repair would cost accuracy and prove nothing.
-void repair(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
-            const Progress& progress) {
+void move_folds(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
+                const Progress& progress) {
   bake.summary.folded_cells = folds.size();
   if (folds.empty() || folds.size() > most_mendable_folds) return;
   Pyramid repaired = bake.pyramid;
@@ -79,18 +78,6 @@ void repair(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& b
   bake.summary.repaired_cells = folds.size();
   bake.summary.repair_cost = summary.largest_change;
   bake.pyramid = std::move(repaired);
-}
-
-}  // namespace
-
-void mend_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder> builder, Bake& bake,
-                const Progress& progress) {
-  const std::vector<FoldedCell> folds = refine_folds(map, builder, bake, progress);
-  bake.summary.evaluated_points = builder->evaluated_points();
-  bake.summary.peak_bytes = builder->byte_count();
-  bake.summary.relaxed = builder->relaxed();
-  builder.reset();
-  repair(map, folds, bake, progress);
 }
 
 }  // namespace bespoke

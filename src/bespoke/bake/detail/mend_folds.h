@@ -1,16 +1,23 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "bespoke/bake/bake.h"
 #include "bespoke/bake/detail/pyramid_builder.h"
+#include "bespoke/certificate/certificate.h"
 
 namespace bespoke {
 
-/// Certifies the pyramid of `bake`, which `builder` made, and mends what folds: first by finer leaves where
-/// the map itself keeps its orientation, then by moving nodes (repair_folds), all of them or none. Fills what
-/// the summary says about folds and about the builder, whose memory is given back before nodes are moved.
-void mend_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder> builder, Bake& bake,
+/// Certifies the pyramid of `bake`, which `builder` made, and gives cells that fold although the map itself
+/// keeps its orientation finer leaves, for as long as that leaves fewer of them: where the map is nearly flat
+/// it does not, because finer leaves bring rims of their own. Returns what still folds.
+std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder,
+                                     Bake& bake, const Progress& progress);
+
+/// Mends `folds`, all that the pyramid has, by moving nodes (repair_folds): all of them or none, since half a
+/// repair would cost accuracy and prove nothing. Fills what the summary says about it.
+void move_folds(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
                 const Progress& progress);
 
 }  // namespace bespoke

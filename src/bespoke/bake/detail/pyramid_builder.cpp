@@ -42,7 +42,8 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
       band_(band_leaves(map.support(), coarsest_)),
       levels_(coarsest_),
       octants_(map, options, progress),
-      budget_(map, coarsest_, band_, options, progress) {
+      budget_(map, coarsest_, band_, options, progress),
+      reserve_(options.max_leaves.value_or(0) / share_for_folds) {
   add(0, band_);
 }
 
@@ -95,10 +96,12 @@ bool PyramidBuilder::add_worst_refused() {
 
 std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {
   if (!options_.max_leaves) return std::numeric_limits<std::size_t>::max();
-  const std::size_t most = purpose == Purpose::folds
-                               ? *options_.max_leaves
-                               : *options_.max_leaves - *options_.max_leaves / share_for_folds;
+  const std::size_t most = *options_.max_leaves - (purpose == Purpose::folds ? 0 : reserve_);
   return most - std::min(most, levels_.leaf_count());
+}
+
+bool PyramidBuilder::free_reserve() {
+  return std::exchange(reserve_, 0) > 0 && leaves_left(Purpose::tolerance) > 0 && !refused_.empty();
 }
 
 std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {

@@ -30,7 +30,7 @@ class PyramidBuilder {
   /// The band at the coarsest level. `map` and `progress` must outlive the builder. Throws MemoryLimitError.
   PyramidBuilder(const ElasticMap& map, const RefinementOptions& options, const Progress& progress);
 
-  /// What the leaves are for: a tenth of max_leaves is kept for folds.
+  /// What the leaves are for: a tenth of max_leaves is kept for folds, until free_reserve().
   enum class Purpose { tolerance, folds };
 
   /// Adds leaves until every octant passes. Throws MemoryLimitError as soon as a forecast says that the
@@ -41,6 +41,9 @@ class PyramidBuilder {
   /// at a rim, adds the leaves beyond the rim instead. Points outside all leaves are left alone. Returns the
   /// number of leaves added; call refine() afterwards.
   std::size_t refine_at(const Points& x, Purpose purpose = Purpose::tolerance);
+
+  /// From now on leaves may be for any purpose. Returns whether octants wait for them; call refine() then.
+  bool free_reserve();
 
   /// Where octants that do not pass have no leaf of their own, for want of leaves.
   std::vector<RelaxedRegion> relaxed() const;
@@ -88,6 +91,7 @@ class PyramidBuilder {
   OctantRefinement octants_;
   MemoryBudget budget_;
   std::vector<RefusedOctant> refused_;
+  std::size_t reserve_;  // leaves that only folds may have
   std::size_t sampled_points_ = 0;
 };
 
