@@ -2,13 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/principal_widths.h"
 #include "bespoke/rbf/point_grid.h"
 
 namespace bespoke {
@@ -37,19 +37,18 @@ void require_pairs(const Points& sources, const Points& targets, const Eigen::Ve
   }
 }
 
-void require_spanning(const Points& centred) {
+void require_spanning(const Points& points) {
   // Thinner than this, the affine part across the sheet has no correct digits to interpolate with.
   constexpr double smallest_ratio = 1e-6;
-  const Eigen::JacobiSVD<Points> svd(centred, Eigen::ComputeFullU);
-  const Vector3 widths = svd.singularValues();
+  const auto [widths, directions] = principal_widths(points);
   if (widths[2] > smallest_ratio * widths[0]) return;
-  const Vector3 missing = svd.matrixU().col(2);
+  const Vector3 missing = directions.col(2);
   char text[240];
   std::snprintf(
       text, sizeof text,
       "coarse warp: the %td anchor points on the source are coplanar: none leaves their plane along "
       "(%.4g, %.4g, %.4g); add an anchor off that plane, or the corners of the bounding boxes",
-      static_cast<std::ptrdiff_t>(centred.cols()), missing.x(), missing.y(), missing.z());
+      static_cast<std::ptrdiff_t>(points.cols()), missing.x(), missing.y(), missing.z());
   throw InvalidInput(text);
 }
 
@@ -135,7 +134,7 @@ GlobalRbf::GlobalRbf(const Points& sources, const Points& targets, const Eigen::
   require_pairs(sources, targets, weights);
   const Normalisation unit(sources);
   const Points centred = sources.colwise() - unit.centre;
-  require_spanning(centred);
+  require_spanning(sources);
   require_distinct(sources, unit.scale);
 
   const Eigen::Index n = sources.cols();

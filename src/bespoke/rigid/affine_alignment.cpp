@@ -12,12 +12,10 @@ namespace {
 /// The linear map X of least norm with X · spread = cross, by the SVD of the normal matrix.
 Matrix3 solve_above_width(const Points& arms, const Points& change) {
   constexpr double smallest_ratio = 1e-12;
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(Eigen::MatrixXd(arms * arms.transpose()),
-                                        Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::JacobiSVD<Matrix3> svd(Matrix3(arms * arms.transpose()), Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(smallest_ratio);
   if (!(svd.singularValues()[0] > 0)) return Matrix3::Zero();
-  const Eigen::MatrixXd right_side = arms * change.transpose();
-  return Matrix3(svd.solve(right_side)).transpose();
+  return svd.solve(Matrix3(arms * change.transpose())).transpose();
 }
 
 /// The same with the rank that a pivoted factorisation finds in working precision.

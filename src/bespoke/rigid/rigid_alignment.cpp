@@ -1,11 +1,11 @@
 #include "bespoke/rigid/rigid_alignment.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/principal_widths.h"
 #include "bespoke/rigid/nearest_rotation.h"
 
 namespace bespoke {
@@ -42,13 +42,12 @@ Eigen::VectorXd finite_weights(const Eigen::VectorXd& weights) {
   return result / result.sum();
 }
 
-void require_not_collinear(const Points& centred, const char* which) {
+void require_not_collinear(const Points& points, const char* which) {
   constexpr double smallest_ratio = 1e-9;
-  const Eigen::JacobiSVD<Points> svd(centred);
-  const Vector3 widths = svd.singularValues();
+  const Vector3 widths = principal_widths(points).widths;
   if (widths[1] > smallest_ratio * widths[0]) return;
   const std::string shape = widths[0] > 0 ? "collinear" : "all at one place";
-  throw InvalidInput("rigid alignment: the " + std::to_string(centred.cols()) + " anchor points on the " +
+  throw InvalidInput("rigid alignment: the " + std::to_string(points.cols()) + " anchor points on the " +
                      which + " are " + shape +
                      ", so the rotation is not determined; add an anchor off their line");
 }
@@ -57,13 +56,13 @@ void require_not_collinear(const Points& centred, const char* which) {
 
 RigidTransform align_rigidly(const Points& source, const Points& target, const Eigen::VectorXd& weights) {
   require_pairs(source, target, weights);
+  require_not_collinear(source, "source");
+  require_not_collinear(target, "target");
   const Eigen::VectorXd w = finite_weights(weights);
   const Vector3 source_centre = source * w;
   const Vector3 target_centre = target * w;
   const Points centred_source = source.colwise() - source_centre;
   const Points centred_target = target.colwise() - target_centre;
-  require_not_collinear(centred_source, "source");
-  require_not_collinear(centred_target, "target");
 
   // Eq. 4–6: the rotation that maximises tr(R · Σ w q q'ᵀ).
   const Matrix3 covariance = centred_target * w.asDiagonal() * centred_source.transpose();
