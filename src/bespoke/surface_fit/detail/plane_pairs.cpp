@@ -50,20 +50,21 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
 
 std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const NodeLevel& level,
                                         const NodeFitSettings& settings) {
+  const ReciprocitySettings* reciprocity = level.reciprocity ? &settings.reciprocity : nullptr;
   const MatchLimits limits{settings.min_cosine, settings.max_distance * surfaces.diagonal,
                            settings.normal_length * surfaces.diagonal};
   std::vector<PlanePair> pairs;
   append_pairs(
-      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
-       &settings.reciprocity, level.samples, 1},
+      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits, reciprocity,
+       level.samples, 1},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
       pairs);
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
-      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
-       level.back_reciprocity ? &settings.reciprocity : nullptr, level.back_samples, settings.back_share},
+      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits, reciprocity,
+       level.back_samples, settings.back_share},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);
