@@ -64,11 +64,16 @@ Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& in
   return areas;
 }
 
+NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
+  if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
+  return settings;
+}
+
 }  // namespace
 
 NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress)
     : input_(input),
-      settings_(settings),
+      settings_(settings_for(input, settings)),
       progress_(progress),
       rest_(input.rest, input.patches),
       areas_(speaking_areas(rest_, input, settings)),

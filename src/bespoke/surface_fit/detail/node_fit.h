@@ -50,7 +50,7 @@ struct NodeFit {
 /// the last two extrapolate.
 class NodeFitting {
  public:
-  /// The input's references, the settings and the progress must outlive it.
+  /// The input's references and the progress must outlive it.
   NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
 
   /// The first level. Returns the rigidity g ≥ 1 of the pair (NodeGoals), 1 where bodies differ as they
@@ -66,7 +66,7 @@ class NodeFitting {
   std::vector<double> next_limits(const NodeGoals& goals);
 
   const NodeFitInput input_;
-  const NodeFitSettings& settings_;
+  const NodeFitSettings settings_;  // as the input needs them
   const Progress& progress_;
   TargetSurface rest_;
   Eigen::VectorXd areas_, target_areas_;
