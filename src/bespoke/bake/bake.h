@@ -19,7 +19,8 @@ struct BakeOptions {
                                      ///< adaptive pyramid
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
   /// Leaves that the pyramid may have, where given: the places of the largest errors get them, the others
-  /// miss the tolerance and are named (BakeSummary::relaxed). A tenth is kept for folds. Few more for rims.
+  /// miss the tolerance and are named (BakeSummary::relaxed). A tenth is kept for folds first. Few more for
+  /// rims.
   std::optional<std::size_t> max_leaves;
   /// Random points of the band at which the error is measured; of twice as many the finest cells on the
   /// surface have an equal share, one to 27 each.

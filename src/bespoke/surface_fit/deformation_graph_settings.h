@@ -158,8 +158,9 @@ struct CavitySettings {
 
 /// Counterparts that belong to another place (reciprocity.h). Taken for scans: nine of the shared targets
 /// with 0.08 % of noise, eight holes of 2.5 % of the diagonal and debris, where fingers and toes had been
-/// laid onto their neighbours: x 0.91 / 0.89, flipped faces 247 to 8; on the shared cases x 1.003 / 1.002, on
-/// 16 further pairs x 1.002 / 1.003, with 1 % of noise in the anchors x 1.01.
+/// laid onto their neighbours: x 0.91 / 0.89, flipped faces 247 to 12; on the shared cases x 1.004 / 1.002,
+/// on 16 further pairs x 1.001 / 1.003, on seven pairs whose anchors are off by 1 %, five times, x 1.005
+/// / 1.003 and 275 flipped faces to 49.
 struct ReciprocitySettings {
   /// Of the distance of a point from its match: what takes the match away is so much nearer. 0.35: scans
   /// x 1.005, the shared cases x 0.998.
