@@ -137,6 +137,16 @@ TEST(GlobalRbf, NamesTheDeficientDirectionOfCoplanarAnchors) {
   EXPECT_THAT(refusal(nearly, sources, exact(8)), HasSubstr("coplanar"));
 }
 
+// The middle of the bounding box of points on a slanted plane lies off that plane.
+TEST(GlobalRbf, RefusesCoplanarAnchorsOnAnySlant) {
+  const Vector3 normal = Vector3(1, 2, 2) / 3;
+  Points sources = test::random_points(8, 21);
+  sources -= normal * (normal.transpose() * sources);
+  const std::string message = refusal(sources, sources, exact(8));
+  EXPECT_THAT(message, HasSubstr("coplanar"));
+  EXPECT_THAT(message, HasSubstr("0.3333"));
+}
+
 TEST(GlobalRbf, RefusesUnusableAnchors) {
   const Points points = test::random_points(6, 20);
   EXPECT_THAT(refusal(points.leftCols(3), points.leftCols(3), exact(3)), HasSubstr("there are 3"));

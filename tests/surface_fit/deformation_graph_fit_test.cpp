@@ -289,16 +289,12 @@ TEST(FitSurfaceDeformationGraph, WorksOnPiecesSingleTrianglesAndLooseVertices) {
   TriangleMesh pieces = shapes::joined(
       potato(3), shapes::moved(shapes::icosphere(1), {0.1 * Matrix3::Identity(), Vector3(2, 0, 0)}));
   pieces.vertices.conservativeResize(3, pieces.vertices.cols() + 1);
-  const Vector3 loose(1, 1, 1);
-  pieces.vertices.rightCols(1) = loose;
+  pieces.vertices.rightCols(1) = Vector3(1, 1, 1);
   TriangleMesh target = pieces;
   for (auto&& x : target.vertices.colwise()) x = bend(x);
   const SurfaceFit fit = Scene{pieces, target}.fit();
   EXPECT_TRUE(fit.vertices.allFinite());
-  const Eigen::RowVectorXd errors = (fit.vertices - target.vertices).colwise().norm();
-  EXPECT_LT(errors.head(errors.size() - 1).maxCoeff(), mean_edge_length(pieces));
-  // It has no counterpart, and goes with the rest.
-  EXPECT_LT(errors[errors.size() - 1], (bend(loose) - loose).norm());
+  EXPECT_LT((fit.vertices - target.vertices).colwise().norm().maxCoeff(), mean_edge_length(pieces));
 
   const SurfaceFit single = Scene{shapes::triangle(), shapes::triangle()}.fit();
   EXPECT_TRUE(single.vertices.isApprox(shapes::triangle().vertices, 1e-6));

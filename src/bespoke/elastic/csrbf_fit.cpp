@@ -1,5 +1,4 @@
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +7,7 @@
 #include "bespoke/elastic/csrbf.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/principal_widths.h"
 #include "bespoke/rbf/front_cholesky.h"
 #include "bespoke/rbf/kernels.h"
 #include "bespoke/stopwatch.h"
@@ -80,12 +80,12 @@ class AffineBasis {
   }
 
  private:
-  static void require_spanning(const Points& centred) {
-    // Squared widths of the sources; below this ratio the smallest is made of rounding errors.
-    constexpr double smallest_ratio = 1e-14;
-    const Eigen::SelfAdjointEigenSolver<Matrix3> widths(centred * centred.transpose());
-    if (widths.eigenvalues()[0] > smallest_ratio * widths.eigenvalues()[2]) return;
-    const Vector3 missing = widths.eigenvectors().col(0);
+  static void require_spanning(const Points& points) {
+    // Of the largest width: across a thinner sheet the affine functions are made of rounding errors.
+    constexpr double smallest_ratio = 1e-7;
+    const auto [widths, directions] = principal_widths(points);
+    if (widths[2] > smallest_ratio * widths[0]) return;
+    const Vector3 missing = directions.col(2);
     char text[200];
     std::snprintf(
         text, sizeof text,

@@ -189,9 +189,10 @@ struct NodeFitSettings {
   /// samples; half as many were taken for their time. 10 and 20 instead of 15 coarse iterations:
   /// x 1.009 / 1.015 and 1.000 / 0.993, on bodies in two poses x 1.017 / 1.035 and 0.993 / 0.980.
   std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false}, NodeLevel{2500, 6, 8000, 5000}};
-  /// Of the first level where no anchor leads the surfaces, which slide into place more slowly. 15, 25, 30,
-  /// 40 on a hand (d04): 0.710, 0.630, 0.612, 0.584 %; on bodies, heads and a curled hand within 4 %.
-  int unanchored_iterations = 30;
+  /// Of the first level where no anchor leads the surfaces, which slide into place more slowly. 15, 20, 25,
+  /// 30, 40 on a hand (d04): 0.710, 0.655, 0.630, 0.612, 0.584 %; on bodies, heads and a curled hand within
+  /// 4 %. But a smooth shape without features drifts on: more than 25 move it along itself.
+  int unanchored_iterations = 20;
   double coarsest_smoothing = 0.5;  ///< ℓ at the first iteration, diagonals. Not varied on its own.
   /// ℓ at the last, diagonals; geometric in between. 0.007: x 1.009, 0.014: x 1.033.
   double finest_smoothing = 0.01;

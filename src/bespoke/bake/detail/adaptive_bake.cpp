@@ -47,7 +47,7 @@ class AdaptiveBake {
     summary().peak_bytes = builder_->byte_count();
     summary().relaxed = builder_->relaxed();
     builder_.reset();
-    move(folds);
+    repair(folds);
     return std::move(result_);
   }
 
@@ -103,8 +103,8 @@ class AdaptiveBake {
     return folds;
   }
 
-  void move(const std::vector<FoldedCell>& folds) {
-    move_folds(map_, folds, result_, progress_);
+  void repair(const std::vector<FoldedCell>& folds) {
+    repair_all_or_none(map_, folds, result_, progress_);
     summary().mend_seconds += watch_.lap();
     if (summary().repaired_cells > 0) measure();
   }

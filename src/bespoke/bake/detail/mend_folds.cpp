@@ -67,8 +67,8 @@ std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<Pyra
   return folds;
 }
 
-void move_folds(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
-                const Progress& progress) {
+void repair_all_or_none(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
+                        const Progress& progress) {
   bake.summary.folded_cells = folds.size();
   if (folds.empty() || folds.size() > most_mendable_folds) return;
   Pyramid repaired = bake.pyramid;

@@ -17,7 +17,7 @@ std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<Pyra
 
 /// Mends `folds`, all that the pyramid has, by moving nodes (repair_folds): all of them or none, since half a
 /// repair would cost accuracy and prove nothing. Fills what the summary says about it.
-void move_folds(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
-                const Progress& progress);
+void repair_all_or_none(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
+                        const Progress& progress);
 
 }  // namespace bespoke

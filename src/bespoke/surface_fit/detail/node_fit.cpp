@@ -64,6 +64,7 @@ Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& in
   return areas;
 }
 
+/// With as many iterations as the anchors ask for.
 NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
   if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
   return settings;
