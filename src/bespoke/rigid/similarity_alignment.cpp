@@ -1,8 +1,7 @@
 #include "bespoke/rigid/similarity_alignment.h"
 
-#include <Eigen/Dense>
-
 #include "bespoke/error.h"
+#include "bespoke/rigid/nearest_rotation.h"
 
 namespace bespoke {
 
@@ -12,13 +11,10 @@ Similarity align_similarly(const Points& source, const Points& target, const Eig
   const Points x = source.colwise() - source_mean, y = target.colwise() - target_mean;
   const double spread = (x.colwise().squaredNorm() * weights).value();
   if (!(spread > 0)) throw InvalidInput("a similarity needs source points that do not coincide");
-  const Matrix3 covariance = y * weights.asDiagonal() * x.transpose();
-  const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3 sign = Vector3::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
+  const NearestRotation nearest = nearest_rotation(y * weights.asDiagonal() * x.transpose());
   Similarity result;
-  result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  result.scale = svd.singularValues().dot(sign) / spread;
+  result.rotation = nearest.rotation;
+  result.scale = nearest.trace / spread;
   if (!(result.scale > 0)) throw InvalidInput("a similarity needs target points that do not coincide");
   result.translation = target_mean - result.scale * (result.rotation * source_mean);
   return result;

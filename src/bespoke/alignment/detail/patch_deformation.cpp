@@ -1,11 +1,11 @@
 #include "bespoke/alignment/detail/patch_deformation.h"
 
-#include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 
 #include "bespoke/error.h"
+#include "bespoke/rigid/nearest_rotation.h"
 
 namespace bespoke {
 namespace {
@@ -63,13 +63,10 @@ void update_similarities(const SurfacePatches& source, const Links& links, Patch
       covariance += link.weight * now * link.rest.transpose();
       spread += link.weight * link.rest.squaredNorm();
     }
-    const Eigen::JacobiSVD<Matrix3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    Vector3 sign = Vector3::Ones();
-    if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-    const Matrix3 rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-    const double scale = (rotation.transpose() * covariance).trace() / spread;
-    state.similarities[i] = scale * rotation;
-    state.normals.col(column) = rotation * source.normals.col(column);
+    const NearestRotation nearest = nearest_rotation(covariance);
+    const double scale = nearest.trace / spread;
+    state.similarities[i] = scale * nearest.rotation;
+    state.normals.col(column) = nearest.rotation * source.normals.col(column);
     for (const Link& link : links[i]) {
       const Vector3 now = state.points.col(link.to) - state.points.col(column);
       sum += link.weight * (now - state.similarities[i] * link.rest).squaredNorm() / (scale * scale);
