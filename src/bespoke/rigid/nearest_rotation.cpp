@@ -8,7 +8,10 @@ NearestRotation nearest_rotation(const Matrix3& matrix) {
   const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vector3 sign = Vector3::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) sign[2] = -1;
-  return {svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose(), svd.singularValues().dot(sign)};
+  NearestRotation nearest;
+  nearest.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  nearest.trace = svd.singularValues().dot(sign);
+  return nearest;
 }
 
 }  // namespace bespoke
