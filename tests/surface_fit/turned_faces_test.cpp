@@ -26,11 +26,23 @@ double least_cosine(const TriangleMesh& before, const Points& after) {
   return face_normals(before).cwiseProduct(face_normals({after, before.faces})).colwise().sum().minCoeff();
 }
 
+/// With a shape like the surface before.
+MendedSurface mend(const TriangleMesh& before, const Points& after, const MendingSettings& settings = {}) {
+  return mend_turned_faces({before.vertices, before, after}, settings);
+}
+
+/// The square with a pocket about a point, `depth` deep and narrow enough that its walls are steep.
+Points with_pocket(const TriangleMesh& grid, const Vector3& middle, double depth) {
+  Points pushed = grid.vertices;
+  for (auto&& x : pushed.colwise()) x[2] -= depth * std::exp(-(x - middle).squaredNorm() / 0.01);
+  return pushed;
+}
+
 TEST(MendTurnedFaces, LeavesASurfaceWithoutTurnedFacesAsItIs) {
   const TriangleMesh grid = shapes::square_grid(side);
   Points after = grid.vertices;
   for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], 0.2 * std::sin(5 * x[0]));
-  const MendedSurface mended = mend_turned_faces(grid, after);
+  const MendedSurface mended = mend(grid, after);
   EXPECT_EQ(mended.vertices, after);
   EXPECT_EQ(mended.mended_vertices, 0u);
   EXPECT_EQ(mended.turned_faces, 0u);
@@ -43,7 +55,7 @@ TEST(MendTurnedFaces, TakesBackAVertexDrawnAcrossItsNeighbours) {
   const int drawn = vertex_at(grid, 0.5, 0.5);
   after.col(drawn) += Vector3(3 * square, 0, 0);
   ASSERT_LT(least_cosine(grid, after), 0);
-  const MendedSurface mended = mend_turned_faces(grid, after);
+  const MendedSurface mended = mend(grid, after);
   EXPECT_EQ(mended.turned_faces, 0u);
   EXPECT_GT(least_cosine(grid, mended.vertices), 0);
   // The neighbours all moved by the shift, so their harmonic mean is the shift.
@@ -63,7 +75,7 @@ TEST(MendTurnedFaces, TakesBackWhatWasStretchedOrSqueezedTooFar) {
       MendingSettings settings;
       settings.most_degrees = 180;
       settings.most_stretch = most;
-      return mend_turned_faces(grid, after, settings);
+      return mend(grid, after, settings);
     };
     const MendedSurface mended = released(1.3);
     EXPECT_TRUE(mended.vertices.isApprox(grid.vertices, 1e-6));
@@ -85,7 +97,7 @@ TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
       if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.75 * square)
         x += square * Vector3(shift(random), shift(random), 2 * shift(random));
     ASSERT_LT(least_cosine(grid, after), 0);
-    const MendedSurface mended = mend_turned_faces(grid, after);
+    const MendedSurface mended = mend(grid, after);
     EXPECT_EQ(mended.turned_faces, 0u);
     EXPECT_GT(least_cosine(grid, mended.vertices), 0);
   }
@@ -97,8 +109,8 @@ TEST(MendTurnedFaces, LeavesWhatWasCrumpledSmoothAndTakesBackWhatWasCrumpled) {
   crumpled.vertices.col(vertex_at(smooth, 0.5, 0.5)) += Vector3(0, 0, 2.5 * square);
   const double limit = std::cos(MendingSettings{}.most_degrees * std::numbers::pi / 180);
   ASSERT_LT(least_cosine(smooth, crumpled.vertices), limit);
-  EXPECT_EQ(mend_turned_faces(crumpled, smooth.vertices).vertices, smooth.vertices);
-  EXPECT_TRUE(mend_turned_faces(smooth, crumpled.vertices).vertices.isApprox(smooth.vertices, 1e-6));
+  EXPECT_EQ(mend(crumpled, smooth.vertices).vertices, smooth.vertices);
+  EXPECT_TRUE(mend(smooth, crumpled.vertices).vertices.isApprox(smooth.vertices, 1e-6));
 }
 
 TEST(MendTurnedFaces, ReleasesNoMoreRingsThanHelp) {
@@ -114,12 +126,12 @@ TEST(MendTurnedFaces, ReleasesNoMoreRingsThanHelp) {
       x += square / 4 * Vector3(shift(random), shift(random), shift(random));
     Points after = turn * before.vertices;
     after.col(vertex_at(before, 0.5, 0.5)) += Vector3(0, square, 0);
-    const MendedSurface all = mend_turned_faces(before, after);
+    const MendedSurface all = mend(before, after);
     stubborn += all.turned_faces > 0 ? 1 : 0;
     for (int most = 1; most < MendingSettings{}.most_rings; ++most) {
       MendingSettings settings;
       settings.most_rings = most;
-      const MendedSurface fewer = mend_turned_faces(before, after, settings);
+      const MendedSurface fewer = mend(before, after, settings);
       EXPECT_LE(all.turned_faces, fewer.turned_faces);
       if (all.turned_faces == fewer.turned_faces) {
         EXPECT_LE(all.mended_vertices, fewer.mended_vertices);
@@ -133,7 +145,7 @@ TEST(MendTurnedFaces, LeavesTheFitWhereMostOfItTurned) {
   const TriangleMesh grid = shapes::square_grid(4 * side);
   Points after = grid.vertices;
   after.topRows(1) = 1 - after.topRows(1).array();  // a mirror image: every face has turned
-  const MendedSurface mended = mend_turned_faces(grid, after);
+  const MendedSurface mended = mend(grid, after);
   EXPECT_EQ(mended.vertices, after);
   EXPECT_EQ(mended.mended_vertices, 0u);
   EXPECT_EQ(mended.turned_faces, static_cast<std::size_t>(grid.faces.cols()));
@@ -146,7 +158,7 @@ TEST(MendTurnedFaces, TakesBackWhatTurnedFartherThanItsLimitOnly) {
     Points after = two.vertices;
     const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
     after.leftCols(9) = turn * two.vertices.leftCols(9);
-    EXPECT_EQ(mend_turned_faces(two, after).mended_vertices, beyond > 0 ? 9u : 0u);
+    EXPECT_EQ(mend(two, after).mended_vertices, beyond > 0 ? 9u : 0u);
   }
 }
 
@@ -158,7 +170,7 @@ TEST(MendTurnedFaces, LeavesNoFaceTurnedWhereShortEdgesMeetLongOnes) {
   const int drawn = vertex_at(grid, 0.125, 0.125);
   after.col(drawn) += Vector3(0.1, 0.1, 0);
   ASSERT_LT(least_cosine(grid, after), 0);
-  const MendedSurface mended = mend_turned_faces(grid, after);
+  const MendedSurface mended = mend(grid, after);
   EXPECT_EQ(mended.turned_faces, 0u);
   EXPECT_GT(least_cosine(grid, mended.vertices), 0);
 }
@@ -169,7 +181,7 @@ TEST(MendTurnedFaces, MovesNothingFarFromTheTurnedFaces) {
   for (auto&& x : after.colwise()) x += Vector3(0, 0, 0.3 * x[0] * x[1]);
   const int drawn = vertex_at(grid, 0.25, 0.25);
   after.col(drawn) += Vector3(2 * square, 2 * square, 0);
-  const MendedSurface mended = mend_turned_faces(grid, after);
+  const MendedSurface mended = mend(grid, after);
   ASSERT_GT(mended.mended_vertices, 0u);
   for (Eigen::Index i = 0; i < after.cols(); ++i)
     if ((grid.vertices.col(i) - grid.vertices.col(drawn)).norm() > 10 * square) {
@@ -182,7 +194,7 @@ TEST(MendTurnedFaces, ReportsWhatNoNeighboursCanTakeBack) {
   const TriangleMesh single = shapes::triangle();
   Points after = single.vertices;
   after.col(0).swap(after.col(1));
-  const MendedSurface mended = mend_turned_faces(single, after);
+  const MendedSurface mended = mend(single, after);
   EXPECT_TRUE(mended.vertices.allFinite());
   EXPECT_EQ(mended.mended_vertices, 3u);
   EXPECT_EQ(mended.turned_faces, least_cosine(single, mended.vertices) < 0 ? 1u : 0u);
@@ -194,9 +206,41 @@ TEST(MendTurnedFaces, TakesFacesWithoutAreaAndLooseVertices) {
   mesh.vertices.rightCols(1) = Vector3(5, 5, 5);
   mesh.faces.conservativeResize(3, mesh.faces.cols() + 1);
   mesh.faces.rightCols(1) << 0, 0, 1;
-  const MendedSurface mended = mend_turned_faces(mesh, mesh.vertices);
+  const MendedSurface mended = mend(mesh, mesh.vertices);
   EXPECT_EQ(mended.vertices, mesh.vertices);
   EXPECT_EQ(mended.mended_vertices, 0u);
+}
+
+TEST(MendTurnedFaces, LeavesAPocketThatWasInsideOutBefore) {
+  const TriangleMesh grid = shapes::square_grid(2 * side);
+  const Vector3 middle(0.5, 0.5, 0);
+  const Points in = with_pocket(grid, middle, 0.2), out = with_pocket(grid, middle, -0.2);
+  const TriangleMesh turned_out{out, grid.faces};
+  const MendedSurface left = mend_turned_faces({in, turned_out, in});
+  EXPECT_EQ(left.vertices, in);
+  EXPECT_EQ(left.mended_vertices, 0u);
+  // Of a bump the same is a fold.
+  EXPECT_GT(mend_turned_faces({out, turned_out, in}).mended_vertices, 0u);
+}
+
+TEST(UnfoldedParts, AreThoseThatBentLessInPartsOfTheirOwnAndInAnyPlace) {
+  const TriangleMesh grid = shapes::square_grid(2 * side);
+  const Vector3 one(0.25, 0.25, 0), two(0.75, 0.75, 0);
+  const Matrix3 turn = Eigen::AngleAxisd(2, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  const auto pockets = [&](double first, double second) {
+    return with_pocket({with_pocket(grid, one, first), grid.faces}, two, second);
+  };
+  const TriangleMesh before{turn * pockets(-0.2, 0.2), grid.faces};
+  std::vector<Eigen::Index> near_one, near_both;
+  for (Eigen::Index face = 0; face < grid.faces.cols(); ++face) {
+    const Vector3 place = grid.vertices.col(grid.faces(0, face));
+    if ((place - one).norm() < 0.15) near_one.push_back(face);
+    if ((place - one).norm() < 0.15 || (place - two).norm() < 0.15) near_both.push_back(face);
+  }
+  // The first is put right, the second is turned inside out.
+  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, near_both), near_one);
+  EXPECT_TRUE(unfolded_parts({pockets(-0.2, 0.2), before, pockets(0.2, -0.2)}, near_both).empty());
+  EXPECT_TRUE(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, {}).empty());
 }
 
 }  // namespace

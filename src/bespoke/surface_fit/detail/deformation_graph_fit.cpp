@@ -231,14 +231,14 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
                          const DeformationGraphSettings& settings, const Progress& progress) {
   SurfaceFitSummary summary;
   const NodeFit nodes = fit_nodes(scene, aligned_anchors, options, settings, summary, progress);
-  scene.surface.vertices = nodes.vertices;
+  const Points shape = std::exchange(scene.surface.vertices, nodes.vertices);
   scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
   MendingSettings mending = settings.mending;
   mending.most_stretch = options.max_stretch;
-  MendedSurface mended =
-      mend_turned_faces({nodes.coarse_vertices, scene.surface.faces}, details.vertices, mending);
+  const TriangleMesh coarse{nodes.coarse_vertices, scene.surface.faces};
+  MendedSurface mended = mend_turned_faces({shape, coarse, details.vertices}, mending);
   scene.exact_sources = details.anchor_sources;
   if (mended.mended_vertices > 0)
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);

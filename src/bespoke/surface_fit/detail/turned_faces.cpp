@@ -42,11 +42,14 @@ struct FaceNormals {
 /// What became of a surface, face by face.
 class FaceChanges {
  public:
-  FaceChanges(const TriangleMesh& before, const MendingSettings& settings)
-      : before_(before),
-        normals_(before),
+  FaceChanges(const DrawnSurface& surface, const MendingSettings& settings)
+      : before_(surface.before),
+        normals_(surface.before),
         most_turned_(settings.most_degrees * std::numbers::pi / 180),
-        most_stretch_(settings.most_stretch) {}
+        most_stretch_(settings.most_stretch),
+        is_unfolded_(static_cast<std::size_t>(surface.before.faces.cols()), 0) {
+    for (const Eigen::Index face : unfolded_parts(surface, bad(surface.after).all())) is_unfolded_[face] = 1;
+  }
 
   struct Bad {
     std::vector<Eigen::Index> turned, stretched;  // a face that turned is not called stretched as well
@@ -59,11 +62,12 @@ class FaceChanges {
     }
   };
 
-  /// A face without area has not turned.
+  /// A face without area has not turned. None of a part that was unfolded.
   Bad bad(const Points& after) const {
     const FaceNormals normals({after, before_.faces});
     Bad found;
     for (Eigen::Index face = 0; face < before_.faces.cols(); ++face) {
+      if (is_unfolded_[face]) continue;
       if (normals.has_area(face) && normals_.has_area(face) && turn(normals, face) > most_turned_)
         found.turned.push_back(face);
       else if (stretch(after, face) > most_stretch_)
@@ -104,6 +108,7 @@ class FaceChanges {
   const TriangleMesh& before_;
   FaceNormals normals_;
   double most_turned_, most_stretch_;
+  std::vector<char> is_unfolded_;
 };
 
 /// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
@@ -176,9 +181,10 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
 
 }  // namespace
 
-MendedSurface mend_turned_faces(const TriangleMesh& before, const Points& after,
-                                const MendingSettings& settings) {
-  const FaceChanges changes(before, settings);
+MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings) {
+  const TriangleMesh& before = surface.before;
+  const Points& after = surface.after;
+  const FaceChanges changes(surface, settings);
   const VertexAdjacency adjacency = vertex_adjacency(before);
   const FaceChanges::Bad drawn = changes.bad(after);
   const auto most_free = std::max(settings.released_at_least,
