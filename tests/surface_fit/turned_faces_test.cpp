@@ -223,7 +223,7 @@ TEST(MendTurnedFaces, LeavesAPocketThatWasInsideOutBefore) {
   EXPECT_GT(mend_turned_faces({out, turned_out, in}).mended_vertices, 0u);
 }
 
-TEST(UnfoldedParts, AreThoseThatBentLessInPartsOfTheirOwnAndInAnyPlace) {
+TEST(UnfoldedParts, AreThoseWithoutFoldsInPartsOfTheirOwnAndInAnyPlace) {
   const TriangleMesh grid = shapes::square_grid(2 * side);
   const Vector3 one(0.25, 0.25, 0), two(0.75, 0.75, 0);
   const Matrix3 turn = Eigen::AngleAxisd(2, Vector3(1, 2, 3).normalized()).toRotationMatrix();

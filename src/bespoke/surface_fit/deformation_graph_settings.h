@@ -256,9 +256,8 @@ struct DetailSettings {
   double anchor_radius = 0.03;  ///< diagonals: λ of the last layer, which meets exact anchors. Not varied.
 };
 
-/// Faces taken back (turned_faces.h), but for parts that were folded before (unfolded_parts.h). Leaving those
-/// was taken for a head whose nostril had been turned inside out: on 21 pairs made afresh (bodies, heads,
-/// hands, feet) x 0.994 / 0.994, 438 flipped faces to 127; without such parts the same maps.
+/// Faces taken back (turned_faces.h), but for parts that were folded before (unfolded_parts.h): a head whose
+/// nostril the coarse nodes had turned inside out had 536 flipped faces, and 57 without its fold.
 struct MendingSettings {
   /// A face that turned farther against the coarse deformation was drawn to the wrong side of a fold. Flipped
   /// faces at 45, 50, 55, 60, 65 degrees: 9 5 2 2 2 on the shared cases, 47 45 73 99 110 on the further

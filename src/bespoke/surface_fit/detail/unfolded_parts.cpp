@@ -11,6 +11,7 @@ namespace bespoke {
 namespace {
 
 constexpr int none = MeshEdges::none;
+constexpr double right_angle = std::numbers::pi / 2;
 
 /// The edges of exactly two faces, which can bend.
 class Hinges {
@@ -101,23 +102,22 @@ std::vector<Eigen::Index> unfolded_parts(const DrawnSurface& surface,
   const Hinges hinges(surface.before);
   const Parts parts(hinges, all.cols(), faces);
   const Bends shape(surface.shape, all), before(surface.before.vertices, all), after(surface.after, all);
-  std::vector<double> more_bent_before(static_cast<std::size_t>(parts.count), 0);
+  std::vector<char> was_folded(static_cast<std::size_t>(parts.count), 0), is_folded = was_folded;
   for (std::size_t hinge = 0; hinge < hinges.size(); ++hinge) {
     const auto& [first, second] = hinges.faces(hinge);
     if (first == none) continue;
     const int part = std::max(parts.of_face[first], parts.of_face[second]);
     if (part == none) continue;
     const double meant = shape.angle(hinges, hinge);
-    const auto change = [&](const Bends& now) {
-      return std::remainder(now.angle(hinges, hinge) - meant, 2 * std::numbers::pi);
+    const auto folds = [&](const Bends& now) {
+      return std::abs(std::remainder(now.angle(hinges, hinge) - meant, 2 * std::numbers::pi)) > right_angle;
     };
-    const MeshEdge& edge = hinges.edge(hinge);
-    const double length = (surface.shape.col(edge.b) - surface.shape.col(edge.a)).norm();
-    more_bent_before[part] += length * (std::pow(change(before), 2) - std::pow(change(after), 2));
+    if (folds(before)) was_folded[part] = 1;
+    if (folds(after)) is_folded[part] = 1;
   }
   std::vector<Eigen::Index> unfolded;
   for (const Eigen::Index face : faces)
-    if (more_bent_before[parts.of_face[face]] > 0) unfolded.push_back(face);
+    if (const int part = parts.of_face[face]; was_folded[part] && !is_folded[part]) unfolded.push_back(face);
   std::sort(unfolded.begin(), unfolded.end());
   return unfolded;
 }
