@@ -231,16 +231,19 @@ TEST(UnfoldedParts, AreThoseWithoutFoldsInPartsOfTheirOwnAndInAnyPlace) {
     return with_pocket({with_pocket(grid, one, first), grid.faces}, two, second);
   };
   const TriangleMesh before{turn * pockets(-0.2, 0.2), grid.faces};
-  std::vector<Eigen::Index> near_one, near_both;
+  std::vector<Eigen::Index> near_both;
+  std::vector<char> near_one;
   for (Eigen::Index face = 0; face < grid.faces.cols(); ++face) {
     const Vector3 place = grid.vertices.col(grid.faces(0, face));
-    if ((place - one).norm() < 0.15) near_one.push_back(face);
-    if ((place - one).norm() < 0.15 || (place - two).norm() < 0.15) near_both.push_back(face);
+    near_one.push_back((place - one).norm() < 0.15);
+    if (near_one.back() || (place - two).norm() < 0.15) near_both.push_back(face);
   }
+  const std::vector<char> none(near_one.size(), 0);
   // The first is put right, the second is turned inside out.
   EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, near_both), near_one);
-  EXPECT_TRUE(unfolded_parts({pockets(-0.2, 0.2), before, pockets(0.2, -0.2)}, near_both).empty());
-  EXPECT_TRUE(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, {}).empty());
+  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(-0.2, 0.2)}, near_both), none);
+  EXPECT_EQ(unfolded_parts({pockets(-0.2, 0.2), before, pockets(0.2, -0.2)}, near_both), none);
+  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, {}), none);
 }
 
 }  // namespace

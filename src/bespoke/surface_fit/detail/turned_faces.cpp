@@ -48,7 +48,7 @@ class FaceChanges {
         most_turned_(settings.most_degrees * std::numbers::pi / 180),
         most_stretch_(settings.most_stretch),
         is_unfolded_(static_cast<std::size_t>(surface.before.faces.cols()), 0) {
-    for (const Eigen::Index face : unfolded_parts(surface, bad(surface.after).all())) is_unfolded_[face] = 1;
+    is_unfolded_ = unfolded_parts(surface, bad(surface.after).all());
   }
 
   struct Bad {

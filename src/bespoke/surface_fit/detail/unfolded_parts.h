@@ -13,9 +13,9 @@ struct DrawnSurface {
   const Points& after;         ///< 3×n, as it was drawn
 };
 
-/// Of `faces` those in parts that were folded before and are not after, in increasing order. Parts are
+/// One flag per face: 1 for those of `faces` in a part that was folded before and is not after. Parts are
 /// connected across edges, and folded where the angle between two faces at an edge of theirs has changed by
 /// more than a right angle since the shape.
-std::vector<Eigen::Index> unfolded_parts(const DrawnSurface& surface, const std::vector<Eigen::Index>& faces);
+std::vector<char> unfolded_parts(const DrawnSurface& surface, const std::vector<Eigen::Index>& faces);
 
 }  // namespace bespoke
