@@ -23,7 +23,8 @@ struct MendedSurface {
 /// vertices: where more has turned, mending would undo the fit. By as much as a face comes nearer to the
 /// surface around it, that of its corners' normals, it has not turned: the fit smooths what is crumpled on
 /// the source. Parts that were folded before and are so no longer are left as they were drawn
-/// (unfolded_parts.h): a nostril that the smooth deformation had turned inside out. Throws SolverError.
+/// (unfolded_parts.h), however far they turned or were stretched since, for a fold measures neither: a
+/// nostril that the smooth deformation had turned inside out. Throws SolverError.
 MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings = {});
 
 }  // namespace bespoke
