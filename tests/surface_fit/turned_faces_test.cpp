@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
+#include <vector>
 
+#include "bespoke/surface_fit/detail/bends.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -219,31 +222,87 @@ TEST(MendTurnedFaces, LeavesAPocketThatWasInsideOutBefore) {
   const MendedSurface left = mend_turned_faces({in, turned_out, in});
   EXPECT_EQ(left.vertices, in);
   EXPECT_EQ(left.mended_vertices, 0u);
+  EXPECT_GT(left.turned_faces, 0u);
   // Of a bump the same is a fold.
-  EXPECT_GT(mend_turned_faces({out, turned_out, in}).mended_vertices, 0u);
+  const MendedSurface taken_back = mend_turned_faces({out, turned_out, in});
+  EXPECT_GT(taken_back.mended_vertices, 0u);
+  EXPECT_LT(taken_back.turned_faces, left.turned_faces);
 }
 
-TEST(UnfoldedParts, AreThoseWithoutFoldsInPartsOfTheirOwnAndInAnyPlace) {
-  const TriangleMesh grid = shapes::square_grid(2 * side);
+TEST(MendTurnedFaces, JudgesEveryPatchOnItsOwnAndInAnyPlace) {
+  const TriangleMesh grid = shapes::square_grid(4 * side);
   const Vector3 one(0.25, 0.25, 0), two(0.75, 0.75, 0);
   const Matrix3 turn = Eigen::AngleAxisd(2, Vector3(1, 2, 3).normalized()).toRotationMatrix();
   const auto pockets = [&](double first, double second) {
     return with_pocket({with_pocket(grid, one, first), grid.faces}, two, second);
   };
+  // Both turn over since: the first into its shape, the second out of it.
+  const Points shape = pockets(0.2, 0.2);
   const TriangleMesh before{turn * pockets(-0.2, 0.2), grid.faces};
-  std::vector<Eigen::Index> near_both;
-  std::vector<char> near_one;
-  for (Eigen::Index face = 0; face < grid.faces.cols(); ++face) {
-    const Vector3 place = grid.vertices.col(grid.faces(0, face));
-    near_one.push_back((place - one).norm() < 0.15);
-    if (near_one.back() || (place - two).norm() < 0.15) near_both.push_back(face);
+  const Points after = turn * pockets(0.2, -0.2);
+  MendingSettings settings;
+  settings.most_released = 0.5;
+  const MendedSurface mended = mend_turned_faces({shape, before, after}, settings);
+  ASSERT_GT(mended.mended_vertices, 0u);
+  for (Eigen::Index i = 0; i < after.cols(); ++i)
+    if ((grid.vertices.col(i) - one).norm() < 0.3) {
+      EXPECT_EQ(mended.vertices.col(i), after.col(i));
+    }
+  const auto error = [&](const Points& vertices) { return (vertices - turn * shape).norm(); };
+  EXPECT_LT(error(mended.vertices), 0.2 * error(after));
+}
+
+TEST(MendTurnedFaces, BendsNothingFartherFromItsShape) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> shift(-1, 1);
+  const TriangleMesh grid = shapes::square_grid(2 * side);
+  const auto crumpled = [&](double most) {
+    Points vertices = grid.vertices;
+    for (auto&& x : vertices.colwise())
+      if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.2)
+        x += most * square * Vector3(shift(random), shift(random), shift(random));
+    return vertices;
+  };
+  const std::vector<Hinge> edges = hinges(grid);
+  const auto bent = [&](const Points& vertices) {
+    const std::vector<double> all = bends(edges, grid.faces, grid.vertices, vertices);
+    return std::inner_product(all.begin(), all.end(), all.begin(), 0.0);
+  };
+  MendingSettings settings;
+  settings.released_at_least = 1000;
+  int left = 0, taken_back = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const TriangleMesh before{crumpled(trial % 2 == 0 ? 1 : 0.2), grid.faces};
+    const Points after = crumpled(trial % 2 == 0 ? 0.2 : 1);
+    const MendedSurface mended = mend_turned_faces({grid.vertices, before, after}, settings);
+    EXPECT_LE(bent(mended.vertices), bent(after));
+    left += mended.mended_vertices == 0 && mended.turned_faces > 0 ? 1 : 0;
+    taken_back += mended.mended_vertices > 0 ? 1 : 0;
   }
-  const std::vector<char> none(near_one.size(), 0);
-  // The first is put right, the second is turned inside out.
-  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, near_both), near_one);
-  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(-0.2, 0.2)}, near_both), none);
-  EXPECT_EQ(unfolded_parts({pockets(-0.2, 0.2), before, pockets(0.2, -0.2)}, near_both), none);
-  EXPECT_EQ(unfolded_parts({pockets(0.2, 0.2), before, pockets(0.2, -0.2)}, {}), none);
+  EXPECT_GT(left, 0);
+  EXPECT_GT(taken_back, 0);
+}
+
+TEST(Bends, AreAnglesBetweenFacesAgainstTheShapeInAnyPlace) {
+  TriangleMesh roof = shapes::square_grid(1);
+  const std::vector<Hinge> ridge = hinges(roof);
+  ASSERT_EQ(ridge.size(), 1u);
+  const Vector3 from = roof.vertices.col(ridge[0].a), to = roof.vertices.col(ridge[0].b);
+  const Matrix3 turn = Eigen::AngleAxisd(2, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  // The two faces, the second turned about the edge between them.
+  const auto opened = [&](double angle) {
+    Points vertices = roof.vertices;
+    const Matrix3 about = Eigen::AngleAxisd(angle, (to - from).normalized()).toRotationMatrix();
+    for (const int vertex : roof.faces.col(ridge[0].second))
+      vertices.col(vertex) = from + about * (vertices.col(vertex) - from);
+    return vertices;
+  };
+  for (const double shape : {-2.5, -1.0, 0.0, 2.0})
+    for (const double angle : {-3.0, -0.5, 0.0, 1.0, 2.9}) {
+      const Points placed = (2 * turn * opened(angle)).colwise() + Vector3(1, 2, 3);
+      EXPECT_NEAR(std::abs(bends(ridge, roof.faces, opened(shape), placed)[0]),
+                  std::abs(std::remainder(angle - shape, 2 * std::numbers::pi)), 1e-12);
+    }
 }
 
 }  // namespace

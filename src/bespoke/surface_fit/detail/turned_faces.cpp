@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/surface_fit/detail/bends.h"
 
 namespace bespoke {
 namespace {
@@ -42,14 +44,11 @@ struct FaceNormals {
 /// What became of a surface, face by face.
 class FaceChanges {
  public:
-  FaceChanges(const DrawnSurface& surface, const MendingSettings& settings)
-      : before_(surface.before),
-        normals_(surface.before),
+  FaceChanges(const TriangleMesh& before, const MendingSettings& settings)
+      : before_(before),
+        normals_(before),
         most_turned_(settings.most_degrees * std::numbers::pi / 180),
-        most_stretch_(settings.most_stretch),
-        is_unfolded_(static_cast<std::size_t>(surface.before.faces.cols()), 0) {
-    is_unfolded_ = unfolded_parts(surface, bad(surface.after).all());
-  }
+        most_stretch_(settings.most_stretch) {}
 
   struct Bad {
     std::vector<Eigen::Index> turned, stretched;  // a face that turned is not called stretched as well
@@ -62,12 +61,11 @@ class FaceChanges {
     }
   };
 
-  /// A face without area has not turned. None of a part that was unfolded.
+  /// A face without area has not turned.
   Bad bad(const Points& after) const {
     const FaceNormals normals({after, before_.faces});
     Bad found;
     for (Eigen::Index face = 0; face < before_.faces.cols(); ++face) {
-      if (is_unfolded_[face]) continue;
       if (normals.has_area(face) && normals_.has_area(face) && turn(normals, face) > most_turned_)
         found.turned.push_back(face);
       else if (stretch(after, face) > most_stretch_)
@@ -108,7 +106,6 @@ class FaceChanges {
   const TriangleMesh& before_;
   FaceNormals normals_;
   double most_turned_, most_stretch_;
-  std::vector<char> is_unfolded_;
 };
 
 /// The displacements (3×n) with those of the free vertices replaced by the mean of their neighbours',
@@ -179,18 +176,50 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
   return released;
 }
 
+/// Of the free vertices, those of patches that are bent no farther from their shape as mended than as drawn.
+/// A patch is connected along edges, and its faces are those with a corner in it.
+std::vector<int> no_farther_bent(const DrawnSurface& surface, const Points& mended, std::vector<int> free) {
+  constexpr int none = -1;
+  constexpr double rounding = 1e-9;  // squared radians
+  const Faces& faces = surface.before.faces;
+  std::vector<char> is_free(static_cast<std::size_t>(mended.cols()), 0);
+  for (const int vertex : free) is_free[vertex] = 1;
+  DisjointSets patches(static_cast<int>(is_free.size()));
+  std::vector<int> free_corner(static_cast<std::size_t>(faces.cols()), none);
+  for (Eigen::Index face = 0; face < faces.cols(); ++face)
+    for (const int vertex : faces.col(face)) {
+      if (!is_free[vertex]) continue;
+      if (free_corner[face] == none) free_corner[face] = vertex;
+      patches.join(vertex, free_corner[face]);
+    }
+
+  const std::vector<Hinge> edges = hinges(surface.before);
+  const std::vector<double> drawn_bends = bends(edges, faces, surface.shape, surface.after);
+  const std::vector<double> mended_bends = bends(edges, faces, surface.shape, mended);
+  std::vector<double> growth(is_free.size(), 0.0);  // of a patch, by its least vertex
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const int first = free_corner[edges[k].first], second = free_corner[edges[k].second];
+    const double grown = mended_bends[k] * mended_bends[k] - drawn_bends[k] * drawn_bends[k];
+    if (first != none) growth[patches.least(first)] += grown;
+    if (second != none && (first == none || patches.least(second) != patches.least(first)))
+      growth[patches.least(second)] += grown;
+  }
+  std::erase_if(free, [&](int vertex) { return growth[patches.least(vertex)] > rounding; });
+  return free;
+}
+
 }  // namespace
 
 MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings) {
   const TriangleMesh& before = surface.before;
   const Points& after = surface.after;
-  const FaceChanges changes(surface, settings);
+  const FaceChanges changes(before, settings);
   const VertexAdjacency adjacency = vertex_adjacency(before);
   const FaceChanges::Bad drawn = changes.bad(after);
   const auto most_free = std::max(settings.released_at_least,
                                   static_cast<std::size_t>(settings.most_released * double(after.cols())));
-  MendedSurface best{after, 0, {}, drawn.turned.size()};
-  std::size_t fewest = drawn.size();
+  Points best = after;
+  std::size_t best_free = 0, fewest = drawn.size();
   std::vector<char> is_free(static_cast<std::size_t>(after.cols()), 0);
   std::vector<int> free;
   FaceChanges::Bad bad = drawn;
@@ -207,11 +236,16 @@ MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettin
     // More rings than help would only undo more of the fit.
     if (bad.size() >= fewest) continue;
     fewest = bad.size();
-    best = {std::move(mended), free.size(), {}, bad.turned.size()};
+    best = std::move(mended);
+    best_free = free.size();
   }
-  free.resize(best.mended_vertices);
-  best.stretched_vertices = released_corners(before, drawn.stretched, std::move(free));
-  return best;
+  free.resize(best_free);
+  free = no_farther_bent(surface, best, std::move(free));
+  MendedSurface result{after, free.size(), {}, 0};
+  for (const int vertex : free) result.vertices.col(vertex) = best.col(vertex);
+  result.turned_faces = changes.bad(result.vertices).turned.size();
+  result.stretched_vertices = released_corners(before, drawn.stretched, std::move(free));
+  return result;
 }
 
 }  // namespace bespoke
