@@ -6,6 +6,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/pipeline/make_map.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {
@@ -100,6 +101,45 @@ TEST(InvertMap, ReversesTheStepsOfAChain) {
   const Points x = 2 * Points::Random(3, 2000);
   EXPECT_LT((whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm().maxCoeff(), 3 * tolerance);
   EXPECT_LE(back.deviation.max, 3 * tolerance);
+}
+
+TEST(InvertMap, KeepsToItsLeavesOverAllStepsAndNamesWhatMissesTheTolerance) {
+  const Asset forth = chain_asset();
+  const auto leaves = [](const DerivedMap& map) {
+    std::size_t count = 0;
+    for (const MapStep& step : map.asset.steps) count += step.pyramid.leaf_count();
+    return count;
+  };
+  const DerivedMap free = invert_map(forth, options());
+  ASSERT_TRUE(free.bake.relaxed.empty());
+  BakeOptions limited = options();
+  limited.max_leaves = leaves(free);
+  EXPECT_LE(leaves(invert_map(forth, limited)), *limited.max_leaves);
+  limited.max_leaves = leaves(free) / 4;
+  const DerivedMap back = invert_map(forth, limited);
+  EXPECT_LE(leaves(back), 1.1 * double(*limited.max_leaves));  // a few more for rims
+  EXPECT_FALSE(back.bake.relaxed.empty());
+  EXPECT_FALSE(back.bake.tolerance_met);
+  EXPECT_TRUE(whole_certificate(back.asset).is_bijection());
+}
+
+TEST(ComposeMaps, JoinsStepsRatherThanGiveUpTheTolerance) {
+  const Asset first = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  const Asset second = asset_of(Vector3(0, 0.1, 0.1), "b", "c");
+  const DerivedMap merged = compose_maps(first, second, options(), MeetingModels::must_be_the_same);
+  ASSERT_EQ(merged.asset.steps.size(), 1u);
+  BakeOptions limited = options();
+  limited.max_leaves = merged.asset.steps.front().pyramid.leaf_count() * 3 / 4;
+  const DerivedMap both = compose_maps(first, second, limited, MeetingModels::must_be_the_same);
+  EXPECT_EQ(both.asset.steps.size(), 2u);
+  EXPECT_TRUE(both.bake.relaxed.empty());
+  EXPECT_LE(both.deviation.max, tolerance);
+}
+
+TEST(DefaultDerivedBake, HasTheLeavesOfAFittedMap) {
+  const BakeOptions derived = default_derived_bake(0.5);
+  EXPECT_EQ(derived.tolerance, 0.5);
+  EXPECT_EQ(derived.max_leaves, default_options(1).bake.max_leaves);
 }
 
 TEST(ComposeMaps, JoinsChains) {

@@ -46,9 +46,10 @@ void add_compose_command(CLI::App& app, const TakePlan& take) {
   compose->add_option("BC", arguments->second, "Asset of the map from b to c")->required();
   compose->add_flag("--any-models", arguments->any_models,
                     "Join maps even if the model that AB leads to is not the one that BC starts from");
-  add_derived_map_options(*compose, arguments->options,
-                          "Largest difference between the joined map and the two, mesh units or % of a's "
-                          "bounding-box diagonal (default: the larger one of AB and BC)");
+  add_derived_map_options(
+      *compose, arguments->options,
+      "Largest difference between the joined map and the two, mesh units or % of a's "
+      "bounding-box diagonal (default: the larger one of AB and BC, within 4.6 M voxels)");
   compose->footer(
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"

@@ -9,8 +9,11 @@
 namespace bespoke::command {
 
 BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
-  BakeOptions options;
-  options.tolerance = tolerance ? tolerance->in_mesh_units(model.box.diagonal().norm()) : otherwise;
+  BakeOptions options = default_derived_bake(otherwise);
+  if (tolerance) {
+    options.tolerance = tolerance->in_mesh_units(model.box.diagonal().norm());
+    options.max_leaves.reset();  // who names a tolerance wants that one
+  }
   if (half) options.precision = ValuePrecision::half;
   return options;
 }
@@ -34,6 +37,15 @@ void write_derived_map(const DerivedMapOptions& options, const RunContext& conte
                               {"tolerance_met", derived.bake.tolerance_met},
                               {"bijection", whole_certificate(derived.asset).is_bijection()},
                               {"voxels", voxel_count(derived.asset)}};
+  if (!derived.bake.relaxed.empty()) {
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "the bake's largest error %.4g exceeds the tolerance %.4g; it was relaxed in %zu regions to "
+        "keep the file small; --tolerance gives them more voxels",
+        derived.bake.error.max, derived.asset.record.tolerance, derived.bake.relaxed.size());
+    context.warn(text);
+  }
   if (options.run.quiet) return;
   std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());
   std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(derived.asset)).c_str());

@@ -1,5 +1,7 @@
 #include "bespoke/pipeline/derive_map.h"
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +12,7 @@
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/composed_map.h"
 #include "bespoke/pipeline/bake_steps.h"
+#include "bespoke/pipeline/make_map.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -69,10 +72,22 @@ void take_steps(DerivedMap& derived, std::vector<DerivedStep> steps, double tole
   derived.asset.record.bake_error = derived.bake.error;
 }
 
-// Of several steps each is baked to its share, since errors add up.
-BakeOptions share(BakeOptions options, std::size_t steps) {
-  options.tolerance /= static_cast<double>(steps);
-  return options;
+// Of several steps each is baked to its share of the tolerance, since errors add up, and those that need less
+// than their share of the leaves leave it to those after them.
+std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const ElasticMap>>& exact,
+                                      const BakeOptions& options, const Progress& progress) {
+  std::vector<DerivedStep> steps;
+  BakeOptions share = options;
+  share.tolerance /= static_cast<double>(exact.size());
+  std::size_t used = 0;
+  for (const auto& map : exact) {
+    if (options.max_leaves)
+      share.max_leaves =
+          (*options.max_leaves - std::min(*options.max_leaves, used)) / (exact.size() - steps.size());
+    steps.push_back(bake_step(*map, share, progress));
+    used += steps.back().step.pyramid.leaf_count();
+  }
+  return steps;
 }
 
 // The error of a chain is that of the whole, not of its first step.
@@ -80,6 +95,13 @@ void take_measured_error(DerivedMap& derived) {
   if (derived.asset.steps.size() == 1) return;
   derived.bake.error = derived.asset.record.bake_error = derived.deviation;
   derived.bake.tolerance_met = derived.deviation.max <= derived.asset.record.tolerance;
+}
+
+// Of the maps that this one is made of, and how it was baked.
+std::string recorded_options(Json json, const BakeOptions& options) {
+  json["tolerance"] = options.tolerance;
+  if (options.max_leaves) json["max_voxels"] = *options.max_leaves * leaf_nodes;
+  return json.dump();
 }
 
 void record_stages(DerivedMap& derived, const char* name) {
@@ -90,6 +112,13 @@ void record_stages(DerivedMap& derived, const char* name) {
 }
 
 }  // namespace
+
+BakeOptions default_derived_bake(double tolerance) {
+  BakeOptions options;
+  options.tolerance = tolerance;
+  options.max_leaves = default_max_leaves;
+  return options;
+}
 
 DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const Progress& progress) {
   const Certificate certificate = whole_certificate(b_from_a);
@@ -106,14 +135,13 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
   std::swap(asset.record.source, asset.record.target);
   asset.record.elastic_method = "inverse of " + b_from_a.record.elastic_method;
   asset.record.options_json =
-      Json({{"inverse_of", Json::parse(b_from_a.record.options_json)}, {"tolerance", options.tolerance}})
-          .dump();
+      recorded_options({{"inverse_of", Json::parse(b_from_a.record.options_json)}}, options);
   // E⁻¹ is the steps' inverses, the last one first.
-  std::vector<DerivedStep> steps;
+  std::vector<std::shared_ptr<const ElasticMap>> inverses;
   for (auto step = forth.elastic().steps().rbegin(); step != forth.elastic().steps().rend(); ++step)
-    steps.push_back(bake_step(InverseMap(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source),
-                              share(options, b_from_a.steps.size()), progress));
-  take_steps(derived, std::move(steps), options.tolerance);
+    inverses.push_back(
+        std::make_shared<InverseMap>(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source));
+  take_steps(derived, bake_in_turn(inverses, options, progress), options.tolerance);
   const WholeMap back(asset);
   for (AnchorRecord& anchor : asset.record.anchors) {
     std::swap(anchor.a, anchor.b);
@@ -129,8 +157,8 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
 
 namespace {
 
-// Both as one step; empty where that would fold, or cost more than it saves: more voxels than both, or too
-// much memory.
+// Both as one step; empty where that would fold, or cost more than it saves: more voxels than both, too much
+// memory, or regions in which the tolerance is given up.
 std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, const BakeOptions& options,
                                        const Progress& progress) {
   const WholeMap b_from_a(first), c_from_b(second);
@@ -142,7 +170,8 @@ std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, 
     constexpr std::size_t worth = 2;
     const bool folds = !merged.step.certificate.is_bijection() && whole_certificate(first).is_bijection() &&
                        whole_certificate(second).is_bijection();
-    if (!folds && merged.step.pyramid.voxel_count() <= worth * (voxel_count(first) + voxel_count(second)))
+    if (!folds && merged.bake.relaxed.empty() &&
+        merged.step.pyramid.voxel_count() <= worth * (voxel_count(first) + voxel_count(second)))
       return merged;
   } catch (const MemoryLimitError&) {
     // As two steps it may fit.
@@ -158,9 +187,10 @@ std::vector<DerivedStep> joined_steps(const Asset& first, const Asset& second, c
   steps.front().bake.error = first.record.bake_error;
   const BakedMap at_rest({}, {});
   const ElasticChain then = baked_chain(second.steps);
+  std::vector<std::shared_ptr<const ElasticMap>> moved;
   for (const auto& step : then.steps())
-    steps.push_back(bake_step(ComposedMap(at_rest, first.target_from_source, *step),
-                              share(options, second.steps.size()), progress));
+    moved.push_back(std::make_shared<ComposedMap>(at_rest, first.target_from_source, *step));
+  for (DerivedStep& step : bake_in_turn(moved, options, progress)) steps.push_back(std::move(step));
   return steps;
 }
 
@@ -197,10 +227,9 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
   asset.record.surface_fit_method =
       c_from_b.record.surface_fit_method + " after " + b_from_a.record.surface_fit_method;
   asset.record.anchors.clear();  // pairs of a and b, or of b and c: none of them joins a and c
-  asset.record.options_json = Json({{"first", Json::parse(b_from_a.record.options_json)},
-                                    {"second", Json::parse(c_from_b.record.options_json)},
-                                    {"tolerance", options.tolerance}})
-                                  .dump();
+  asset.record.options_json = recorded_options({{"first", Json::parse(b_from_a.record.options_json)},
+                                                {"second", Json::parse(c_from_b.record.options_json)}},
+                                               options);
   take_steps(derived, composed_steps(b_from_a, c_from_b, options, progress), options.tolerance);
   if (asset.steps.size() > 1) asset.path = RotationPath::flow;
   const Points x = band_points(asset.steps.front().pyramid);

@@ -14,8 +14,12 @@ struct DerivedMap {
   Statistics deviation;
 };
 
-/// b→a of an asset a→b. Throws InvalidInput unless the asset's certificate says that its map is a bijection;
-/// MemoryLimitError, Interrupted.
+/// How a derived map is baked where its user names no tolerance: to `tolerance` (mesh units), but with no
+/// more leaves than a fitted map has by default.
+BakeOptions default_derived_bake(double tolerance);
+
+/// b→a of an asset a→b. BakeOptions::max_leaves is for all steps together. Throws InvalidInput unless the
+/// asset's certificate says that its map is a bijection; MemoryLimitError, Interrupted.
 DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const Progress& progress = {});
 
 enum class MeetingModels {
@@ -23,7 +27,8 @@ enum class MeetingModels {
   may_differ,
 };
 
-/// a→c of a→b and b→c. Throws InvalidInput when the target of the first is not the source of the second.
+/// a→c of a→b and b→c. BakeOptions::max_leaves is for what is baked anew. Throws InvalidInput when the target
+/// of the first is not the source of the second.
 DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const BakeOptions& options,
                         MeetingModels meeting, const Progress& progress = {});
 

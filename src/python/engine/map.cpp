@@ -80,8 +80,11 @@ std::string check(const LoadedAsset& map, double t, const py::object& callback) 
 
 BakeOptions bake_options(const std::optional<Length>& tolerance, double otherwise, double diagonal,
                          bool half) {
-  BakeOptions options;
-  options.tolerance = tolerance ? tolerance->in_mesh_units(diagonal) : otherwise;
+  BakeOptions options = default_derived_bake(otherwise);
+  if (tolerance) {
+    options.tolerance = tolerance->in_mesh_units(diagonal);
+    options.max_leaves.reset();  // who names a tolerance wants that one
+  }
   if (half) options.precision = ValuePrecision::half;
   return options;
 }
