@@ -27,6 +27,21 @@ void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
   add_run_options(app, options.run);
 }
 
+namespace {
+
+void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& derived) {
+  const BakeSummary& bake = derived.bake;
+  if (bake.tolerance_met) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
+                bake.error.max, derived.asset.record.tolerance);
+  const std::string relaxed = "it was relaxed in " + std::to_string(bake.relaxed.size()) +
+                              " regions, to keep to 4.6 M voxels; --tolerance gives them more";
+  context.warn(text + (bake.relaxed.empty() ? "a smaller --tolerance allows finer voxels" : relaxed));
+}
+
+}  // namespace
+
 void write_derived_map(const DerivedMapOptions& options, const RunContext& context, const DerivedMap& derived,
                        const char* deviation) {
   OutputFiles outputs;
@@ -37,15 +52,7 @@ void write_derived_map(const DerivedMapOptions& options, const RunContext& conte
                               {"tolerance_met", derived.bake.tolerance_met},
                               {"bijection", whole_certificate(derived.asset).is_bijection()},
                               {"voxels", voxel_count(derived.asset)}};
-  if (!derived.bake.relaxed.empty()) {
-    char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "the bake's largest error %.4g exceeds the tolerance %.4g; it was relaxed in %zu regions to "
-        "keep the file small; --tolerance gives them more voxels",
-        derived.bake.error.max, derived.asset.record.tolerance, derived.bake.relaxed.size());
-    context.warn(text);
-  }
+  warn_of_missed_tolerance(context, derived);
   if (options.run.quiet) return;
   std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());
   std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(derived.asset)).c_str());
