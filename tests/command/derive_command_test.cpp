@@ -134,6 +134,9 @@ TEST(DerivedMaps, RefuseWhatTheyCannotRead) {
   refused({"invert", map, "-o", map}, 1, "overwritten");
   refused({"compose", map, map, "-o", map}, 1, "overwritten");
   refused({"invert", map, "-o", pair.file("none/x.vdb")}, 4, "none");
+  refused({"invert", map, "-o", pair.file("x.obj")}, 1, "x.obj must end in .vdb");
+  refused({"compose", map, map, "-o", pair.file("x")}, 1, "must end in .vdb");
+  EXPECT_FALSE(pair.has("x.obj"));
   refused({"invert", map}, 1, "--output");
   refused({"compose", map}, 1, "BC");
 }

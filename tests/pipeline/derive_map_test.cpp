@@ -136,10 +136,14 @@ TEST(ComposeMaps, JoinsStepsRatherThanGiveUpTheTolerance) {
   EXPECT_LE(both.deviation.max, tolerance);
 }
 
-TEST(DefaultDerivedBake, HasTheLeavesOfAFittedMap) {
-  const BakeOptions derived = default_derived_bake(0.5);
-  EXPECT_EQ(derived.tolerance, 0.5);
-  EXPECT_EQ(derived.max_leaves, default_options(1).bake.max_leaves);
+TEST(DerivedBake, HasTheLeavesOfAFittedMapUnlessAToleranceIsNamed) {
+  const BakeOptions unnamed = derived_bake({}, 20, 0.5, ValuePrecision::half);
+  EXPECT_EQ(unnamed.tolerance, 0.5);
+  EXPECT_EQ(unnamed.max_leaves, default_options(1).bake.max_leaves);
+  EXPECT_EQ(unnamed.precision, ValuePrecision::half);
+  const BakeOptions named = derived_bake(Length{1, true}, 20, 0.5, ValuePrecision::single);
+  EXPECT_DOUBLE_EQ(named.tolerance, 0.2);
+  EXPECT_FALSE(named.max_leaves);
 }
 
 TEST(ComposeMaps, JoinsChains) {

@@ -5,6 +5,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
+#include "output_files.h"
 
 namespace bespoke::command {
 namespace {
@@ -27,6 +28,7 @@ std::vector<JobFile> outputs(const ComposeArguments& arguments) {
 void run(const ComposeArguments& arguments, const RunContext& context) {
   const DerivedMapOptions& options = arguments.options;
   require_safe_outputs(inputs(arguments), outputs(arguments));
+  require_map_ending(options.output);
   const Asset first = read_asset(arguments.first, {.untrusted = options.untrusted});
   const Asset second = read_asset(arguments.second, {.untrusted = options.untrusted});
   const BakeOptions bake =

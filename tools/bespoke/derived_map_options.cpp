@@ -8,25 +8,6 @@
 
 namespace bespoke::command {
 
-BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
-  BakeOptions options = default_derived_bake(otherwise);
-  if (tolerance) {
-    options.tolerance = tolerance->in_mesh_units(model.box.diagonal().norm());
-    options.max_leaves.reset();  // who names a tolerance wants that one
-  }
-  if (half) options.precision = ValuePrecision::half;
-  return options;
-}
-
-void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
-                             const std::string& tolerance_description) {
-  app.add_option("-o,--output", options.output, "Asset to write")->required()->type_name("MAP.vdb");
-  add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
-  app.add_flag("--half", options.half, half_help);
-  app.add_flag("--untrusted", options.untrusted, "Check what is read in a child process under limits first");
-  add_run_options(app, options.run);
-}
-
 namespace {
 
 void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& derived) {
@@ -41,6 +22,20 @@ void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& deriv
 }
 
 }  // namespace
+
+BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
+  return derived_bake(tolerance, model.box.diagonal().norm(), otherwise,
+                      half ? ValuePrecision::half : ValuePrecision::single);
+}
+
+void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
+                             const std::string& tolerance_description) {
+  app.add_option("-o,--output", options.output, "Asset to write")->required()->type_name("MAP.vdb");
+  add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
+  app.add_flag("--half", options.half, half_help);
+  app.add_flag("--untrusted", options.untrusted, "Check what is read in a child process under limits first");
+  add_run_options(app, options.run);
+}
 
 void write_derived_map(const DerivedMapOptions& options, const RunContext& context, const DerivedMap& derived,
                        const char* deviation) {

@@ -188,6 +188,7 @@ void write_pages(const HtmlPages& pages, const FitArguments& arguments, const Ma
 
 void run(const FitArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
+  require_map_ending(arguments.output);
   const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;

@@ -4,6 +4,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
+#include "output_files.h"
 
 namespace bespoke::command {
 namespace {
@@ -22,6 +23,7 @@ std::vector<JobFile> outputs(const InvertArguments& arguments) {
 void run(const InvertArguments& arguments, const RunContext& context) {
   const DerivedMapOptions& options = arguments.options;
   require_safe_outputs(inputs(arguments), outputs(arguments));
+  require_map_ending(options.output);
   const Asset asset = read_asset(arguments.map, {.untrusted = options.untrusted});
   const BakeOptions bake = options.bake(asset.record.target, asset.record.tolerance);
   write_derived_map(options, context, invert_map(asset, bake, context.progress), "round trip");

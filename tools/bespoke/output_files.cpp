@@ -52,6 +52,10 @@ void require_mesh_ending(const std::string& option, const fs::path& path) {
     throw CLI::ValidationError(option, path.string() + " must end in " + written_product_endings());
 }
 
+void require_map_ending(const fs::path& path) {
+  if (path.extension() != ".vdb") throw CLI::ValidationError("--output", path.string() + " must end in .vdb");
+}
+
 OutputFiles::~OutputFiles() {
   for (const fs::path& path : written_) remove_written(path);
 }

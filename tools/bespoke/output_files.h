@@ -15,6 +15,10 @@ void require_safe_outputs(const std::vector<std::filesystem::path>& inputs,
 /// Refuses an ending that is not that of a format which faces are written in. Throws CLI::ValidationError.
 void require_mesh_ending(const std::string& option, const std::filesystem::path& path);
 
+/// Refuses an ending other than that of an asset, .vdb, by which other programs know it. Throws
+/// CLI::ValidationError.
+void require_map_ending(const std::filesystem::path& path);
+
 /// The files that one run writes: all of them, or none.
 class OutputFiles {
  public:

@@ -113,10 +113,13 @@ void record_stages(DerivedMap& derived, const char* name) {
 
 }  // namespace
 
-BakeOptions default_derived_bake(double tolerance) {
+BakeOptions derived_bake(const std::optional<Length>& tolerance, double diagonal, double otherwise,
+                         ValuePrecision precision) {
   BakeOptions options;
-  options.tolerance = tolerance;
-  options.max_leaves = default_max_leaves;
+  options.tolerance = tolerance ? tolerance->in_mesh_units(diagonal) : otherwise;
+  // Who names a tolerance wants that one.
+  if (!tolerance) options.max_leaves = default_max_leaves;
+  options.precision = precision;
   return options;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "bespoke/asset/asset.h"
 #include "bespoke/bake/bake.h"
+#include "bespoke/length.h"
 
 namespace bespoke {
 
@@ -14,9 +17,10 @@ struct DerivedMap {
   Statistics deviation;
 };
 
-/// How a derived map is baked where its user names no tolerance: to `tolerance` (mesh units), but with no
-/// more leaves than a fitted map has by default.
-BakeOptions default_derived_bake(double tolerance);
+/// How a derived map is baked: to the tolerance that its user names, a share of `diagonal` or mesh units;
+/// where none is named to `otherwise` (mesh units), and with no more leaves than a fitted map has by default.
+BakeOptions derived_bake(const std::optional<Length>& tolerance, double diagonal, double otherwise,
+                         ValuePrecision precision);
 
 /// b→a of an asset a→b. BakeOptions::max_leaves is for all steps together. Throws InvalidInput unless the
 /// asset's certificate says that its map is a bijection; MemoryLimitError, Interrupted.

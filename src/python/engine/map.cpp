@@ -78,22 +78,14 @@ std::string check(const LoadedAsset& map, double t, const py::object& callback) 
   });
 }
 
-BakeOptions bake_options(const std::optional<Length>& tolerance, double otherwise, double diagonal,
-                         bool half) {
-  BakeOptions options = default_derived_bake(otherwise);
-  if (tolerance) {
-    options.tolerance = tolerance->in_mesh_units(diagonal);
-    options.max_leaves.reset();  // who names a tolerance wants that one
-  }
-  if (half) options.precision = ValuePrecision::half;
-  return options;
-}
+ValuePrecision precision(bool half) { return half ? ValuePrecision::half : ValuePrecision::single; }
 
 std::shared_ptr<LoadedAsset> inverted(const LoadedAsset& map, const py::object& tolerance, bool half,
                                       const py::object& callback) {
   const AssetRecord& record = map.asset().record;
-  const BakeOptions options = bake_options(to_length(tolerance, "tolerance"), record.tolerance,
-                                           record.target.box.diagonal().norm(), half);
+  const BakeOptions options =
+      derived_bake(to_length(tolerance, "tolerance"), record.target.box.diagonal().norm(), record.tolerance,
+                   precision(half));
   return released(callback, [&](const Progress& progress) {
     return std::make_shared<LoadedAsset>(invert_map(map.asset(), options, progress).asset);
   });
@@ -103,9 +95,8 @@ std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsse
                                       const py::object& tolerance, bool half, bool any_models,
                                       const py::object& callback) {
   const AssetRecord &a = first.asset().record, &b = second.asset().record;
-  const BakeOptions options =
-      bake_options(to_length(tolerance, "tolerance"), std::max(a.tolerance, b.tolerance),
-                   a.source.box.diagonal().norm(), half);
+  const BakeOptions options = derived_bake(to_length(tolerance, "tolerance"), a.source.box.diagonal().norm(),
+                                           std::max(a.tolerance, b.tolerance), precision(half));
   const MeetingModels meeting = any_models ? MeetingModels::may_differ : MeetingModels::must_be_the_same;
   return released(callback, [&](const Progress& progress) {
     return std::make_shared<LoadedAsset>(

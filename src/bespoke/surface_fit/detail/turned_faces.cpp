@@ -179,6 +179,7 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
 /// Of the free vertices, those of patches that are bent no farther from their shape as mended than as drawn.
 /// A patch is connected along edges, and its faces are those with a corner in it.
 std::vector<int> no_farther_bent(const DrawnSurface& surface, const Points& mended, std::vector<int> free) {
+  if (free.empty()) return free;
   constexpr int none = -1;
   constexpr double rounding = 1e-9;  // squared radians
   const Faces& faces = surface.before.faces;
