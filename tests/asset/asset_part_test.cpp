@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "asset/small_asset.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/asset/detail/trailer.h"
@@ -94,6 +96,20 @@ TEST_F(AssetParts, OfHalfPrecisionHaveTheBitsOfTheWhole) {
   asset.steps.front().pyramid.precision = ValuePrecision::half;
   write(asset);
   expect_bits_of_the_whole(3);
+}
+
+TEST_F(AssetParts, HaveLeavesOfOneValue) {
+  Asset asset = wide_asset(1);
+  // One leaf in three, and every one of a block of the lattice.
+  PyramidLevel& level = asset.steps.front().pyramid.levels.front();
+  for (std::size_t leaf = 0; leaf < level.leaves.size(); ++leaf) {
+    const LeafCoordinates& place = level.leaves[leaf];
+    if (leaf % 3 == 0 || *std::min_element(place.begin(), place.end()) >= 0)
+      std::fill_n(level.values.begin() + static_cast<std::ptrdiff_t>(leaf * leaf_floats), leaf_floats,
+                  leaf % 2 == 0 ? 0.0f : 0.0078125f);
+  }
+  write(asset);
+  expect_bits_of_the_whole(4);
 }
 
 TEST_F(AssetParts, OfAffineStepsNeedNoLevels) {

@@ -91,8 +91,11 @@ struct VdbPart::Archive : public openvdb::io::Archive {
     grid->readTopology(stream);
     StoredGridPart part;
     part.all_leaves = leaves_of(*grid);
-    // Whole leaves, so OpenVDB has none to cut.
+    if (grid->tree().activeTileCount() > 0)
+      throw FormatError("grid " + descriptor.gridName() + ": has active tiles");
+    // Whole leaves, so OpenVDB has none to cut. But it turns those of one value into tiles.
     grid->readBuffers(stream, nodes_of(leaves));
+    grid->tree().voxelizeActiveTiles(/*threaded=*/false);
     part.grid = from_vdb(*grid);
     return part;
   }
