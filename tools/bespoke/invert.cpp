@@ -33,7 +33,8 @@ void run(const InvertArguments& arguments, const RunContext& context) {
 
 void add_invert_command(CLI::App& app, const TakePlan& take) {
   auto arguments = std::make_shared<InvertArguments>();
-  CLI::App* invert = app.add_subcommand("invert", "Make the map from the target back to the source");
+  CLI::App* invert = app.add_subcommand(
+      "invert", "Make the map from the target back to the source (apply --inverse goes back without one)");
   invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
   add_derived_map_options(*invert, arguments->options,
                           "Largest difference between the baked and the exact inverse, mesh units or % of "
