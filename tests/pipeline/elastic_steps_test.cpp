@@ -9,14 +9,18 @@
 #include <string>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/error.h"
+#include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/fit_elastic_map.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/rigid/affine_alignment.h"
 #include "bespoke/statistics.h"
 #include "flow/bent_tube.h"
 #include "support/arithmetic.h"
 #include "support/error_message.h"
 #include "support/random_points.h"
+#include "support/shapes.h"
 
 namespace bespoke {
 namespace {
@@ -59,6 +63,34 @@ TEST(ElasticSteps, MeetTheFittedSourceWhereALimbTurns) {
     EXPECT_LT((linear * linear.transpose() - scale * scale * Matrix3::Identity()).norm(), 1e-9)
         << "the affine part of a step is a similarity";
   }
+}
+
+/// A box about a centre.
+TriangleMesh bar(const Vector3& size, const Vector3& center) {
+  AffineMap map;
+  map.linear = size.asDiagonal();
+  map.offset = center - size / 2;
+  return shapes::moved(shapes::cube(), map);
+}
+
+// Of a body that bends the least-squares affine map may mirror what every part of it only turns.
+TEST(ElasticSteps, DoNotTakeTurnedPartsForAMirrorImage) {
+  const TriangleMesh along_y = bar({1, 12, 1}, {-2, 0, 0});
+  const TriangleMesh others = shapes::joined(bar({12, 1, 1}, {0, 0, 2}), bar({1, 1, 12}, {2, 0, 0}));
+  const TriangleMesh source = shapes::joined(along_y, others);
+  Points fitted = source.vertices;
+  fitted.block(1, 0, 2, along_y.vertices.cols()) *= -1;  // half a turn
+  const ElasticPairs pairs = elastic_pairs(source, fitted);
+  ASSERT_LT(align_affinely(pairs.sources, pairs.targets, FlatDirections::of_squared_width_1e_12)
+                .linear.determinant(),
+            0);
+  EXPECT_EQ(plan_steps(source, fitted, pairs, 4).steps(), 4u);
+
+  fitted = source.vertices;
+  fitted.row(1) *= -1;
+  EXPECT_THAT(test::error_message<InvalidInput>(
+                  [&] { plan_steps(source, fitted, elastic_pairs(source, fitted), 4); }),
+              HasSubstr("mirror it back first"));
 }
 
 TEST(ElasticSteps, FollowTheOptionRatherThanTheTurn) {

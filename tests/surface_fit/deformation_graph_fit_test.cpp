@@ -129,6 +129,7 @@ TEST(FitSurfaceDeformationGraph, ALimbBeyondTheReachOfClosestPointsGoesWhereItsA
   const SurfaceFitSummary far = fit_bent_tube(70, 0.2);
   EXPECT_TRUE(far.posed_by_anchors);
   EXPECT_EQ(far.rigidity, 1);
+  EXPECT_TRUE(fit_bent_tube(150, 1).posed_by_anchors) << "however much the limb is stretched as well";
 }
 
 TEST(FitSurfaceDeformationGraph, AccuraciesOfZeroChangeNoBit) {

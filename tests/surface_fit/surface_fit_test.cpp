@@ -1,11 +1,13 @@
 #include "bespoke/surface_fit/surface_fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "bespoke/error.h"
 #include "bespoke/surface_fit/surface_fit_methods.h"
+#include "support/error_message.h"
 #include "support/fitting_scene.h"
 #include "support/shapes.h"
 
@@ -54,6 +56,18 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
     options.mend_models = false;
     EXPECT_FALSE((Scene{shapes::icosphere(3), inside_out}.fit(options).summary.target_turned_over));
   }
+}
+
+// Anchors that name the same places of either lay one inside out onto the other.
+TEST(FitSurface, RefusesAMirrorImageButNotASheetThatLooksTheOtherWay) {
+  Scene scene{shapes::icosphere(3), shapes::icosphere(3)};
+  scene.warped.row(0) *= -1;
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(); }), ::testing::HasSubstr("mirror image"));
+
+  const TriangleMesh sheet = shapes::square_grid(9);
+  TriangleMesh other_way = sheet;
+  other_way.faces.row(1).swap(other_way.faces.row(2));
+  EXPECT_TRUE((Scene{sheet, other_way}.fit().summary.target_turned_over));
 }
 
 TEST(FitSurface, StopsWhenAsked) {

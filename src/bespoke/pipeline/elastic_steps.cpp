@@ -1,12 +1,11 @@
 #include "bespoke/pipeline/elastic_steps.h"
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <string>
+#include <optional>
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/rigid/affine_alignment.h"
+#include "bespoke/mesh/facing_outward.h"
 
 namespace bespoke {
 namespace {
@@ -71,20 +70,17 @@ class StepFitter {
 };
 
 /// Similarities in between would hide a mirror image, which no path without folds reaches.
-void require_unmirrored(const ElasticPairs& pairs) {
-  const AffineMap whole =
-      align_affinely(pairs.sources, pairs.targets, FlatDirections::of_squared_width_1e_12);
-  const double determinant = whole.linear.determinant();
-  if (determinant < 0)
-    throw InvalidInput("the affine part of the correspondences has determinant " +
-                       std::to_string(determinant) +
-                       ", so one model is a mirror image of the other; mirror it back first");
+void require_unmirrored(const TriangleMesh& source, const Points& fitted) {
+  const std::optional<bool> before = faces_outward(source), after = faces_outward({fitted, source.faces});
+  if (before && after && before != after)
+    throw InvalidInput(
+        "the fitted source is inside out, so one model is a mirror image of the other; mirror it back first");
 }
 
 }  // namespace
 
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps) {
-  require_unmirrored(pairs);
+  require_unmirrored(source, fitted);
   StepPlan plan;
   const std::size_t loose = pairs.anchors_off_surface;
   plan.path = std::make_shared<const SurfacePath>(

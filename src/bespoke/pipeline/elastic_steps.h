@@ -23,7 +23,7 @@ struct StepPlan {
 std::vector<double> equal_times(int steps);
 
 /// Equal steps. pairs: of the source and its fitted vertices, the anchors off the surface at their end.
-/// Throws InvalidInput where these make one a mirror image of the other.
+/// Throws InvalidInput where one surface looks out of what it encloses and the other into it.
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
 
 /// The plan with a step halved.

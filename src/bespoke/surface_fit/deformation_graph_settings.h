@@ -141,9 +141,6 @@ struct PoseSettings {
   /// goes where its anchors say: x 0.846 / 0.982 on bodies in two poses (ShapeSettings), and no flip where
   /// there were 26. Smaller turns are found anyway. Not varied.
   double least_rigid_turn = 15;
-  /// Root mean square misfit of the edges: beyond it anchors contradict each other and bend nothing. Right
-  /// anchors of strong poses 0.07 to 0.15, with two of them swapped 0.21 to 0.91.
-  double most_strain = 0.18;
   NodeSettings node_settings;
 };
 

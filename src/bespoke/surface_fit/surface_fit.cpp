@@ -1,8 +1,10 @@
 #include "bespoke/surface_fit/surface_fit.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/facing_outward.h"
 #include "bespoke/mesh/require_surface.h"
 #include "bespoke/surface_fit/detail/facing.h"
 
@@ -50,6 +52,16 @@ void require_consistent(const SurfaceFitInput& input, const SurfaceFitOptions& o
   if (!(options.epsilon >= 0))
     throw InvalidInput("surface fitting: epsilon is " + std::to_string(options.epsilon) +
                        ", but must be at least 0");
+}
+
+/// Of models that face opposite ways once the anchors have brought them together: that is one file's mistake,
+/// unless both look out of what they enclose.
+void require_unmirrored(const SurfaceFitInput& input) {
+  const std::optional<bool> source = faces_outward(input.source), target = faces_outward(input.target);
+  if (source && source == target)
+    throw InvalidInput(
+        "where the anchors lay the source onto the target, the outside of one lies against the inside of the "
+        "other, so one model is a mirror image of the other; mirror it back first");
 }
 
 }  // namespace
@@ -120,6 +132,7 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
   const auto& entry = entry_of(options.method);
   if (!options.mend_models || !faces_away({input.warped_vertices, input.source.faces}, input.target))
     return entry.fit(input, options, progress);
+  require_unmirrored(input);
   const TriangleMesh target = turned_over(input.target);
   SurfaceFit fit =
       entry.fit({input.source, input.warped_vertices, target, input.anchor_sources, input.anchor_targets,

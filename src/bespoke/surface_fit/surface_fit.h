@@ -131,8 +131,9 @@ struct SurfaceFitInput {
 };
 
 /// A target whose faces look the other way than the source's, as of a file that is inside out, is turned over
-/// first, and the summary says so. Throws InvalidInput for unusable meshes, sizes that differ and patches
-/// that the method does not know, SolverError when the factorisation fails.
+/// first, and the summary says so; where both look out of what they enclose, one is a mirror image of the
+/// other. Throws InvalidInput for that, for unusable meshes, sizes that differ and patches that the method
+/// does not know, SolverError when the factorisation fails.
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress = {});
 

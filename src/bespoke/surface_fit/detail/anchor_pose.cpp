@@ -109,15 +109,6 @@ class PosingByAnchors::Nodes {
     return largest;
   }
 
-  double strain() const {
-    double sum = 0, total = 0;
-    for (const Edge& edge : edges_) {
-      sum += (now(edge) - shapes_[static_cast<std::size_t>(edge.from)] * arm(edge)).squaredNorm();
-      total += arm(edge).squaredNorm();
-    }
-    return std::sqrt(sum / total);
-  }
-
  private:
   Vector3 arm(const Edge& edge) const { return nodes_.rest.col(edge.to) - nodes_.rest.col(edge.from); }
   Vector3 now(const Edge& edge) const { return places_.col(edge.to) - places_.col(edge.from); }
@@ -235,8 +226,6 @@ PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSetting
 PosingByAnchors::~PosingByAnchors() = default;
 
 double PosingByAnchors::rotation_spread() const { return few_ ? few_->rotation_spread() : 0; }
-
-double PosingByAnchors::strain() const { return few_ ? few_->strain() : 0; }
 
 AnchorPose PosingByAnchors::bent() const {
   AnchorPose result{input_.rest.vertices, input_.anchor_sources};

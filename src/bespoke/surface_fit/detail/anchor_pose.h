@@ -37,9 +37,6 @@ class PosingByAnchors {
   /// Largest angle between a node's rotation and the mean one, radians.
   double rotation_spread() const;
 
-  /// Root mean square misfit of the edges between nodes, no unit.
-  double strain() const;
-
   /// As many nodes pose it. Throws SolverError.
   AnchorPose bent() const;
 

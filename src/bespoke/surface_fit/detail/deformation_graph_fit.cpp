@@ -204,9 +204,8 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   const PosingByAnchors posing({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal},
                                settings.pose);
   const double degrees = posing.rotation_spread() * 180 / std::numbers::pi;
-  const bool may_bend = posing.strain() <= settings.pose.most_strain;
   summary.anchor_turn_degrees = degrees;
-  summary.posed_by_anchors = may_bend && are_out_of_reach(scene, anchors, settings);
+  summary.posed_by_anchors = are_out_of_reach(scene, anchors, settings);
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
     return NodeFitting(
         {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
@@ -216,7 +215,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   if (!summary.posed_by_anchors) {
     NodeFitting straight = fitting(scene.surface, anchors);
     const double rigidity = straight.fit_coarse();
-    summary.posed_by_anchors = may_bend && degrees > settings.pose.least_rigid_turn && rigidity > 1;
+    summary.posed_by_anchors = degrees > settings.pose.least_rigid_turn && rigidity > 1;
     if (!summary.posed_by_anchors) return straight.fit_fine();
   }
   const AnchorPose pose = posing.bent();
