@@ -10,6 +10,7 @@
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
 #include "support/analytic_map.h"
+#include "support/shapes.h"
 
 namespace bespoke {
 namespace {
@@ -308,6 +309,29 @@ TEST(Bake, KeepsToItsLeavesAndNamesWhereItMissesTheTolerance) {
       EXPECT_TRUE(std::any_of(limited.summary.relaxed.begin(), limited.summary.relaxed.end(),
                               [&](const RelaxedRegion& region) { return region.box.contains(x.col(i)); }));
     }
+}
+
+// Products lie on the model and around it.
+TEST(Bake, SpendsFewLeavesNearTheSurfaceFirst) {
+  const Vector3 here(-1.5, 0, 0), there(1.5, 0, 0), amplitude(0.1, 0.05, -0.02);
+  const AnalyticMap map({{here, 1.0, amplitude}, {there, 1.0, amplitude}});
+  const auto sphere = [](const Vector3& center) {
+    TriangleMesh mesh = shapes::icosphere(4);
+    mesh.vertices = (0.6 * mesh.vertices).colwise() + center;
+    return mesh;
+  };
+  const TriangleMesh surface = sphere(here);
+  BakeOptions options;
+  options.tolerance = 1e-4;
+  options.error_points = 50000;
+  options.surface = &surface;
+  options.max_leaves = bake(map, options).pyramid.leaf_count() / 2;
+  const BakedMap baked(map.affine(), bake(map, options).pyramid);
+  const auto error = [&](const Vector3& center) {
+    const Points x = sphere(center).vertices;
+    return (baked.displacement(x) - map.displacement(x)).colwise().norm().mean();
+  };
+  EXPECT_LT(error(here), 0.5 * error(there));
 }
 
 // What is kept for folds goes to the tolerance where nothing folds.

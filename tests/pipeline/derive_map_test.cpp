@@ -123,6 +123,21 @@ TEST(InvertMap, KeepsToItsLeavesOverAllStepsAndNamesWhatMissesTheTolerance) {
   EXPECT_TRUE(whole_certificate(back.asset).is_bijection());
 }
 
+// The model is the one that the previews show.
+TEST(InvertMap, SpendsFewLeavesNearTheModelFirst) {
+  Asset forth = chain_asset();
+  const Points x = test::sphere(Vector3::Zero(), 0.8, 3).vertices;
+  BakeOptions limited = options();
+  limited.max_leaves = 60;
+  const auto error = [&] {
+    const DerivedMap back = invert_map(forth, limited);
+    return (whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm().mean();
+  };
+  const double near_the_model = error();
+  forth = with_preview(std::move(forth), test::sphere(Vector3(20, 0, 0), 0.8, 2));
+  EXPECT_LT(near_the_model, 0.9 * error());
+}
+
 TEST(ComposeMaps, JoinsStepsRatherThanGiveUpTheTolerance) {
   const Asset first = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
   const Asset second = asset_of(Vector3(0, 0.1, 0.1), "b", "c");

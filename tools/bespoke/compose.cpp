@@ -51,7 +51,7 @@ void add_compose_command(CLI::App& app, const TakePlan& take) {
   add_derived_map_options(
       *compose, arguments->options,
       "Largest difference between the joined map and the two, mesh units or % of a's "
-      "bounding-box diagonal (default: the larger one of AB and BC, within 4.6 M voxels)");
+      "bounding-box diagonal (default: the larger one of AB and BC, within 4.4 M voxels)");
   compose->footer(
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"

@@ -38,7 +38,7 @@ void add_invert_command(CLI::App& app, const TakePlan& take) {
   invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
   add_derived_map_options(*invert, arguments->options,
                           "Largest difference between the baked and the exact inverse, mesh units or % of "
-                          "the target's bounding-box diagonal (default: that of MAP, within 4.6 M voxels)");
+                          "the target's bounding-box diagonal (default: that of MAP, within 4.4 M voxels)");
   invert->footer(
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"

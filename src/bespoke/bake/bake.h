@@ -18,9 +18,9 @@ struct BakeOptions {
   std::optional<double> voxel_size;  ///< one uniform level of this size (mesh units) instead of the
                                      ///< adaptive pyramid
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
-  /// Leaves that the pyramid may have, where given: the places of the largest errors get them, the others
-  /// miss the tolerance and are named (BakeSummary::relaxed). A tenth is kept for folds first. Few more for
-  /// rims.
+  /// Leaves that the pyramid may have, where given: the places of the largest errors get them, and of these
+  /// the ones near the surface before others; the rest miss the tolerance and are named
+  /// (BakeSummary::relaxed). A tenth is kept for folds first. Few more for rims.
   std::optional<std::size_t> max_leaves;
   /// Random points of the band at which the error is measured; of twice as many the finest cells on the
   /// surface have an equal share, one to 27 each.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/asset/source_surface.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/error.h"
@@ -72,12 +73,22 @@ void take_steps(DerivedMap& derived, std::vector<DerivedStep> steps, double tole
   derived.asset.record.bake_error = derived.bake.error;
 }
 
+// The source as an asset's previews show it, where a map takes it.
+template <class Map>
+TriangleMesh previewed_source(const Asset& asset, const Map& map) {
+  TriangleMesh surface = source_surface(asset);
+  surface.vertices = map(surface.vertices);
+  return surface;
+}
+
 // Of several steps each is baked to its share of the tolerance, since errors add up, and those that need less
-// than their share of the leaves leave it to those after them.
+// than their share of the leaves leave it to those after them. surface: where the model is before the first.
 std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const ElasticMap>>& exact,
-                                      const BakeOptions& options, const Progress& progress) {
+                                      TriangleMesh surface, const BakeOptions& options,
+                                      const Progress& progress) {
   std::vector<DerivedStep> steps;
   BakeOptions share = options;
+  share.surface = &surface;
   share.tolerance /= static_cast<double>(exact.size());
   std::size_t used = 0;
   for (const auto& map : exact) {
@@ -86,6 +97,7 @@ std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const El
           (*options.max_leaves - std::min(*options.max_leaves, used)) / (exact.size() - steps.size());
     steps.push_back(bake_step(*map, share, progress));
     used += steps.back().step.pyramid.leaf_count();
+    surface.vertices = (*map)(surface.vertices);
   }
   return steps;
 }
@@ -144,7 +156,8 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
   for (auto step = forth.elastic().steps().rbegin(); step != forth.elastic().steps().rend(); ++step)
     inverses.push_back(
         std::make_shared<InverseMap>(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source));
-  take_steps(derived, bake_in_turn(inverses, options, progress), options.tolerance);
+  take_steps(derived, bake_in_turn(inverses, previewed_source(b_from_a, forth), options, progress),
+             options.tolerance);
   const WholeMap back(asset);
   for (AnchorRecord& anchor : asset.record.anchors) {
     std::swap(anchor.a, anchor.b);
@@ -167,8 +180,11 @@ std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, 
   const WholeMap b_from_a(first), c_from_b(second);
   const ComposedMap both(*b_from_a.elastic().steps().front(), first.target_from_source,
                          *c_from_b.elastic().steps().front());
+  const TriangleMesh surface = source_surface(first);
+  BakeOptions bake_options = options;
+  bake_options.surface = &surface;
   try {
-    DerivedStep merged = bake_step(both, options, progress);
+    DerivedStep merged = bake_step(both, bake_options, progress);
     // One look-up instead of two, and nearly always fewer voxels; twice as many are no saving.
     constexpr std::size_t worth = 2;
     const bool folds = !merged.step.certificate.is_bijection() && whole_certificate(first).is_bijection() &&
@@ -193,7 +209,9 @@ std::vector<DerivedStep> joined_steps(const Asset& first, const Asset& second, c
   std::vector<std::shared_ptr<const ElasticMap>> moved;
   for (const auto& step : then.steps())
     moved.push_back(std::make_shared<ComposedMap>(at_rest, first.target_from_source, *step));
-  for (DerivedStep& step : bake_in_turn(moved, options, progress)) steps.push_back(std::move(step));
+  const ElasticChain before = baked_chain(first.steps);
+  for (DerivedStep& step : bake_in_turn(moved, previewed_source(first, before), options, progress))
+    steps.push_back(std::move(step));
   return steps;
 }
 

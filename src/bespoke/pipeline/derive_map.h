@@ -23,7 +23,8 @@ BakeOptions derived_bake(const std::optional<Length>& tolerance, double diagonal
                          ValuePrecision precision);
 
 /// b→a of an asset a→b. BakeOptions::max_leaves is for all steps together. Throws InvalidInput unless the
-/// asset's certificate says that its map is a bijection; MemoryLimitError, Interrupted.
+/// asset's certificate says that its map is a bijection, and for assets without previews; MemoryLimitError,
+/// Interrupted.
 DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const Progress& progress = {});
 
 enum class MeetingModels {

@@ -33,7 +33,7 @@ class AdaptiveBake {
         builder_(std::make_unique<PyramidBuilder>(
             map,
             RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves,
-                              options.then},
+                              options.surface, options.then},
             progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
 

@@ -62,32 +62,44 @@ void PyramidBuilder::refine_level(std::size_t level) {
   const std::vector<FailingOctant> failing = octants_.failing_octants(levels_, level, first);
   // Several times as many may be added at rims.
   const bool affordable = refused_.empty() && failing.size() <= leaves_left(Purpose::tolerance) / 8;
-  std::vector<LeafCoordinates> leaves;
-  for (const FailingOctant& octant : failing) {
-    leaves.push_back(octant.leaf);
-    if (!affordable) refused_.push_back({level + 1, octant.leaf, octant.error});
+  if (!affordable) {
+    refuse(level + 1, failing);
+    return;
   }
-  if (!affordable) return;
+  std::vector<LeafCoordinates> leaves;
+  for (const FailingOctant& octant : failing) leaves.push_back(octant.leaf);
   add(level + 1, std::move(leaves));
   close_rims();
 }
 
-// What is left goes to the largest errors, wherever they are: in rounds, of those above half of the largest.
+// Until add_worst_refused finds a leaf for them.
+void PyramidBuilder::refuse(std::size_t level, const std::vector<FailingOctant>& octants) {
+  std::vector<LeafCoordinates> leaves;
+  for (const FailingOctant& octant : octants) leaves.push_back(octant.leaf);
+  if (options_.surface && !nearness_) nearness_ = std::make_shared<const Nearness>(*options_.surface);
+  const std::vector<double> weights =
+      nearness_ ? nearness_->weights(levels_.lattice(level), leaves) : std::vector<double>(leaves.size(), 1);
+  for (std::size_t n = 0; n < octants.size(); ++n)
+    refused_.push_back({level, leaves[n], octants[n].error, weights[n] * octants[n].error});
+}
+
+// What is left goes to the largest errors as they count: in rounds, of those above half of the largest.
 bool PyramidBuilder::add_worst_refused() {
   std::erase_if(refused_,
                 [&](const RefusedOctant& octant) { return levels_.has(octant.level, octant.leaf); });
   const std::size_t left = leaves_left(Purpose::tolerance);
   if (refused_.empty() || left == 0) return false;
   std::sort(refused_.begin(), refused_.end(), [](const RefusedOctant& a, const RefusedOctant& b) {
-    return a.error != b.error ? a.error > b.error : std::tie(a.level, a.leaf) < std::tie(b.level, b.leaf);
+    return a.urgency != b.urgency ? a.urgency > b.urgency
+                                  : std::tie(a.level, a.leaf) < std::tie(b.level, b.leaf);
   });
-  const double least = refused_.front().error / 2;
+  const double least = refused_.front().urgency / 2;
   // Rims as fine as the tolerance would cover all that fails.
   rim_tolerance_ = std::max(least, options_.tolerance);
   for (Looked& looked : looked_) looked.rims_known = false;
   const std::size_t most = std::max<std::size_t>(1, left / 16);
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
-  for (std::size_t n = 0; n < std::min(most, refused_.size()) && refused_[n].error >= least; ++n)
+  for (std::size_t n = 0; n < std::min(most, refused_.size()) && refused_[n].urgency >= least; ++n)
     wanted[refused_[n].level].push_back(refused_[n].leaf);
   for (std::size_t level = 1; level < wanted.size(); ++level) add(level, std::move(wanted[level]));
   close_rims();

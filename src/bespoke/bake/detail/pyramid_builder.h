@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bespoke/bake/detail/memory_budget.h"
+#include "bespoke/bake/detail/nearness.h"
 #include "bespoke/bake/detail/octant_refinement.h"
 #include "bespoke/bake/detail/refinement_options.h"
 #include "bespoke/bake/detail/relaxed_regions.h"
@@ -71,6 +72,7 @@ class PyramidBuilder {
 
   void add(std::size_t level, std::vector<LeafCoordinates> leaves);
   void refine_level(std::size_t level);
+  void refuse(std::size_t level, const std::vector<FailingOctant>& octants);
   bool add_worst_refused();
   std::size_t leaves_left(Purpose purpose) const;
   void close_rims();
@@ -91,7 +93,8 @@ class PyramidBuilder {
   OctantRefinement octants_;
   MemoryBudget budget_;
   std::vector<RefusedOctant> refused_;
-  std::size_t reserve_;  // leaves that only folds may have
+  std::shared_ptr<const Nearness> nearness_;  // once something was refused, where there is a surface
+  std::size_t reserve_;                       // leaves that only folds may have
   std::size_t sampled_points_ = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/elastic_map.h"
+#include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
 
@@ -13,6 +14,7 @@ struct RefinementOptions {
   std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
   ValuePrecision precision = ValuePrecision::single;
   std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
+  const TriangleMesh* surface = nullptr;  ///< BakeOptions::surface
   const ElasticMap* then = nullptr;       ///< BakeOptions::then
 };
 

@@ -12,7 +12,8 @@ namespace bespoke {
 struct RefusedOctant {
   std::size_t level = 0;  ///< of the leaf that it would get
   LeafCoordinates leaf{};
-  double error = 0;  ///< largest that was found in it, mesh units
+  double error = 0;    ///< largest that was found in it, mesh units
+  double urgency = 0;  ///< the error as it counts there (Nearness)
 };
 
 /// Refused octants that lie in neighbouring leaves of the coarsest level, as one region; the worst first.
