@@ -2,8 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "asset/small_asset.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/asset/source_surface.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/make_map.h"
@@ -136,6 +142,19 @@ TEST(InvertMap, SpendsFewLeavesNearTheModelFirst) {
   const double near_the_model = error();
   forth = with_preview(std::move(forth), test::sphere(Vector3(20, 0, 0), 0.8, 2));
   EXPECT_LT(near_the_model, 0.9 * error());
+}
+
+// A file's previews may show anything.
+TEST(DerivedMaps, DoWithoutAModelWhereThePreviewsShowNone) {
+  Asset forth = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  std::vector<StoredGrid> grids = forth.preview->grids();
+  std::fill(grids[1].values.begin(), grids[1].values.end(), 1.0f);
+  forth.preview = std::make_shared<const PreviewGrids>(std::move(grids));
+  ASSERT_EQ(source_surface(forth).faces.cols(), 0);
+  BakeOptions limited = options();
+  limited.max_leaves = 60;
+  EXPECT_TRUE(whole_certificate(invert_map(forth, limited).asset).is_bijection());
+  EXPECT_NO_THROW(compose_maps(forth, forth, limited, MeetingModels::may_differ));
 }
 
 TEST(ComposeMaps, JoinsStepsRatherThanGiveUpTheTolerance) {

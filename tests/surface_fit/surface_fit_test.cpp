@@ -62,7 +62,12 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
 TEST(FitSurface, RefusesAMirrorImageButNotASheetThatLooksTheOtherWay) {
   Scene scene{shapes::icosphere(3), shapes::icosphere(3)};
   scene.warped.row(0) *= -1;
-  EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(); }), ::testing::HasSubstr("mirror image"));
+  for (const bool mend_models : {true, false}) {
+    SurfaceFitOptions options;
+    options.mend_models = mend_models;
+    EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(options); }),
+                ::testing::HasSubstr("mirror image"));
+  }
 
   const TriangleMesh sheet = shapes::square_grid(9);
   TriangleMesh other_way = sheet;

@@ -73,6 +73,11 @@ void take_steps(DerivedMap& derived, std::vector<DerivedStep> steps, double tole
   derived.asset.record.bake_error = derived.bake.error;
 }
 
+// Previews shape nothing that is proved, so one that shows no surface is no reason to refuse.
+const TriangleMesh* usable(const TriangleMesh& surface) {
+  return surface.faces.cols() > 0 && surface.vertices.allFinite() ? &surface : nullptr;
+}
+
 // The source as an asset's previews show it, where a map takes it.
 template <class Map>
 TriangleMesh previewed_source(const Asset& asset, const Map& map) {
@@ -88,7 +93,7 @@ std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const El
                                       const Progress& progress) {
   std::vector<DerivedStep> steps;
   BakeOptions share = options;
-  share.surface = &surface;
+  share.surface = usable(surface);
   share.tolerance /= static_cast<double>(exact.size());
   std::size_t used = 0;
   for (const auto& map : exact) {
@@ -182,7 +187,7 @@ std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, 
                          *c_from_b.elastic().steps().front());
   const TriangleMesh surface = source_surface(first);
   BakeOptions bake_options = options;
-  bake_options.surface = &surface;
+  bake_options.surface = usable(surface);
   try {
     DerivedStep merged = bake_step(both, bake_options, progress);
     // One look-up instead of two, and nearly always fewer voxels; twice as many are no saving.

@@ -130,9 +130,9 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
                        const Progress& progress) {
   require_consistent(input, options);
   const auto& entry = entry_of(options.method);
-  if (!options.mend_models || !faces_away({input.warped_vertices, input.source.faces}, input.target))
-    return entry.fit(input, options, progress);
-  require_unmirrored(input);
+  const bool away = faces_away({input.warped_vertices, input.source.faces}, input.target);
+  if (away) require_unmirrored(input);
+  if (!away || !options.mend_models) return entry.fit(input, options, progress);
   const TriangleMesh target = turned_over(input.target);
   SurfaceFit fit =
       entry.fit({input.source, input.warped_vertices, target, input.anchor_sources, input.anchor_targets,
