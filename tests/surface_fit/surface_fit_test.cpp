@@ -66,7 +66,7 @@ TEST(FitSurface, RefusesAMirrorImageButNotASheetThatLooksTheOtherWay) {
     SurfaceFitOptions options;
     options.mend_models = mend_models;
     EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(options); }),
-                ::testing::HasSubstr("mirror image"));
+                ::testing::HasSubstr("mirror it back first"));
   }
 
   const TriangleMesh sheet = shapes::square_grid(9);

@@ -61,7 +61,8 @@ void require_unmirrored(const SurfaceFitInput& input) {
   if (source && source == target)
     throw InvalidInput(
         "where the anchors lay the source onto the target, the outside of one lies against the inside of the "
-        "other, so one model is a mirror image of the other; mirror it back first");
+        "other, so one model is a mirror image of the other, or the anchors' left and right are exchanged; "
+        "mirror it back first, or name them anew");
 }
 
 }  // namespace
