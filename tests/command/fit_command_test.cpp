@@ -7,7 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/product/mesh_io.h"
 #include "command/fit_command.h"
+#include "support/shapes.h"
 
 namespace bespoke::test {
 namespace {
@@ -360,6 +363,28 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));
   EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
+}
+
+// A ball deep inside its neighbour: no bijection takes two balls there, and the one that is made says how far
+// it stays away.
+TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
+  const TriangleMesh ball = shapes::icosphere(2);
+  const auto two_balls = [&](double apart) {
+    return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), Vector3(apart, 0.1, 0)}));
+  };
+  write_triangle_mesh(pair_.file("source.obj"), two_balls(3));
+  const auto fit_to = [&](double apart) {
+    write_triangle_mesh(pair_.file("target.obj"), two_balls(apart));
+    return bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
+                    pair_.file("target.obj"), "-o", pair_.file("map.vdb"), "--quiet", "--tolerance", "2%"});
+  };
+  const ProgramResult apart = fit_to(2.5), inside = fit_to(0.5);
+  EXPECT_EQ(apart.exit_code, 0) << apart.err;
+  EXPECT_THAT(apart.err, Not(HasSubstr("vertices unmet")));
+  EXPECT_EQ(inside.exit_code, 0) << inside.err;
+  EXPECT_THAT(inside.err, HasSubstr("bespoke: warning: ")) << inside.err;
+  EXPECT_THAT(inside.err, HasSubstr(" vertices unmet: "));
+  EXPECT_THAT(inside.err, HasSubstr("% of the source's diagonal, and products there with them"));
 }
 
 TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -153,6 +154,22 @@ void warn_of_missed_tolerance(const RunContext& context, const FitArguments& arg
   context.warn(text + cause_of_missed_tolerance(arguments, bake));
 }
 
+/// A certified map may still not be the one that was asked for.
+void warn_of_missed_vertices(const RunContext& context, const TriangleMesh& source, const MadeMap& made) {
+  constexpr double visible = 0.01;  // of the source's diagonal
+  const double size = diagonal(source.vertices);
+  std::vector<UnmetVertex> far = made.fit.summary.elastic.unmet;
+  std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * size); });
+  if (far.empty()) return;
+  const auto worst = std::max_element(far.begin(), far.end(), [](const UnmetVertex& a, const UnmetVertex& b) {
+    return a.residual < b.residual;
+  });
+  char text[120];
+  std::snprintf(text, sizeof text, "; they are off by up to %.4g, %.2g %% of the source's diagonal, ",
+                worst->residual, 100 * worst->residual / size);
+  context.warn(to_string(far) + text + "and products there with them");
+}
+
 std::vector<JobFigure> figures(const MadeMap& made) {
   const FitSummary& summary = made.fit.summary;
   return {{"vertex_residual_p95", summary.elastic.vertex_residuals.p95},
@@ -239,6 +256,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (pages) write_pages(*pages, arguments, input, made, context);
 
   context.findings.figures = figures(made);
+  warn_of_missed_vertices(context, source, made);
   warn_of_missed_tolerance(context, arguments, options, made);
   if (quiet) return;
   print_stages(made, anchors);
