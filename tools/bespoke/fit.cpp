@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -6,8 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "bespoke/anchors/anchor_placement.h"
-#include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
@@ -20,6 +17,7 @@
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
+#include "fit_warnings.h"
 #include "html_pages.h"
 #include "length_option.h"
 #include "memory_option.h"
@@ -108,19 +106,6 @@ void print_stages(const MadeMap& made, const Anchors& anchors) {
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
 }
 
-void warn_of_far_anchors(const RunContext& context, const std::string& role, const TriangleMesh& model,
-                         const Points& anchors, const std::string& unit) {
-  const AnchorPlacement placement = anchor_placement(model, anchors);
-  if (placement.is_far())
-    context.warn(role + ": " + to_string(placement) + "; are both in one unit" + (unit.empty() ? "" : ", ") +
-                 unit + "?");
-}
-
-void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
-  const std::string text = to_string(contradicting_anchors(anchors), anchors);
-  if (!text.empty()) context.warn(text);
-}
-
 /// What is wrong with patches shows only on the models; here the file can be named.
 void require_usable_patches(const FitArguments& arguments, const Anchors& anchors, const TriangleMesh& source,
                             const TriangleMesh& target) {
@@ -129,45 +114,6 @@ void require_usable_patches(const FitArguments& arguments, const Anchors& anchor
   } catch (const InvalidInput& error) {
     throw InvalidInput(arguments.anchors + ": " + error.what());
   }
-}
-
-/// Why the bake's error exceeds the tolerance, and what lowers it.
-std::string cause_of_missed_tolerance(const FitArguments& arguments, const BakeSummary& bake) {
-  if (arguments.voxel_size) return "a smaller --voxel-size lowers it";
-  if (bake.repaired_cells > 0)
-    return "mending " + std::to_string(bake.repaired_cells) +
-           " folded cells moved nodes; where the map is that flat, no tolerance is met without folds";
-  if (!bake.relaxed.empty())
-    return "it was relaxed in " + std::to_string(bake.relaxed.size()) +
-           " regions, where the map is too steep for its share of voxels; --strict or --tolerance gives it "
-           "more";
-  return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
-}
-
-void warn_of_missed_tolerance(const RunContext& context, const FitArguments& arguments,
-                              const MakeMapOptions& options, const MadeMap& made) {
-  const BakeSummary& bake = *made.fit.summary.bake;
-  if (bake.tolerance_met) return;
-  char text[120];
-  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
-                bake.error.max, options.bake.tolerance);
-  context.warn(text + cause_of_missed_tolerance(arguments, bake));
-}
-
-/// A certified map may still not be the one that was asked for.
-void warn_of_missed_vertices(const RunContext& context, const TriangleMesh& source, const MadeMap& made) {
-  constexpr double visible = 0.01;  // of the source's diagonal
-  const double size = diagonal(source.vertices);
-  std::vector<UnmetVertex> far = made.fit.summary.elastic.unmet;
-  std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * size); });
-  if (far.empty()) return;
-  const auto worst = std::max_element(far.begin(), far.end(), [](const UnmetVertex& a, const UnmetVertex& b) {
-    return a.residual < b.residual;
-  });
-  char text[120];
-  std::snprintf(text, sizeof text, "; they are off by up to %.4g, %.2g %% of the source's diagonal, ",
-                worst->residual, 100 * worst->residual / size);
-  context.warn(to_string(far) + text + "and products there with them");
 }
 
 std::vector<JobFigure> figures(const MadeMap& made) {
@@ -228,9 +174,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
         ": the fit needs 3 anchor pairs that are not collinear; there are 0; without --anchors "
         "models in similar pose are aligned by their surfaces");
   require_usable_patches(arguments, anchors, source, target);
-  warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
-  warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
-  warn_of_contradictions(context, anchors);
+  warn_of_input(context, source, target, anchors);
   rate_anchors(anchors, arguments, diagonal(source.vertices));
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
@@ -256,8 +200,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (pages) write_pages(*pages, arguments, input, made, context);
 
   context.findings.figures = figures(made);
-  warn_of_missed_vertices(context, source, made);
-  warn_of_missed_tolerance(context, arguments, options, made);
+  warn_of_misses(context, source, options, made);
   if (quiet) return;
   print_stages(made, anchors);
   std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);

@@ -1,0 +1,82 @@
+#include "fit_warnings.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bespoke/anchors/anchor_placement.h"
+#include "bespoke/anchors/contradicting_anchors.h"
+
+namespace bespoke::command {
+namespace {
+
+void warn_of_far_anchors(const RunContext& context, const std::string& role, const TriangleMesh& model,
+                         const Points& anchors, const std::string& unit) {
+  const AnchorPlacement placement = anchor_placement(model, anchors);
+  if (placement.is_far())
+    context.warn(role + ": " + to_string(placement) + "; are both in one unit" + (unit.empty() ? "" : ", ") +
+                 unit + "?");
+}
+
+void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
+  const std::string text = to_string(contradicting_anchors(anchors), anchors);
+  if (!text.empty()) context.warn(text);
+}
+
+/// Why the bake's error exceeds the tolerance, and what lowers it.
+std::string cause_of_missed_tolerance(const BakeOptions& options, const BakeSummary& bake) {
+  if (options.voxel_size) return "a smaller --voxel-size lowers it";
+  if (bake.repaired_cells > 0)
+    return "mending " + std::to_string(bake.repaired_cells) +
+           " folded cells moved nodes; where the map is that flat, no tolerance is met without folds";
+  if (!bake.relaxed.empty())
+    return "it was relaxed in " + std::to_string(bake.relaxed.size()) +
+           " regions, where the map is too steep for its share of voxels; --strict or --tolerance gives it "
+           "more";
+  return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
+}
+
+void warn_of_missed_tolerance(const RunContext& context, const BakeOptions& options,
+                              const BakeSummary& bake) {
+  if (bake.tolerance_met) return;
+  char text[120];
+  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
+                bake.error.max, options.tolerance);
+  context.warn(text + cause_of_missed_tolerance(options, bake));
+}
+
+/// A certified map may still not be the one that was asked for.
+void warn_of_missed_vertices(const RunContext& context, const TriangleMesh& source,
+                             std::vector<UnmetVertex> far) {
+  constexpr double visible = 0.01;  // of the source's diagonal
+  const double size = diagonal(source.vertices);
+  std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * size); });
+  if (far.empty()) return;
+  const auto worst = std::max_element(far.begin(), far.end(), [](const UnmetVertex& a, const UnmetVertex& b) {
+    return a.residual < b.residual;
+  });
+  char text[120];
+  std::snprintf(text, sizeof text, "; they are off by up to %.4g, %.2g %% of the source's diagonal, ",
+                worst->residual, 100 * worst->residual / size);
+  context.warn(to_string(far) + text + "and products there with them");
+}
+
+}  // namespace
+
+void warn_of_input(const RunContext& context, const TriangleMesh& source, const TriangleMesh& target,
+                   const Anchors& anchors) {
+  warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
+  warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
+  warn_of_contradictions(context, anchors);
+}
+
+void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
+                    const MadeMap& made) {
+  const FitSummary& summary = made.fit.summary;
+  warn_of_missed_vertices(context, source, summary.elastic.unmet);
+  warn_of_missed_tolerance(context, options.bake, *summary.bake);
+}
+
+}  // namespace bespoke::command

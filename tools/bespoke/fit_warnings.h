@@ -1,0 +1,19 @@
+#pragma once
+
+#include "bespoke/anchors/anchors.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/pipeline/make_map.h"
+#include "commands.h"
+
+namespace bespoke::command {
+
+/// What is odd about a pair, before the fit: anchors far from their models, anchors that contradict each
+/// other.
+void warn_of_input(const RunContext& context, const TriangleMesh& source, const TriangleMesh& target,
+                   const Anchors& anchors);
+
+/// Where a map is not what was asked for: vertices that it misses, a bake that misses its tolerance.
+void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
+                    const MadeMap& made);
+
+}  // namespace bespoke::command
