@@ -376,7 +376,7 @@ TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
   const auto fit_to = [&](double apart) {
     write_triangle_mesh(pair_.file("target.obj"), two_balls(apart));
     return bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
-                    pair_.file("target.obj"), "-o", pair_.file("map.vdb"), "--quiet", "--tolerance", "2%"});
+                    pair_.file("target.obj"), "-o", pair_.file("map.vdb"), "--quiet", "--voxel-size", "20%"});
   };
   const ProgramResult apart = fit_to(2.5), inside = fit_to(0.5);
   EXPECT_EQ(apart.exit_code, 0) << apart.err;
@@ -385,6 +385,18 @@ TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
   EXPECT_THAT(inside.err, HasSubstr("bespoke: warning: ")) << inside.err;
   EXPECT_THAT(inside.err, HasSubstr(" vertices unmet: "));
   EXPECT_THAT(inside.err, HasSubstr("% of the source's diagonal, and products there with them"));
+}
+
+TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
+  const std::vector<std::string> coarsely = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
+  EXPECT_THAT(pair_.fit("map.vdb", coarsely).err, Not(HasSubstr("half of the source")));
+  TriangleMesh piece = read_triangle_mesh(pair_.file("target.obj"));
+  piece.faces = piece.faces.leftCols(piece.faces.cols() / 10).eval();
+  write_triangle_mesh(pair_.file("target.obj"), piece);
+  const ProgramResult fit = pair_.fit("map.vdb", coarsely);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("bespoke: warning: half of the source was laid "));
+  EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it, and are the anchors its own?"));
 }
 
 TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {

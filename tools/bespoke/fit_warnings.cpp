@@ -47,20 +47,31 @@ void warn_of_missed_tolerance(const RunContext& context, const BakeOptions& opti
   context.warn(text + cause_of_missed_tolerance(options, bake));
 }
 
+constexpr double visible = 0.01;  // of the source's diagonal
+
+/// "0.2, 1.5 % of the source's diagonal".
+std::string visible_length(double length, double diagonal) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.4g, %.2g %% of the source's diagonal", length, 100 * length / diagonal);
+  return text;
+}
+
+/// A target of another kind, or elsewhere than its anchors, still gets some map.
+void warn_of_uncovered_source(const RunContext& context, double diagonal, const SurfaceFitSummary& fit) {
+  if (!(fit.after.median > visible * diagonal)) return;
+  context.warn("half of the source was laid " + visible_length(fit.after.median, diagonal) +
+               ", or more from the target; is it the right target, all of it, and are the anchors its own?");
+}
+
 /// A certified map may still not be the one that was asked for.
-void warn_of_missed_vertices(const RunContext& context, const TriangleMesh& source,
-                             std::vector<UnmetVertex> far) {
-  constexpr double visible = 0.01;  // of the source's diagonal
-  const double size = diagonal(source.vertices);
-  std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * size); });
+void warn_of_missed_vertices(const RunContext& context, double diagonal, std::vector<UnmetVertex> far) {
+  std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * diagonal); });
   if (far.empty()) return;
   const auto worst = std::max_element(far.begin(), far.end(), [](const UnmetVertex& a, const UnmetVertex& b) {
     return a.residual < b.residual;
   });
-  char text[120];
-  std::snprintf(text, sizeof text, "; they are off by up to %.4g, %.2g %% of the source's diagonal, ",
-                worst->residual, 100 * worst->residual / size);
-  context.warn(to_string(far) + text + "and products there with them");
+  context.warn(to_string(far) + "; they are off by up to " + visible_length(worst->residual, diagonal) +
+               ", and products there with them");
 }
 
 }  // namespace
@@ -75,7 +86,9 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
 void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
                     const MadeMap& made) {
   const FitSummary& summary = made.fit.summary;
-  warn_of_missed_vertices(context, source, summary.elastic.unmet);
+  const double size = diagonal(source.vertices);
+  if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
+  warn_of_missed_vertices(context, size, summary.elastic.unmet);
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
 }
 

@@ -12,7 +12,8 @@ namespace bespoke::command {
 void warn_of_input(const RunContext& context, const TriangleMesh& source, const TriangleMesh& target,
                    const Anchors& anchors);
 
-/// Where a map is not what was asked for: vertices that it misses, a bake that misses its tolerance.
+/// Where a map is not what was asked for: a source that is not on the target, vertices that the map misses, a
+/// bake that misses its tolerance.
 void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
                     const MadeMap& made);
 
