@@ -1,6 +1,7 @@
 #include "bespoke/surface_fit/detail/plane_pairs.h"
 
 #include "bespoke/parallel.h"
+#include "bespoke/surface_fit/detail/crease.h"
 #include "bespoke/surface_fit/detail/reciprocity.h"
 
 namespace bespoke {
@@ -13,7 +14,8 @@ struct Search {
   const Eigen::VectorXd& areas;
   const Eigen::VectorXd& source_areas;
   MatchLimits limits;
-  const ReciprocitySettings* reciprocity;  // null: pairs do not fade
+  const ReciprocitySettings& reciprocity;
+  bool fade;
   std::size_t samples;
   double share;
 };
@@ -35,11 +37,11 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
       if (!match) continue;
       found[k] = make_pair(i, *match);
       found[k].normal = match->halfway;
-      const double fading = search.reciprocity ? reciprocity({points.col(i), *match, limits}, search.asking,
-                                                             *search.reciprocity)
-                                               : 1;
-      found[k].weight =
-          search.share * search.areas[i] * double(stride) * match->agreement * match->agreement * fading;
+      const FoundPair pair{points.col(i), *match, limits};
+      const double fading = reciprocity(pair, search.asking, search.reciprocity);
+      found[k].crease = fading * crease(pair, search.asking);
+      found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement *
+                        match->agreement * (search.fade ? fading : 1);
     }
   });
   for (const PlanePair& pair : found)
@@ -50,21 +52,20 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
 
 std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const NodeLevel& level,
                                         const NodeFitSettings& settings) {
-  const ReciprocitySettings* reciprocity = level.reciprocity ? &settings.reciprocity : nullptr;
   const MatchLimits limits{settings.min_cosine, settings.max_distance * surfaces.diagonal,
                            settings.normal_length * surfaces.diagonal};
   std::vector<PlanePair> pairs;
   append_pairs(
-      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits, reciprocity,
-       level.samples, 1},
+      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
+       settings.reciprocity, level.reciprocity, level.samples, 1},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
       pairs);
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
-      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits, reciprocity,
-       level.back_samples, settings.back_share},
+      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
+       settings.reciprocity, level.reciprocity, level.back_samples, settings.back_share},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);
