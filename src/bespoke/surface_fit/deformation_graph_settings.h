@@ -204,9 +204,11 @@ struct NodeFitSettings {
   double outlier_medians =
       4;  ///< median distances: there a pair's weight falls to one half. Not varied on its own.
   double outlier_floor = 1e-4;  ///< diagonals, added: where half of the pairs meet exactly. Not varied.
-  /// Of ℓ, added to that distance in a sharp crease, which must unfold (crease.h). Without: armpits under
-  /// arms that are raised and crooks of curled fingers stay notched, x 1.03 / 1.05 on the shared cases and 22
-  /// further pairs, x 1.17 / 1.25 on the notched ones.
+  /// Of ℓ, added to that distance in a sharp crease (crease.h), which must unfold; less where another place
+  /// is much nearer to the counterpart (ReciprocitySettings). 0: x 1.018 / 1.036 on the shared cases and 22
+  /// further pairs, x 1.11 / 1.22 on three whose armpits stay notched. 0.6, 1.6: shared cases x 1.003 / 1.003
+  /// and 0.997 / 0.996. At every pair, creased or not, 0.2: x 0.994 / 0.998 on the shared cases, but d01
+  /// x 1.10.
   double crease_reach = 1;
   /// Weight of all exact anchors together after the first iteration of a level, times the iteration's number;
   /// the surface's weight is 1. Growing, so that anchors lead and do not dent. Not varied on its own.

@@ -15,7 +15,8 @@ struct PlanePair {
   Vector3 normal;     ///< unit, halfway between both surfaces' (symmetric point to plane)
   double weight = 0;  ///< mesh units squared: the area that the pair speaks for, times the squared agreement
                       ///< of the normals, times its direction's share
-  double crease = 0;  ///< 0 to 1: how sharply the surface that asks is creased there (crease.h)
+  double crease = 0;  ///< 0 to 1: how sharply the asking surface is creased there (crease.h), times the
+                      ///< pair's reciprocity (reciprocity.h)
 };
 
 /// Where pairs are looked for.
