@@ -31,7 +31,8 @@ double crease_of(double alpha, double height) {
   const TargetSurface answering(
       shapes::moved(shapes::square_grid(4), {2 * Matrix3::Identity(), Vector3(-1, -1, height)}));
   const SurfaceMatch match = *answering.match(Vector3::Zero(), outside, anywhere);
-  return crease({Vector3::Zero(), match, anywhere}, asking);
+  const FoundPair pair{Vector3::Zero(), match, anywhere};
+  return crease(pair, claimed_share(pair, asking, 1, {}));
 }
 
 TEST(Crease, IsTheFourthPowerOfTheCosineOfHalfAWedge) {

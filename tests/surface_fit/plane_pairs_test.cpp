@@ -60,6 +60,35 @@ TEST(PlanePairs, AreNoneWhereNothingIsNear) {
   EXPECT_TRUE(pairs_between(sphere, shapes::moved(sphere, {Matrix3::Identity(), Vector3(9, 0, 0)})).empty());
 }
 
+/// A valley along y with the bottom at x = 0.5, z = 0 and walls at right angles.
+TriangleMesh valley() {
+  TriangleMesh mesh = shapes::square_grid(10);
+  for (auto&& x : mesh.vertices.colwise()) x.z() = std::abs(x.x() - 0.5);
+  return mesh;
+}
+
+/// The largest crease of pairs between a valley and the plate over it, either way; `more` lies in the valley.
+double largest_crease(bool valley_is_source, const TriangleMesh& more = {}) {
+  const TriangleMesh plate =
+      shapes::moved(shapes::square_grid(10), {Matrix3::Identity(), Vector3(0, 0, 0.1)});
+  const TriangleMesh bent = more.faces.cols() == 0 ? valley() : shapes::joined(valley(), more);
+  double largest = 0;
+  for (const PlanePair& pair : valley_is_source ? pairs_between(bent, plate) : pairs_between(plate, bent))
+    largest = std::max(largest, pair.crease);
+  return largest;
+}
+
+TEST(PlanePairs, AreCreasedAtTheBottomOfAValleyOfEitherSurface) {
+  EXPECT_NEAR(largest_crease(true), 0.25, 1e-12);
+  EXPECT_NEAR(largest_crease(false), 0.25, 1e-12);
+}
+
+TEST(PlanePairs, AreNotCreasedWhereAnotherSheetIsTheCounterpart) {
+  const TriangleMesh sheet =
+      shapes::moved(shapes::square_grid(10), {Matrix3::Identity(), Vector3(0, 0, 0.0999)});
+  EXPECT_LT(largest_crease(true, sheet), 1e-6);
+}
+
 // Two sheets close to each other, which have changed places on the target.
 TEST(PlanePairs, StayWithinTheirPatches) {
   const TriangleMesh sheet = shapes::square_grid(6);

@@ -24,7 +24,7 @@ double reciprocity_beside(const TriangleMesh& other) {
   const TargetSurface asking(shapes::joined(plane_at(1), other)), answering(plane_at(0));
   const Vector3 point = centre + upwards;
   const SurfaceMatch match = *answering.match(point, upwards, within_one);
-  return reciprocity({point, match, within_one}, asking, half_as_far);
+  return reciprocity(claimed_share({point, match, within_one}, asking, 1, half_as_far), half_as_far);
 }
 
 TEST(Reciprocity, IsWholeBetweenParallelSurfaces) { EXPECT_EQ(reciprocity_beside(plane_at(1)), 1); }
@@ -55,7 +55,18 @@ TEST(Reciprocity, HeedsNoBoundary) {
 TEST(Reciprocity, IsWholeOfAPointOnItsMatch) {
   const TargetSurface surface(plane_at(0));
   const SurfaceMatch match = *surface.match(centre, upwards, within_one);
-  EXPECT_EQ(reciprocity({centre, match, within_one}, surface, half_as_far), 1);
+  EXPECT_EQ(claimed_share({centre, match, within_one}, surface, 1, half_as_far), 1);
+  EXPECT_EQ(reciprocity(1, half_as_far), 1);
+}
+
+TEST(ClaimedShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
+  const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
+  const Vector3 point = centre + upwards;
+  const SurfaceMatch match = *answering.match(point, upwards, within_one);
+  const FoundPair pair{point, match, within_one};
+  EXPECT_NEAR(claimed_share(pair, asking, 1, half_as_far), 0.4, 1e-12);
+  EXPECT_NEAR(claimed_share(pair, asking, 0.5, half_as_far), 0.4, 1e-12);
+  EXPECT_EQ(claimed_share(pair, asking, 0.3, half_as_far), 1);
 }
 
 TEST(NearerClaim, IsThePlaceThatIsNearerThanItsShare) {

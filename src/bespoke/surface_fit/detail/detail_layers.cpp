@@ -127,9 +127,11 @@ std::vector<Residual> residuals(const DetailStep& step) {
       own.patch = step.moved.patch(i);
       const auto found = step.input.target.match(vertices.col(i), normals.col(i), own);
       if (!found) continue;
+      const ReciprocitySettings& settings = step.settings.reciprocity;
+      const double claimed =
+          claimed_share({vertices.col(i), *found, own}, step.moved, settings.much_nearer, settings);
       const double weight =
-          step.areas[i] * found->agreement * found->agreement *
-          reciprocity({vertices.col(i), *found, own}, step.moved, step.settings.reciprocity);
+          step.areas[i] * found->agreement * found->agreement * reciprocity(claimed, settings);
       all[k].form =
           weight * (found->halfway * found->halfway.transpose() + step.settings.slide * Matrix3::Identity());
       all[k].pull = all[k].form * (found->point - vertices.col(i));

@@ -15,7 +15,7 @@ struct Search {
   const Eigen::VectorXd& source_areas;
   MatchLimits limits;
   const ReciprocitySettings& reciprocity;
-  bool fade;
+  bool fade;  // whether weights heed it
   std::size_t samples;
   double share;
 };
@@ -38,8 +38,9 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
       found[k] = make_pair(i, *match);
       found[k].normal = match->halfway;
       const FoundPair pair{points.col(i), *match, limits};
-      const double fading = reciprocity(pair, search.asking, search.reciprocity);
-      found[k].crease = fading * crease(pair, search.asking);
+      const double claimed = claimed_share(pair, search.asking, 1, search.reciprocity);
+      const double fading = reciprocity(claimed, search.reciprocity);
+      found[k].crease = fading * crease(pair, claimed);
       found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement *
                         match->agreement * (search.fade ? fading : 1);
     }

@@ -1,5 +1,6 @@
 #include "bespoke/surface_fit/detail/reciprocity.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bespoke {
@@ -16,12 +17,15 @@ std::optional<SurfaceMatch> nearer_claim(const FoundPair& pair, const TargetSurf
   return asking.match(pair.match.point, pair.match.normal, limits);
 }
 
-double reciprocity(const FoundPair& pair, const TargetSurface& asking, const ReciprocitySettings& settings) {
+double claimed_share(const FoundPair& pair, const TargetSurface& asking, double share,
+                     const ReciprocitySettings& settings) {
   if (!(distance(pair) > settings.rounding * pair.limits.max_distance)) return 1;
-  const auto claim = nearer_claim(pair, asking, settings.much_nearer);
-  if (!claim) return 1;
-  const double claimed = (claim->point - pair.match.point).norm();
-  return std::pow(claimed / (settings.much_nearer * distance(pair)), settings.power);
+  const auto claim = nearer_claim(pair, asking, share);
+  return claim ? (claim->point - pair.match.point).norm() / distance(pair) : 1;
+}
+
+double reciprocity(double claimed, const ReciprocitySettings& settings) {
+  return std::pow(std::min(claimed / settings.much_nearer, 1.0), settings.power);
 }
 
 }  // namespace bespoke
