@@ -87,5 +87,24 @@ TEST(BakeSteps, EndAtAStepThatFoldsAndMayBeDividedAndGoOnFromThoseAfterIt) {
   EXPECT_EQ(baked.steps.back().pyramid.levels.front().values, values);
 }
 
+// A step that is divided when those after it are baked would else leave little for its parts.
+TEST(BakeSteps, ShareFewLeavesEvenlyHoweverLateTheyWereDivided) {
+  BakeScene scene;
+  scene.options.tolerance = 1e-5;
+  scene.options.max_leaves = 800;
+  const ElasticChain exact = chain(4);
+  const std::vector<Points> surfaces = scene.surfaces(exact);
+  const ElasticChain second_half({exact.steps()[2], exact.steps()[3]});
+  BakedSteps last = bake_steps(second_half, {surfaces[2], surfaces[3]}, scene.source.faces, scene.options);
+  ASSERT_GT(last.steps[0].pyramid.leaf_count() + last.steps[1].pyramid.leaf_count(), 700u);
+  const BakedSteps baked = bake_steps(exact, surfaces, scene.source.faces, scene.options,
+                                      std::vector<bool>(4, true), std::move(last));
+  ASSERT_EQ(baked.steps.size(), 4u);
+  for (const MapStep& step : baked.steps) {
+    EXPECT_NEAR(static_cast<double>(step.pyramid.leaf_count()), 200, 40);
+    EXPECT_TRUE(step.certificate.is_bijection());
+  }
+}
+
 }  // namespace
 }  // namespace bespoke
