@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "support/random_points.h"
 
@@ -11,11 +12,15 @@ namespace {
 
 constexpr double near = 0.01;
 
+Matrix3 similar_turn() {
+  return 1.7 * Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+}
+
 /// Spread pairs under one similarity, and two more so close together that they lie `near` apart.
 Anchors similar_with_twins() {
   Anchors anchors;
   const Points x = test::random_points(20, 5);
-  const Matrix3 turn = 1.7 * Eigen::AngleAxisd(0.8, Vector3(1, 2, 3).normalized()).toRotationMatrix();
+  const Matrix3 turn = similar_turn();
   for (const auto& a : x.colwise()) anchors.pairs.push_back({"", a, turn * a + Vector3(3, 0, 1)});
   AnchorPair twin = anchors.pairs.front();
   anchors.pairs.front().name = "left";
@@ -55,6 +60,28 @@ TEST(ContradictingAnchors, MayBeFarApartOrSoft) {
   anchors.pairs.back().b += Vector3(0, 4 * near, 0);
   anchors.pairs.back().weight = 10;
   EXPECT_TRUE(contradicting_anchors(anchors).empty());
+}
+
+// A hand that has turned over: its fingers' tips go where one similarity of all anchors would not take them.
+TEST(ContradictingAnchors, MayTurnWithThoseAroundThem) {
+  Anchors anchors = similar_with_twins();
+  const Vector3 center = anchors.pairs.front().a, image = anchors.pairs.front().b;
+  const Matrix3 over = -Matrix3::Identity() + 2 * Vector3::UnitZ() * Vector3::UnitZ().transpose();
+  anchors.pairs.back().b = image + over * (anchors.pairs.back().b - image);
+  EXPECT_EQ(contradicting_anchors(anchors).size(), 1u);
+  const Points around = 3 * near * test::random_points(6, 11);
+  for (const auto& a : around.colwise()) {
+    AnchorPair pair = anchors.pairs.front();
+    pair.a = center + a;
+    pair.b = image + over * (similar_turn() * a);
+    anchors.pairs.push_back(pair);
+  }
+  EXPECT_TRUE(contradicting_anchors(anchors).empty());
+  const std::size_t last = anchors.pairs.size() - 1;
+  std::swap(anchors.pairs[last].b, anchors.pairs[last - 1].b);
+  const auto found = contradicting_anchors(anchors);
+  ASSERT_FALSE(found.empty());
+  for (const ContradictingAnchors& pair : found) EXPECT_GE(pair.second, last - 1);
 }
 
 TEST(ContradictingAnchors, AtOnePlaceMustGoToOne) {

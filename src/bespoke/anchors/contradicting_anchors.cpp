@@ -3,11 +3,37 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/similarity_alignment.h"
 
 namespace bespoke {
+namespace {
+
+// The turn of a limb is that of the few anchors nearest: weights fall with this power of the distance. With 4
+// a fist's little finger still contradicts itself. Of 312 contradictions by noise of 2 % on 31 pairs of
+// models 4 leaves 281 and 6 leaves 271; both leave all 127 by anchors exchanged for a neighbour.
+constexpr double power = 6;
+constexpr double least_distance = 0.01;  // of the farthest anchor's: nearer ones weigh no more
+constexpr std::size_t least_others = 4;  // fewer tell no turn
+
+/// By least squares of all pairs but two, the nearer to these the more they count; none where these others
+/// are few or at one place.
+std::optional<Similarity> similarity_around(const Points& sources, const Points& targets, Eigen::Index i,
+                                            Eigen::Index j) {
+  std::vector<Eigen::Index> others;
+  for (Eigen::Index k = 0; k < sources.cols(); ++k)
+    if (k != i && k != j) others.push_back(k);
+  const Points from = sources(Eigen::all, others), to = targets(Eigen::all, others);
+  if (others.size() < least_others || !(diagonal(from) > 0) || !(diagonal(to) > 0)) return std::nullopt;
+  const Vector3 middle = 0.5 * (sources.col(i) + sources.col(j));
+  const Eigen::ArrayXd distances = (from.colwise() - middle).colwise().norm().transpose();
+  return align_similarly(from, to,
+                         (distances / distances.maxCoeff()).max(least_distance).pow(-power).matrix());
+}
+
+}  // namespace
 
 std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) {
   constexpr std::size_t min_pairs = 4;
@@ -16,17 +42,21 @@ std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) 
   if (anchors.pairs.size() < min_pairs) return found;
   const Points sources = source_points(anchors), targets = target_points(anchors);
   if (!(diagonal(sources) > 0)) return found;  // the rigid part says so
-  const Points aligned = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols())) * sources;
+  const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
   const double reach = near * diagonal(targets);
-  for (Eigen::Index i = 0; i < aligned.cols(); ++i)
-    for (Eigen::Index j = i + 1; j < aligned.cols(); ++j) {
-      if (!(is_exact(anchors.pairs[static_cast<std::size_t>(i)]) &&
-            is_exact(anchors.pairs[static_cast<std::size_t>(j)])))
-        continue;
-      const Vector3 arm = aligned.col(j) - aligned.col(i);
-      const double asked = (targets.col(j) - targets.col(i) - arm).norm();
-      if (arm.norm() < reach && asked > arm.norm())
-        found.push_back({static_cast<std::size_t>(i), static_cast<std::size_t>(j), arm.norm(), asked});
+  const auto contradicts = [](const ContradictingAnchors& pair) { return pair.asked > pair.apart; };
+  for (std::size_t first = 0; first < anchors.pairs.size(); ++first)
+    for (std::size_t second = first + 1; second < anchors.pairs.size(); ++second) {
+      if (!(is_exact(anchors.pairs[first]) && is_exact(anchors.pairs[second]))) continue;
+      const auto i = static_cast<Eigen::Index>(first), j = static_cast<Eigen::Index>(second);
+      const auto under = [&](const Similarity& map) -> ContradictingAnchors {
+        const Vector3 arm = map.scale * (map.rotation * (sources.col(j) - sources.col(i)));
+        return {first, second, arm.norm(), (targets.col(j) - targets.col(i) - arm).norm()};
+      };
+      const ContradictingAnchors pair = under(similarity);
+      if (!(pair.apart < reach && contradicts(pair))) continue;
+      const std::optional<Similarity> around = similarity_around(sources, targets, i, j);
+      if (!around || contradicts(under(*around))) found.push_back(pair);
     }
   std::stable_sort(found.begin(), found.end(),
                    [](const ContradictingAnchors& a, const ContradictingAnchors& b) {
