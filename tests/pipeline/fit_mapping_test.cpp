@@ -277,6 +277,15 @@ TEST(FitMapping, RefusesModelsInTwoUnits) {
   }
 }
 
+// A file whose axes are in another order fits nothing, but every anchor has some accuracy.
+TEST(FitMapping, RefusesAnchorsThatAreNotOnTheTargetUnlessSomebodyStandsByThem) {
+  Pair pair;
+  for (AnchorPair& anchor : pair.anchors.pairs) std::swap(anchor.b.x(), anchor.b.z());
+  EXPECT_THAT(pair.message(), HasSubstr("as points at random would"));
+  for (AnchorPair& anchor : pair.anchors.pairs) anchor.sigma = 1;
+  EXPECT_EQ(pair.message(), "accepted");
+}
+
 TEST(FitMapping, FitsAsIfAnAnchorFarAstrayWereNotThere) {
   Pair without, astray;
   without.anchors.pairs.erase(without.anchors.pairs.begin() + 4);
