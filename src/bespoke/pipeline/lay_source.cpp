@@ -161,7 +161,7 @@ void require_on_target(const AnchorAccuracy& accuracy, const TriangleMesh& targe
   constexpr double of_chance = 0.08;
   const double share = accuracy.sigma / diagonal(target.vertices);
   if (!(share > of_chance)) return;
-  char text[240];
+  char text[320];
   std::snprintf(text, sizeof text,
                 "the anchors lie beside the target by %.4g (root mean square), %.3g %% of its diagonal, as "
                 "points at random would: are both models and all anchors in one unit, with the same axes? "
