@@ -57,15 +57,15 @@ TEST_F(NodeSystemTest, MovesOntoShiftedPlanesWhateverAFewFarOnesSay) {
   EXPECT_LT((moved.colwise() - shift - sphere_.vertices).colwise().norm().maxCoeff(), 0.1 * shift.norm());
 }
 
-TEST_F(NodeSystemTest, HeedsFarPlanesInACrease) {
+TEST_F(NodeSystemTest, HeedsFarPlanesThatHaveLeeway) {
   const Points normals = vertex_normals(sphere_);
   const double area = vertex_areas(sphere_).sum() / static_cast<double>(sphere_.vertices.cols());
-  const auto reached = [&](double crease) {
+  const auto reached = [&](double leeway) {
     std::vector<PlanePair> planes;
     for (int i = 0; i < sphere_.vertices.cols(); ++i) {
       const bool far = normals(2, i) > 0.9;
       planes.push_back(
-          {i, sphere_.vertices.col(i) + (far ? 0.5 : 0.001) * normals.col(i), normals.col(i), area, crease});
+          {i, sphere_.vertices.col(i) + (far ? 0.5 : 0.001) * normals.col(i), normals.col(i), area, leeway});
     }
     const double smoothing = 0.2 / diagonal(sphere_.vertices);
     return (solve(system({}), planes, smoothing).row(2).maxCoeff() - 1) / 0.5;

@@ -74,7 +74,7 @@ double largest_crease(bool valley_is_source, const TriangleMesh& more = {}) {
   const TriangleMesh bent = more.faces.cols() == 0 ? valley() : shapes::joined(valley(), more);
   double largest = 0;
   for (const PlanePair& pair : valley_is_source ? pairs_between(bent, plate) : pairs_between(plate, bent))
-    largest = std::max(largest, pair.crease);
+    largest = std::max(largest, pair.leeway);
   return largest;
 }
 
@@ -87,6 +87,28 @@ TEST(PlanePairs, AreNotCreasedWhereAnotherSheetIsTheCounterpart) {
   const TriangleMesh sheet =
       shapes::moved(shapes::square_grid(10), {Matrix3::Identity(), Vector3(0, 0, 0.0999)});
   EXPECT_LT(largest_crease(true, sheet), 1e-6);
+}
+
+/// The leeways of pairs between a plate and one above it, or below, both ways, given the certainty of the
+/// source's pose.
+std::vector<double> leeways(double source_height, double certainty) {
+  const TriangleMesh plate = shapes::square_grid(6);
+  const TargetSurface from(shapes::moved(plate, {Matrix3::Identity(), Vector3(0, 0, source_height)})),
+      to(plate);
+  const Eigen::VectorXd certainties = Eigen::VectorXd::Constant(plate.vertices.cols(), certainty);
+  std::vector<double> found;
+  for (const PlanePair& pair :
+       find_plane_pairs({from, to, from.areas(), to.areas(), 1.5, &certainties}, every_vertex, {}))
+    found.push_back(pair.leeway);
+  return found;
+}
+
+TEST(PlanePairs, OfABentSourceThatStandsOutHaveTheLeewayOfItsCertainty) {
+  const std::vector<double> above = leeways(0.05, 0.7), below = leeways(-0.05, 0.7);
+  ASSERT_EQ(above.size(), 50u);
+  ASSERT_EQ(below.size(), 50u);
+  for (const double leeway : above) EXPECT_NEAR(leeway, 0.7, 1e-12);
+  for (const double leeway : below) EXPECT_NEAR(leeway, 0, 1e-12);
 }
 
 // Two sheets close to each other, which have changed places on the target.

@@ -167,6 +167,16 @@ struct ReciprocitySettings {
   double rounding = 1e-6;  ///< of the largest distance that is asked: nearer points are their matches.
 };
 
+/// Sources that anchors have bent and that stand out of the target (pose_certainty.h). Factors over fourteen
+/// pairs, twelve of them bent (bodies and hands in strong poses, d08 and d10 among them), with all anchors:
+/// without x 1.027 / 1.029, d10 x 1.08; where the target stands out too, x 1.02 / 1.03, a squat x 1.13.
+struct SinkingSettings {
+  /// Diagonals: r of the certainty. 0.15: x 1.002 / 1.003; 0.25: x 1.000 / 0.998, with five anchors x 1.002 /
+  /// 1.000; infinite: x 0.999 / 0.996, but with five anchors x 1.018 / 1.020 and 1,617 flipped faces, not
+  /// 1,000.
+  double reach = 0.2;
+};
+
 /// One level of nodes.
 struct NodeLevel {
   int nodes = 0;                 ///< aimed at, over the whole surface
@@ -177,6 +187,9 @@ struct NodeLevel {
   /// any nearness says little: with it there, scans and the shared cases x 1.000, but hands whose anchors are
   /// off by 1 % go a finger astray more often (d08 over five such noises x 1.06, 64 flipped faces, not 36).
   bool reciprocity = true;
+  /// Whether bent sources sink (SinkingSettings). At the first level too, with an infinite reach: x 1.000 /
+  /// 0.999, with five anchors x 1.011 / 1.012.
+  bool sinking = true;
 };
 
 /// The smooth deformation (node_fit.h).
@@ -185,7 +198,8 @@ struct NodeFitSettings {
   /// of 8,000: x 0.992, but 22 flipped faces where there were 12. The fine level once had 16,000 and 6,000
   /// samples; half as many were taken for their time. 10 and 20 instead of 15 coarse iterations:
   /// x 1.009 / 1.015 and 1.000 / 0.993, on bodies in two poses x 1.017 / 1.035 and 0.993 / 0.980.
-  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false}, NodeLevel{2500, 6, 8000, 5000}};
+  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
+                                     NodeLevel{2500, 6, 8000, 5000}};
   /// Of the first level where no anchor leads the surfaces, which slide into place more slowly. 15, 20, 25,
   /// 30, 40 on a hand (d04): 0.710, 0.655, 0.630, 0.612, 0.584 %; on bodies, heads and a curled hand within
   /// 4 %. But a smooth shape without features drifts on: more than 25 move it along itself.
@@ -204,12 +218,12 @@ struct NodeFitSettings {
   double outlier_medians =
       4;  ///< median distances: there a pair's weight falls to one half. Not varied on its own.
   double outlier_floor = 1e-4;  ///< diagonals, added: where half of the pairs meet exactly. Not varied.
-  /// Of ℓ, added to that distance in a sharp crease (crease.h), which must unfold; less where another place
-  /// is much nearer to the counterpart (ReciprocitySettings). 0: x 1.018 / 1.036 on the shared cases and 22
-  /// further pairs, x 1.11 / 1.22 on three whose armpits stay notched. 0.6, 1.6: shared cases x 1.003 / 1.003
-  /// and 0.997 / 0.996. At every pair, creased or not, 0.2: x 0.994 / 0.998 on the shared cases, but d01
-  /// x 1.10.
-  double crease_reach = 1;
+  /// Of ℓ, added to that distance where a pair counts also from far off (PlanePair::leeway). In sharp
+  /// creases, which must unfold: 0: x 1.018 / 1.036 on the shared cases and 22 further pairs, x 1.11 / 1.22
+  /// on three whose armpits stay notched; 0.6, 1.6: shared cases x 1.003 / 1.003 and 0.997 / 0.996; at every
+  /// pair, creased or not, 0.2: x 0.994 / 0.998 on the shared cases, but d01 x 1.10. Of bent sources that
+  /// stand out of the target, see SinkingSettings.
+  double leeway = 1;
   /// Weight of all exact anchors together after the first iteration of a level, times the iteration's number;
   /// the surface's weight is 1. Growing, so that anchors lead and do not dent. Not varied on its own.
   double anchor_growth = 2;
@@ -228,6 +242,7 @@ struct NodeFitSettings {
   AnchorSettings anchors;
   CavitySettings cavities;
   ReciprocitySettings reciprocity;
+  SinkingSettings sinking;
 };
 
 /// Layers of space (detail_layers.h).

@@ -206,21 +206,21 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   const double degrees = posing.rotation_spread() * 180 / std::numbers::pi;
   summary.anchor_turn_degrees = degrees;
   summary.posed_by_anchors = are_out_of_reach(scene, anchors, settings);
-  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
-    return NodeFitting(
-        {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
-         scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
-        settings.nodes, progress);
+  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
+    return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
+                        scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas,
+                        scene.patches, is_posed},
+                       settings.nodes, progress);
   };
   if (!summary.posed_by_anchors) {
-    NodeFitting straight = fitting(scene.surface, anchors);
+    NodeFitting straight = fitting(scene.surface, anchors, false);
     const double rigidity = straight.fit_coarse();
     summary.posed_by_anchors = degrees > settings.pose.least_rigid_turn && rigidity > 1;
     if (!summary.posed_by_anchors) return straight.fit_fine();
   }
   const AnchorPose pose = posing.bent();
   const TriangleMesh bent{pose.vertices, scene.surface.faces};
-  NodeFitting posed = fitting(bent, pose.anchor_sources);
+  NodeFitting posed = fitting(bent, pose.anchor_sources, true);
   posed.fit_coarse();
   return posed.fit_fine();
 }

@@ -122,7 +122,7 @@ void NodeSystem::add_planes(const NodeGoals& goals) {
       settings_.outlier_medians * median(distances) + settings_.outlier_floor * surface_.diagonal;
   for (std::size_t k = 0; k < goals.planes.size(); ++k) {
     const PlanePair& plane = goals.planes[k];
-    const double outlier = distances[k] / (scale + settings_.crease_reach * goals.smoothing * plane.crease);
+    const double outlier = distances[k] / (scale + settings_.leeway * goals.smoothing * plane.leeway);
     const double weight = plane.weight / surface_.area / (1 + outlier * outlier);
     add_quadratic(nodes_.at_vertex(plane.vertex), weight * plane.normal * plane.normal.transpose(),
                   plane.point - surface_.rest.vertices.col(plane.vertex));

@@ -1,5 +1,7 @@
 #include "bespoke/surface_fit/detail/plane_pairs.h"
 
+#include <algorithm>
+
 #include "bespoke/parallel.h"
 #include "bespoke/surface_fit/detail/crease.h"
 #include "bespoke/surface_fit/detail/reciprocity.h"
@@ -18,7 +20,17 @@ struct Search {
   bool fade;  // whether weights heed it
   std::size_t samples;
   double share;
+  double outwards;  // sign of the step along the pair's normal of an asking surface whose source stands out
+  const Eigen::VectorXd* pose_certainty;
 };
+
+/// Where anchors tell the pose and the source still stands out of the target, it is its shape that differs,
+/// or a joint that has bent at another place.
+double sinking(const Search& search, const FoundPair& pair, int source_vertex) {
+  if (!search.pose_certainty) return 0;
+  const double step = (pair.match.point - pair.point).dot(pair.match.halfway);
+  return step * search.outwards > 0 ? (*search.pose_certainty)[source_vertex] : 0;
+}
 
 /// Appends the pairs of every so many vertices; make_pair(i, match) says which vertex shall go where.
 template <class MakePair>
@@ -40,7 +52,7 @@ void append_pairs(const Search& search, const MakePair& make_pair, std::vector<P
       const FoundPair pair{points.col(i), *match, limits};
       const double claimed = claimed_share(pair, search.asking, 1, search.reciprocity);
       const double fading = reciprocity(claimed, search.reciprocity);
-      found[k].crease = fading * crease(pair, claimed);
+      found[k].leeway = fading * std::max(crease(pair, claimed), sinking(search, pair, found[k].vertex));
       found[k].weight = search.share * search.areas[i] * double(stride) * match->agreement *
                         match->agreement * (search.fade ? fading : 1);
     }
@@ -58,7 +70,7 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
   std::vector<PlanePair> pairs;
   append_pairs(
       {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.reciprocity, level.samples, 1},
+       settings.reciprocity, level.reciprocity, level.samples, 1, -1, surfaces.pose_certainty},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
@@ -66,7 +78,8 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
       {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.reciprocity, level.back_samples, settings.back_share},
+       settings.reciprocity, level.reciprocity, level.back_samples, settings.back_share, 1,
+       surfaces.pose_certainty},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);

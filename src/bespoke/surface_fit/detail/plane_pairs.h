@@ -15,8 +15,10 @@ struct PlanePair {
   Vector3 normal;     ///< unit, halfway between both surfaces' (symmetric point to plane)
   double weight = 0;  ///< mesh units squared: the area that the pair speaks for, times the squared agreement
                       ///< of the normals, times its direction's share
-  double crease = 0;  ///< 0 to 1: how sharply the asking surface is creased there (crease.h), times the
-                      ///< pair's reciprocity (reciprocity.h)
+  /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
+  /// the asking surface is creased there (crease.h) or, where the source stands out of the target, how surely
+  /// anchors tell its pose (pose_certainty.h), whichever is more.
+  double leeway = 0;
 };
 
 /// Where pairs are looked for.
@@ -27,6 +29,8 @@ struct PairSurfaces {
   const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
   double diagonal = 0;  ///< of the aligned source, mesh units
+  /// n, of a source that anchors have bent (pose_certainty.h); null of another.
+  const Eigen::VectorXd* pose_certainty = nullptr;
 };
 
 /// Closest compatible points of evenly chosen vertices, from the source to the target first, then back. A
