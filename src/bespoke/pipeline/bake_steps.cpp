@@ -1,7 +1,6 @@
 #include "bespoke/pipeline/bake_steps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -70,11 +69,6 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const Steps
   return bake(exact, options, progress);
 }
 
-/// Of the leaves that the steps after some leave over, when `shares` are still to be had.
-std::size_t even_share(std::size_t max_leaves, std::size_t used, std::size_t shares) {
-  return (max_leaves - std::min(max_leaves, used)) / shares;
-}
-
 /// The last step first, before `done`, until one folds that may be divided.
 BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                     const BakeOptions& options, const std::vector<bool>& divisible, BakedSteps done,
@@ -91,7 +85,8 @@ BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfac
     BakeOptions step_options = options;
     // Steps that need less leave it to those before them; a share is kept in case one is divided.
     const std::size_t shares = k + (k > 0 && !divisible.empty() ? 2 : 1);
-    if (options.max_leaves) step_options.max_leaves = even_share(*options.max_leaves, used, shares);
+    if (options.max_leaves)
+      step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
     Bake step = bake_step(map, {surfaces[k], faces}, after, step_options, progress);
     used += step.pyramid.leaf_count();
     Certificate certificate = certify(step.pyramid, map.affine(), 1, progress);
@@ -112,23 +107,14 @@ bool finer_steps_help(const BakedSteps& baked, const BakeOptions& options) {
   return met && leaves < options.max_leaves.value_or(4 * leaves) / 2;
 }
 
-/// The last steps that have about the leaves that they would have, had it been known from the start how many
-/// steps there are, or all that they need.
-BakedSteps even_steps(BakedSteps baked, std::size_t max_leaves) {
-  constexpr double about = 0.1;  // of a share
-  std::size_t used = 0, uneven = baked.steps.size();
-  for (; uneven > 0; --uneven) {
-    const std::size_t k = uneven - 1, leaves = baked.steps[k].pyramid.leaf_count();
-    const auto share = static_cast<double>(even_share(max_leaves, used, uneven));
-    const double difference = static_cast<double>(leaves) - share;
-    const bool is_content = difference < 0 && baked.summaries[k].tolerance_met;
-    if (std::abs(difference) > about * share && !is_content) break;
-    used += leaves;
-  }
-  baked.steps.erase(baked.steps.begin(), baked.steps.begin() + static_cast<std::ptrdiff_t>(uneven));
-  baked.summaries.erase(baked.summaries.begin(),
-                        baked.summaries.begin() + static_cast<std::ptrdiff_t>(uneven));
-  return baked;
+/// Whether a step that misses its tolerance has less than half of an even share of the leaves. From there on
+/// it shows: of a body that raises its arms a step with 0.4 of a share missed by 5 cm and turned 34 faces
+/// over. Shares of 0.6 cost a tenth of the error of even ones, and baking again a third of the time.
+bool has_starved_step(const BakedSteps& baked, std::size_t max_leaves) {
+  const std::size_t share = max_leaves / baked.steps.size();
+  for (std::size_t k = 0; k < baked.steps.size(); ++k)
+    if (!baked.summaries[k].tolerance_met && baked.steps[k].pyramid.leaf_count() < share / 2) return true;
+  return false;
 }
 
 bool is_bijection(const BakedSteps& baked) {
@@ -179,12 +165,9 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
     baked = bake_all(exact, surfaces, faces, step_options, again ? std::vector<bool>{} : divisible,
                      again ? BakedSteps{} : std::move(done), progress);
     if (!again && is_to_be_divided(baked, divisible)) return baked;
-    if (!again && was_divided && options.max_leaves) {
-      BakedSteps last = even_steps(baked, *options.max_leaves);
-      if (last.steps.size() < baked.steps.size()) {
-        BakedSteps even = bake_all(exact, surfaces, faces, step_options, {}, std::move(last), progress);
-        if (is_bijection(even)) baked = std::move(even);
-      }
+    if (!again && was_divided && options.max_leaves && has_starved_step(baked, *options.max_leaves)) {
+      BakedSteps even = bake_all(exact, surfaces, faces, step_options, {}, {}, progress);
+      if (is_bijection(even)) baked = std::move(even);
     }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
     const Stopwatch measure;

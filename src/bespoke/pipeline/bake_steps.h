@@ -29,7 +29,7 @@ void add_step(const BakeSummary& step, BakeSummary& whole);
 /// bake does. divisible: where not empty, whether a step may be divided, one per step; one of these that
 /// folds ends the baking, and the result holds it and the steps after it only. done: last steps of the
 /// chain as they were baked before, taken as they are. The steps share BakeOptions::max_leaves; where
-/// dividing made the shares uneven, those that are not even, and the steps before them, are baked once more.
+/// dividing left one less than half of an even share, all are baked once more.
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, const std::vector<bool>& divisible = {},
                       BakedSteps done = {}, const Progress& progress = {});
