@@ -50,12 +50,29 @@ struct LayInput {
   const FitOptions& options;
 };
 
+/// Throws InvalidInput where anchors lie no nearer to the target than anything does.
+void require_on_target(const AnchorAccuracy& accuracy, const TriangleMesh& target) {
+  // Of the target's diagonal: points at random in the bounding boxes of the twelve shared targets (bodies,
+  // heads, hands, a foot) come to a σ of 8 to 16 %.
+  constexpr double of_chance = 0.08;
+  const double share = accuracy.sigma / diagonal(target.vertices);
+  if (!(share > of_chance)) return;
+  char text[320];
+  std::snprintf(
+      text, sizeof text,
+      "the anchors lie beside the target by %.4g (root mean square), %.3g %% of its diagonal, as "
+      "points at random would: is it the right target, all of it, and is everything in one unit, with "
+      "the same axes? Anchors meant so need an accuracy (sigma)",
+      accuracy.sigma, 100 * share);
+  throw InvalidInput(text);
+}
+
 /// Γ and H'_a by anchors, those of curves included.
-void lay_by_rated(FittedMapping& result, const LayInput& input, const Anchors& rated,
+void lay_by_rated(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
                   const Progress& progress) {
   FitSummary& summary = result.summary;
   const auto& [source, target, patches, given, options] = input;
-  Pairs pairs = pairs_of(rated);
+  Pairs pairs = pairs_of(rated.anchors);
 
   // IV.A: Γ. From here on everything is in the source frame.
   const Stopwatch rigid_watch;
@@ -70,6 +87,7 @@ void lay_by_rated(FittedMapping& result, const LayInput& input, const Anchors& r
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
   const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
+  require_on_target(rated.accuracy, target);
 
   // IV.C: H'_a.
   SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
@@ -141,33 +159,17 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   std::vector<LeftOutAnchor> all;
   for (const std::size_t index : doubted) all.push_back({index, 0});
   FittedMapping undoubted = result;
-  lay_by_rated(undoubted, input, without(rated, all).anchors, progress);
+  lay_by_rated(undoubted, input, without(rated, all), progress);
   const std::vector<LeftOutAnchor> disowned = disowned_pairs(undoubted, input, doubted);
   const RatedAnchors rest = without(rated, disowned);
   if (!disowned.empty() && disowned.size() < doubted.size()) {
     undoubted = result;
-    lay_by_rated(undoubted, input, rest.anchors, progress);
+    lay_by_rated(undoubted, input, rest, progress);
   }
-  lay_by_rated(result, input, rated.anchors, progress);
+  lay_by_rated(result, input, rated, progress);
   if (disowned.empty() || misfit(undoubted, input) > misfit(result, input)) return rated;
   result = std::move(undoubted);
   return rest;
-}
-
-/// Throws InvalidInput where anchors lie no nearer to the target than anything does.
-void require_on_target(const AnchorAccuracy& accuracy, const TriangleMesh& target) {
-  // Of the target's diagonal: points at random in the bounding boxes of the twelve shared targets (bodies,
-  // heads, hands, a foot) come to a σ of 8 to 16 %.
-  constexpr double of_chance = 0.08;
-  const double share = accuracy.sigma / diagonal(target.vertices);
-  if (!(share > of_chance)) return;
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "the anchors lie beside the target by %.4g (root mean square), %.3g %% of its diagonal, as "
-                "points at random would: are both models and all anchors in one unit, with the same axes? "
-                "Anchors meant so need an accuracy (sigma)",
-                accuracy.sigma, 100 * share);
-  throw InvalidInput(text);
 }
 
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
@@ -175,11 +177,10 @@ void require_on_target(const AnchorAccuracy& accuracy, const TriangleMesh& targe
 Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
                        const Progress& progress) {
   RatedAnchors rated = rate_anchors(anchors, input.source, input.target);
-  require_on_target(rated.accuracy, input.target);
   AnchorAudit audit = audit_anchors(input.given);
   const std::vector<std::size_t> doubted = doubted_pairs(input, audit, rated);
   if (doubted.empty())
-    lay_by_rated(result, input, rated.anchors, progress);
+    lay_by_rated(result, input, rated, progress);
   else
     rated = lay_by_undoubted(result, input, rated, doubted, progress);
   result.summary.coarse->audit = std::move(audit);
