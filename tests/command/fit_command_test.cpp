@@ -388,13 +388,16 @@ TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
 }
 
 TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
-  const std::vector<std::string> coarsely = {"--quiet",      "--elastic", "pffd-smooth",
-                                             "--voxel-size", "20%",       "--anchor-sigma=0"};
+  std::vector<std::string> coarsely = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
   EXPECT_THAT(pair_.fit("map.vdb", coarsely).err, Not(HasSubstr("half of the source")));
   TriangleMesh piece = read_triangle_mesh(pair_.file("target.obj"));
   piece.faces = piece.faces.leftCols(piece.faces.cols() / 10).eval();
   write_triangle_mesh(pair_.file("target.obj"), piece);
-  const ProgramResult fit = pair_.fit("map.vdb", coarsely);
+  ProgramResult fit = pair_.fit("map.vdb", coarsely);
+  EXPECT_EQ(fit.exit_code, 2);
+  EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it"));
+  coarsely.push_back("--anchor-sigma=0");
+  fit = pair_.fit("map.vdb", coarsely);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("bespoke: warning: half of the source was laid "));
   EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it, and are the anchors its own?"));

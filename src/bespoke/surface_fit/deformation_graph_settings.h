@@ -169,7 +169,8 @@ struct ReciprocitySettings {
 
 /// Sources that anchors have bent and that stand out of the target (pose_certainty.h). Factors over fourteen
 /// pairs, twelve of them bent (bodies and hands in strong poses, d08 and d10 among them), with all anchors:
-/// without x 1.027 / 1.029, d10 x 1.08; where the target stands out too, x 1.02 / 1.03, a squat x 1.13.
+/// without x 1.027 / 1.029, d10 x 1.08; where the target stands out too (at both levels, everywhere, 0.3 of
+/// the leeway), x 1.02 / 1.03, a squat x 1.13.
 struct SinkingSettings {
   /// Diagonals: r of the certainty. 0.15: x 1.002 / 1.003; 0.25: x 1.000 / 0.998, with five anchors x 1.002 /
   /// 1.000; infinite: x 0.999 / 0.996, but with five anchors x 1.018 / 1.020 and 1,617 flipped faces, not

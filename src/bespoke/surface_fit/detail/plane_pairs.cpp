@@ -11,6 +11,7 @@ namespace {
 
 /// The surface whose vertices ask, with what they speak for, and the one that answers.
 struct Search {
+  bool source_asks;
   const TargetSurface& asking;
   const TargetSurface& answering;
   const Eigen::VectorXd& areas;
@@ -20,7 +21,6 @@ struct Search {
   bool fade;  // whether weights heed it
   std::size_t samples;
   double share;
-  double outwards;  // sign of the step along the pair's normal of an asking surface whose source stands out
   const Eigen::VectorXd* pose_certainty;
 };
 
@@ -29,7 +29,8 @@ struct Search {
 double sinking(const Search& search, const FoundPair& pair, int source_vertex) {
   if (!search.pose_certainty) return 0;
   const double step = (pair.match.point - pair.point).dot(pair.match.halfway);
-  return step * search.outwards > 0 ? (*search.pose_certainty)[source_vertex] : 0;
+  const bool stands_out = search.source_asks ? step < 0 : step > 0;
+  return stands_out ? (*search.pose_certainty)[source_vertex] : 0;
 }
 
 /// Appends the pairs of every so many vertices; make_pair(i, match) says which vertex shall go where.
@@ -69,17 +70,34 @@ std::vector<PlanePair> find_plane_pairs(const PairSurfaces& surfaces, const Node
                            settings.normal_length * surfaces.diagonal};
   std::vector<PlanePair> pairs;
   append_pairs(
-      {surfaces.source, surfaces.target, surfaces.source_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.reciprocity, level.samples, 1, -1, surfaces.pose_certainty},
+      {.source_asks = true,
+       .asking = surfaces.source,
+       .answering = surfaces.target,
+       .areas = surfaces.source_areas,
+       .source_areas = surfaces.source_areas,
+       .limits = limits,
+       .reciprocity = settings.reciprocity,
+       .fade = level.reciprocity,
+       .samples = level.samples,
+       .share = 1,
+       .pose_certainty = surfaces.pose_certainty},
       [](Eigen::Index vertex, const SurfaceMatch& match) {
         return PlanePair{static_cast<int>(vertex), match.point, Vector3::Zero(), 0};
       },
       pairs);
   const TriangleMesh& source = surfaces.source.mesh();
   append_pairs(
-      {surfaces.target, surfaces.source, surfaces.target_areas, surfaces.source_areas, limits,
-       settings.reciprocity, level.reciprocity, level.back_samples, settings.back_share, 1,
-       surfaces.pose_certainty},
+      {.source_asks = false,
+       .asking = surfaces.target,
+       .answering = surfaces.source,
+       .areas = surfaces.target_areas,
+       .source_areas = surfaces.source_areas,
+       .limits = limits,
+       .reciprocity = settings.reciprocity,
+       .fade = level.reciprocity,
+       .samples = level.back_samples,
+       .share = settings.back_share,
+       .pose_certainty = surfaces.pose_certainty},
       [&](Eigen::Index i, const SurfaceMatch& match) {
         int corner = 0;
         match.barycentric.maxCoeff(&corner);
