@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "support/random_points.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -63,6 +64,20 @@ TEST(RateAnchors, FindsTheDeviationOfTheErrors) {
     EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("60 anchors without an accuracy"));
     EXPECT_TRUE(rated.accuracy.swapped.empty());
   }
+}
+
+TEST(OffTarget, AreAnchorsAtRandomInTheTargetsBoxUnlessTheyHaveAnAccuracy) {
+  Pair pair;
+  pair.disturb(0.03 * pair.size());
+  EXPECT_EQ(off_target(pair.rate().accuracy, pair.target), "");
+  const Box box = bounding_box(pair.target.vertices);
+  const Points places = test::random_points(static_cast<Eigen::Index>(pair_count), 3);
+  for (std::size_t k = 0; k < pair_count; ++k)
+    pair.anchors.pairs[k].b =
+        box.center() + 0.5 * box.sizes().cwiseProduct(places.col(static_cast<Eigen::Index>(k)));
+  EXPECT_THAT(off_target(pair.rate().accuracy, pair.target), HasSubstr("as points at random would"));
+  for (AnchorPair& anchor : pair.anchors.pairs) anchor.sigma = 1;
+  EXPECT_EQ(off_target(pair.rate().accuracy, pair.target), "");
 }
 
 TEST(RateAnchors, LeavesAloneWhatHasAnAccuracyOrIsNoPointOfTheSurface) {

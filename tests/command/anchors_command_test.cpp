@@ -54,19 +54,26 @@ TEST(AnchorsCommand, NamesWhatIsSuspicious) {
                                        pair.file("source.obj"), "--target", pair.file("target.obj")});
   EXPECT_EQ(sound.exit_code, 0) << sound.err;
   EXPECT_THAT(sound.out, HasSubstr("nothing is suspicious"));
+  const auto written = [&](const char* name, const Anchors& anchors) {
+    std::ostringstream rows;
+    for (const AnchorPair& each : anchors.pairs) {
+      rows << each.name;
+      for (const Vector3& x : {each.a, each.b}) rows << ',' << x.x() << ',' << x.y() << ',' << x.z();
+      rows << '\n';
+    }
+    write_text(pair.file(name), rows.str());
+    return pair.file(name);
+  };
   Anchors anchors = read_anchors(pair.file("anchors.json"));
   std::swap(anchors.pairs[2].b, anchors.pairs[9].b);
-  std::ostringstream rows;
-  for (const AnchorPair& each : anchors.pairs) {
-    rows << each.name;
-    for (const Vector3& x : {each.a, each.b}) rows << ',' << x.x() << ',' << x.y() << ',' << x.z();
-    rows << '\n';
-  }
-  write_text(pair.file("swapped.csv"), rows.str());
-  const ProgramResult swapped = bespoke({"anchors", "audit", pair.file("swapped.csv")});
+  const ProgramResult swapped = bespoke({"anchors", "audit", written("swapped.csv", anchors)});
   EXPECT_EQ(swapped.exit_code, 0) << swapped.err;
   EXPECT_THAT(swapped.out, HasSubstr("p2"));
   EXPECT_THAT(swapped.out, HasSubstr("p9"));
+  for (AnchorPair& each : anchors.pairs) each.b += Vector3(20, 0, 0);
+  const ProgramResult elsewhere = bespoke({"anchors", "audit", written("elsewhere.csv", anchors), "--source",
+                                           pair.file("source.obj"), "--target", pair.file("target.obj")});
+  EXPECT_THAT(elsewhere.out, HasSubstr("as points at random would"));
 }
 
 TEST(AnchorsCommand, SuggestsPairsThatFitAccepts) {

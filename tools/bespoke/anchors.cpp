@@ -161,8 +161,11 @@ void audit(const AuditArguments& arguments) {
   is_doubted |= print(to_string(contradicting_anchors(anchors), anchors));
   is_doubted |= print_far("source", models.source, source_points(anchors));
   is_doubted |= print_far("target", models.target, target_points(anchors));
-  if (models.source && models.target)
-    is_doubted |= print(to_string(rate_anchors(anchors, *models.source, *models.target).accuracy, anchors));
+  if (models.source && models.target) {
+    const AnchorAccuracy accuracy = rate_anchors(anchors, *models.source, *models.target).accuracy;
+    is_doubted |= print(to_string(accuracy, anchors));
+    is_doubted |= print(off_target(accuracy, *models.target));
+  }
   if (!is_doubted) std::cout << "nothing is suspicious\n";
 }
 

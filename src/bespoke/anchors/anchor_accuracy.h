@@ -55,6 +55,10 @@ RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, co
 /// The same without these pairs too, which `accuracy` then lists as left out alone.
 RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_out);
 
+/// One line, empty unless σ was estimated at more than 8 % of the target's diagonal: points at random in its
+/// bounding box would lie no farther off. No fit follows from such anchors.
+std::string off_target(const AnchorAccuracy& accuracy, const TriangleMesh& target);
+
 /// One line, empty where nothing was estimated above 0 and nothing found.
 std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors);
 

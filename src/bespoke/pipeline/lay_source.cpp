@@ -1,7 +1,7 @@
 #include "bespoke/pipeline/lay_source.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -50,23 +50,6 @@ struct LayInput {
   const FitOptions& options;
 };
 
-/// Throws InvalidInput where anchors lie no nearer to the target than anything does.
-void require_on_target(const AnchorAccuracy& accuracy, const TriangleMesh& target) {
-  // Of the target's diagonal: points at random in the bounding boxes of the twelve shared targets (bodies,
-  // heads, hands, a foot) come to a σ of 8 to 16 %.
-  constexpr double of_chance = 0.08;
-  const double share = accuracy.sigma / diagonal(target.vertices);
-  if (!(share > of_chance)) return;
-  char text[320];
-  std::snprintf(
-      text, sizeof text,
-      "the anchors lie beside the target by %.4g (root mean square), %.3g %% of its diagonal, as "
-      "points at random would: is it the right target, all of it, and is everything in one unit, with "
-      "the same axes? Anchors meant so need an accuracy (sigma)",
-      accuracy.sigma, 100 * share);
-  throw InvalidInput(text);
-}
-
 /// Γ and H'_a by anchors, those of curves included.
 void lay_by_rated(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
                   const Progress& progress) {
@@ -87,7 +70,7 @@ void lay_by_rated(FittedMapping& result, const LayInput& input, const RatedAncho
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
   const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
-  require_on_target(rated.accuracy, target);
+  if (const std::string off = off_target(rated.accuracy, target); !off.empty()) throw InvalidInput(off);
 
   // IV.C: H'_a.
   SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
