@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "bespoke/error.h"
 
@@ -66,6 +69,24 @@ TEST(RequireValidPyramid, NamesWhatIsWrong) {
   pyramid = two_levels();
   pyramid.origin.x() = std::numeric_limits<double>::quiet_NaN();
   expect_refused(pyramid, "origin");
+}
+
+TEST(RoundValues, MovesNothingByMoreThanA64thOfTheToleranceAndLeavesFewBits) {
+  constexpr double tolerance = 0.3;
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> value(-20, 20);
+  std::vector<float> values{0};
+  while (values.size() < 1000) values.push_back(value(engine));
+  std::vector<float> rounded = values;
+  round_values(rounded, tolerance, ValuePrecision::single);
+  EXPECT_EQ(rounded[0], 0);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ASSERT_LE(std::abs(rounded[i] - values[i]), tolerance / 64);
+    ASSERT_EQ(std::remainder(rounded[i], 0x1p-7f), 0);  // tolerance / 64 < 2^-7 <= tolerance / 32
+  }
+  std::vector<float> again = rounded;
+  round_values(again, tolerance, ValuePrecision::single);
+  EXPECT_EQ(again, rounded);
 }
 
 }  // namespace

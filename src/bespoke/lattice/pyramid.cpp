@@ -25,7 +25,7 @@ float rounded_to_half(float value) {
 }
 
 void round_values(std::span<float> values, double tolerance, ValuePrecision precision) {
-  constexpr double quantum_of_tolerance = 1.0 / 128;
+  constexpr double quantum_of_tolerance = 1.0 / 32;
   const auto quantum = static_cast<float>(std::exp2(std::floor(std::log2(quantum_of_tolerance * tolerance))));
   for (float& value : values) {
     // A float beyond this is a multiple already.

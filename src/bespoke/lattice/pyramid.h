@@ -53,7 +53,7 @@ struct Pyramid {
 double largest_sum(const Pyramid& pyramid);
 
 /// Rounds u so that its bits say no more than the tolerance (mesh units) asks for, and as zeros compress: to
-/// multiples of a power of two that is at most a 128th of it, then to the precision. Zero stays zero. Throws
+/// multiples of a power of two that is at most a 32nd of it, then to the precision. Zero stays zero. Throws
 /// InvalidInput where a value exceeds the range of half precision.
 void round_values(std::span<float> values, double tolerance, ValuePrecision precision);
 
