@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "bespoke/anchors/anchor_accuracy.h"
+
+namespace bespoke {
+
+/// Lays the source without these pairs (numbers among those given) and answers those of them that it puts
+/// elsewhere.
+using DisownAnchors = std::function<std::vector<LeftOutAnchor>(const std::vector<std::size_t>& left_out)>;
+
+/// Of the doubted pairs those that surfaces laid without them alone put elsewhere, every
+/// one. A right pair may come to lie elsewhere because its neighbours were left out with it, as a heel does
+/// without the ankle: those that the surfaces confirm are taken back, and what is left is asked again.
+std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, const DisownAnchors& disown);
+
+}  // namespace bespoke

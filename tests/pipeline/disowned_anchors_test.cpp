@@ -1,0 +1,49 @@
+#include "bespoke/pipeline/disowned_anchors.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace bespoke {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+std::vector<std::size_t> numbers(const std::vector<LeftOutAnchor>& anchors) {
+  std::vector<std::size_t> all;
+  for (const LeftOutAnchor& anchor : anchors) all.push_back(anchor.index);
+  return all;
+}
+
+bool has(const std::vector<std::size_t>& all, std::size_t index) {
+  return std::find(all.begin(), all.end(), index) != all.end();
+}
+
+TEST(DisownedAnchors, AreWrongPairsAndNoRightOneThatOnlyItsNeighboursHold) {
+  // 3 has slipped; 5 is right, but lies elsewhere where 4, which is right whatever is left out, does not
+  // hold it.
+  const auto slipped_and_held = [](const std::vector<std::size_t>& left_out) {
+    std::vector<LeftOutAnchor> disowned;
+    for (const std::size_t index : left_out)
+      if (index == 3 || (index == 5 && has(left_out, 4))) disowned.push_back({index, 0.1});
+    return disowned;
+  };
+  EXPECT_THAT(numbers(disowned_anchors({3, 4, 5}, slipped_and_held)), ElementsAre(3));
+  EXPECT_THAT(numbers(disowned_anchors({4, 5}, slipped_and_held)), IsEmpty());
+  EXPECT_THAT(numbers(disowned_anchors({3}, slipped_and_held)), ElementsAre(3));
+  EXPECT_THAT(numbers(disowned_anchors({}, slipped_and_held)), IsEmpty());
+}
+
+TEST(DisownedAnchors, AreToldByTheDistanceOfTheLastTime) {
+  const auto nearer_alone = [](const std::vector<std::size_t>& left_out) {
+    std::vector<LeftOutAnchor> disowned = {{7, double(left_out.size())}};
+    return disowned;
+  };
+  const std::vector<LeftOutAnchor> found = disowned_anchors({2, 7, 8}, nearer_alone);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].distance, 1);
+}
+
+}  // namespace
+}  // namespace bespoke
