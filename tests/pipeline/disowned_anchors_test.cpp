@@ -35,6 +35,18 @@ TEST(DisownedAnchors, AreWrongPairsAndNoRightOneThatOnlyItsNeighboursHold) {
   EXPECT_THAT(numbers(disowned_anchors({}, slipped_and_held)), IsEmpty());
 }
 
+TEST(DisownedAnchors, AloneAreThoseThatNoNeighbourHolds) {
+  const auto held_by_each_other = [](const std::vector<std::size_t>& left_out) {
+    std::vector<LeftOutAnchor> disowned;
+    for (const std::size_t index : left_out)
+      if (index == 3 || left_out.size() > 1) disowned.push_back({index, 0.1});
+    return disowned;
+  };
+  const std::vector<LeftOutAnchor> together = disowned_anchors({3, 4, 5}, held_by_each_other);
+  EXPECT_THAT(numbers(together), ElementsAre(3, 4, 5));
+  EXPECT_THAT(disowned_alone(together, held_by_each_other), ElementsAre(3));
+}
+
 TEST(DisownedAnchors, AreToldByTheDistanceOfTheLastTime) {
   const auto nearer_alone = [](const std::vector<std::size_t>& left_out) {
     std::vector<LeftOutAnchor> disowned = {{7, double(left_out.size())}};

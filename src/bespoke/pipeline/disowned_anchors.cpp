@@ -14,4 +14,12 @@ std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, co
   return {};
 }
 
+std::vector<std::size_t> disowned_alone(const std::vector<LeftOutAnchor>& together,
+                                        const DisownAnchors& disown) {
+  std::vector<std::size_t> alone;
+  for (const LeftOutAnchor& anchor : together)
+    if (!disown({anchor.index}).empty()) alone.push_back(anchor.index);
+  return alone;
+}
+
 }  // namespace bespoke

@@ -17,4 +17,8 @@ using DisownAnchors = std::function<std::vector<LeftOutAnchor>(const std::vector
 /// without the ankle: those that the surfaces confirm are taken back, and what is left is asked again.
 std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, const DisownAnchors& disown);
 
+/// Of pairs disowned together the numbers of those that surfaces laid with all the others put elsewhere.
+std::vector<std::size_t> disowned_alone(const std::vector<LeftOutAnchor>& together,
+                                        const DisownAnchors& disown);
+
 }  // namespace bespoke

@@ -137,7 +137,8 @@ double misfit(const FittedMapping& laid, const LayInput& input) {
 }
 
 /// Lays the source without the pairs that surfaces so laid disown, and takes that if it explains the target
-/// no worse than with them. Returns the pairs then to be used.
+/// no worse than with them. Where it explains it worse, right pairs may have been disowned beside wrong ones:
+/// then each is asked for alone. Returns the pairs then to be used.
 RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
                               const std::vector<std::size_t>& doubted, const Progress& progress) {
   FittedMapping undoubted;
@@ -148,11 +149,16 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
     lay_by_rated(undoubted, input, without(rated, all), progress);
     return put_elsewhere(undoubted, input, left_out);
   };
-  const std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, lay_without);
-  lay_by_rated(result, input, rated, progress);
-  if (disowned.empty() || misfit(undoubted, input) > misfit(result, input)) return rated;
-  result = std::move(undoubted);
-  return without(rated, disowned);
+  std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, lay_without);
+  FittedMapping trusting = result;
+  lay_by_rated(trusting, input, rated, progress);
+  const double trusting_misfit = misfit(trusting, input);
+  const auto explains_worse = [&] { return misfit(undoubted, input) > trusting_misfit; };
+  if (disowned.size() > 1 && explains_worse())
+    disowned = disowned_anchors(disowned_alone(disowned, lay_without), lay_without);
+  const bool trusts = disowned.empty() || explains_worse();
+  result = std::move(trusts ? trusting : undoubted);
+  return trusts ? rated : without(rated, disowned);
 }
 
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
