@@ -12,9 +12,9 @@ namespace bespoke {
 /// elsewhere.
 using DisownAnchors = std::function<std::vector<LeftOutAnchor>(const std::vector<std::size_t>& left_out)>;
 
-/// Of the doubted pairs those that surfaces laid without them alone put elsewhere, every
-/// one. A right pair may come to lie elsewhere because its neighbours were left out with it, as a heel does
-/// without the ankle: those that the surfaces confirm are taken back, and what is left is asked again.
+/// Of the doubted pairs those that surfaces laid by all the others put elsewhere. A right pair may come to
+/// lie elsewhere because its neighbours were left out with it, as a heel does without the ankle: pairs that
+/// the surfaces confirm are taken back and the rest is asked for again, until none is confirmed.
 std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, const DisownAnchors& disown);
 
 /// Of pairs disowned together the numbers of those that surfaces laid with all the others put elsewhere.
