@@ -1,7 +1,5 @@
 #include "bespoke/pipeline/disowned_anchors.h"
 
-#include <utility>
-
 namespace bespoke {
 
 std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, const DisownAnchors& disown) {

@@ -153,10 +153,12 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   FittedMapping trusting = result;
   lay_by_rated(trusting, input, rated, progress);
   const double trusting_misfit = misfit(trusting, input);
-  const auto explains_worse = [&] { return misfit(undoubted, input) > trusting_misfit; };
-  if (disowned.size() > 1 && explains_worse())
+  const auto explains_worse = [&] { return disowned.empty() || misfit(undoubted, input) > trusting_misfit; };
+  bool trusts = explains_worse();
+  if (trusts && disowned.size() > 1) {
     disowned = disowned_anchors(disowned_alone(disowned, lay_without), lay_without);
-  const bool trusts = disowned.empty() || explains_worse();
+    trusts = explains_worse();
+  }
   result = std::move(trusts ? trusting : undoubted);
   return trusts ? rated : without(rated, disowned);
 }
