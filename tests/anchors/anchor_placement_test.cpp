@@ -40,6 +40,23 @@ TEST(AnchorPlacement, OfASingleAnchorIsMeasuredByTheModel) {
   EXPECT_TRUE(anchor_placement(model, 2.54 * anchor).is_far());
 }
 
+TEST(ExchangedSides, AreFarFromTheirModelAndAtTheOther) {
+  TriangleMesh target = model;
+  target.vertices.colwise() += Vector3(5, 0, 0);
+  Anchors right, exchanged, elsewhere;
+  for (int i = 0; i < 20; ++i) {
+    const Vector3 a = model.vertices.col(i), b = target.vertices.col(i);
+    right.pairs.push_back({"", a, b});
+    exchanged.pairs.push_back({"", b, a});
+    elsewhere.pairs.push_back({"", b, 2 * b});
+  }
+  EXPECT_EQ(exchanged_sides(right, model, target), "");
+  EXPECT_THAT(exchanged_sides(exchanged, model, target), testing::HasSubstr("are exchanged"));
+  EXPECT_EQ(exchanged_sides(elsewhere, model, target), "");
+  EXPECT_EQ(exchanged_sides(exchanged, model, model), "");  // nobody can tell
+  EXPECT_EQ(exchanged_sides({}, model, target), "");
+}
+
 TEST(AnchorPlacement, OfNothingIsNothing) {
   EXPECT_FALSE(anchor_placement(model, Points(3, 0)).is_far());
   EXPECT_THROW(anchor_placement({}, Points::Zero(3, 1)), InvalidInput);

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <utility>
 
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/mesh_io.h"
@@ -363,6 +365,16 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));
   EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
+}
+
+TEST_F(FitCommand, RefusesAnchorsOfTheOtherDirection) {
+  json anchors = read_json("anchors.json");
+  for (json& anchor : anchors["pairs"]) std::swap(anchor["a"], anchor["b"]);
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  const ProgramResult fit = pair_.fit("map.vdb");
+  EXPECT_EQ(fit.exit_code, 2);
+  EXPECT_THAT(fit.err, HasSubstr("are exchanged"));
+  EXPECT_FALSE(std::filesystem::exists(pair_.file("map.vdb")));
 }
 
 // A ball deep inside its neighbour: no bijection takes two balls there, and the one that is made says how far

@@ -165,6 +165,7 @@ void audit(const AuditArguments& arguments) {
     const AnchorAccuracy accuracy = rate_anchors(anchors, *models.source, *models.target).accuracy;
     is_doubted |= print(to_string(accuracy, anchors));
     is_doubted |= print(off_target(accuracy, *models.target));
+    is_doubted |= print(exchanged_sides(anchors, *models.source, *models.target));
   }
   if (!is_doubted) std::cout << "nothing is suspicious\n";
 }

@@ -25,6 +25,16 @@ AnchorPlacement anchor_placement(const TriangleMesh& model, const Points& anchor
   return {summarize(std::move(distances)).median, diagonal(anchors), diagonal(model.vertices)};
 }
 
+std::string exchanged_sides(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target) {
+  const Points a = source_points(anchors), b = target_points(anchors);
+  const auto far = [](const TriangleMesh& model, const Points& side) {
+    return anchor_placement(model, side).is_far();
+  };
+  if (!far(source, a) || !far(target, b) || far(target, a) || far(source, b)) return "";
+  return "\"a\" of the anchors lies at the target and \"b\" at the source: the two models, or the anchors' "
+         "sides, are exchanged";
+}
+
 std::string to_string(const AnchorPlacement& placement) {
   char text[160];
   std::snprintf(text, sizeof text,

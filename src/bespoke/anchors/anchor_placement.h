@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "bespoke/anchors/anchors.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -22,6 +23,10 @@ struct AnchorPlacement {
 /// `anchors`: 3×n. All zero without anchors. Throws InvalidInput when the mesh has no faces or something is
 /// not finite.
 AnchorPlacement anchor_placement(const TriangleMesh& model, const Points& anchors);
+
+/// One line, empty unless either side lies far from its own model and not from the other's: the models, or
+/// "a" and "b", are exchanged. Throws as above.
+std::string exchanged_sides(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
 
 /// "half of the anchors lie 12.3 or more from the model; they span 45, the model 4.5".
 std::string to_string(const AnchorPlacement& placement);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bespoke/anchors/anchor_curves.h"
+#include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
@@ -90,6 +91,8 @@ void require_models(const TriangleMesh& source, const TriangleMesh& target, cons
                      "their anchors");
   else
     require_one_unit(diagonal(source.vertices), diagonal(target.vertices), "their bounding boxes");
+  if (const std::string mistake = exchanged_sides(anchors, source, target); !mistake.empty())
+    throw InvalidInput(mistake);
 }
 
 /// The models as the surface fitting takes them: along a seam a surface does not end.
