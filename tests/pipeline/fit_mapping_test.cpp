@@ -14,6 +14,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/product/mesh_io.h"
+#include "support/bent_tube.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -143,6 +144,39 @@ TEST(FitMapping, FitsAsIfASlippedAnchorWereNotThereUnlessSomebodyStandsByIt) {
   EXPECT_THAT(stage_lines(fit.summary, slipped.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
   wrong.sigma = 0;
   EXPECT_LT(slipped.fit().anchor_residual[4], 1e-3 * fit.anchor_residual[4]);
+}
+
+/// A tube onto the same tube bent at its elbow, with pairs along three of its lines.
+struct BentTube {
+  TriangleMesh source = shapes::tube();
+  TriangleMesh target = source;
+  Anchors anchors;
+
+  BentTube() {
+    for (auto vertex : target.vertices.colwise()) vertex = shapes::bent(vertex, 60);
+    for (int ring = 0; ring <= 80; ring += 16)
+      for (int side = 0; side < shapes::tube_sides; side += 4) {
+        const int vertex = ring * shapes::tube_sides + side;
+        anchors.pairs.push_back({"ring " + std::to_string(ring) + " side " + std::to_string(side),
+                                 source.vertices.col(vertex), target.vertices.col(vertex)});
+      }
+  }
+
+  FittedMapping laid() const {
+    FitOptions options;
+    options.lambda = 0.5;
+    return fit_source_surface(source, target, anchors, options);
+  }
+};
+
+TEST(FitMapping, LeavesOutASlippedAnchorThatABendHidesFromTheOthers) {
+  BentTube tube;
+  constexpr int slipped = 12;  // ring 64, side 0
+  tube.anchors.pairs[slipped].b = tube.target.vertices.col(70 * shapes::tube_sides + 3);
+  EXPECT_TRUE(audit_anchors(tube.anchors).suspicious.empty());
+  const FittedMapping fit = tube.laid();
+  ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
+  EXPECT_EQ(fit.summary.accuracy.left_out[0].index, std::size_t{slipped});
 }
 
 TEST(FitMapping, SaysWhatEveryStageFound) {

@@ -9,6 +9,7 @@
 #include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/pipeline/anchor_judge.h"
 #include "bespoke/pipeline/disowned_anchors.h"
 #include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/rbf/global_rbf.h"
@@ -83,10 +84,13 @@ void lay_by_rated(FittedMapping& result, const LayInput& input, const RatedAncho
   summary.surface_method = options.surface_fit.method;
 }
 
+/// Where the source's vertices are laid on the target, 3×n, target frame.
+Points laid_vertices(const FittedMapping& laid) { return laid.target_from_source * laid.fitted_vertices; }
+
 /// Where points on or near the source are once it is laid on the target, target frame.
 Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, const Points& x) {
   const ClosestPointTree tree(source);
-  const Points vertices = laid.target_from_source * laid.fitted_vertices;
+  const Points vertices = laid_vertices(laid);
   Points places = Points::Zero(3, x.cols());
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const SurfacePoint foot = *tree.closest(x.col(i));
@@ -96,71 +100,34 @@ Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, c
   return places;
 }
 
-/// Pairs that the others contradict (anchor_audit.h), if nobody stands by them and the surfaces may judge
-/// them: numbers among those given. The printed method takes all.
-std::vector<std::size_t> doubted_pairs(const LayInput& input, const AnchorAudit& audit,
-                                       const RatedAnchors& rated) {
-  std::vector<std::size_t> doubted;
-  if (input.options.surface_fit.method != SurfaceFitMethod::deformation_graph) return doubted;
-  const ClosestPointTree surface(input.source);
-  const double reach = near_surface * diagonal(input.source.vertices);
-  for (const SuspiciousAnchor& anchor : audit.suspicious) {
-    const AnchorPair& pair = input.given.pairs[anchor.index];
-    if (is_unrated(pair) && std::binary_search(rated.kept.begin(), rated.kept.end(), anchor.index) &&
-        surface.closest(pair.a, {.max_distance = reach}))
-      doubted.push_back(anchor.index);
-  }
-  return doubted;
-}
-
-/// Those of the pairs that surfaces laid without them put elsewhere.
-std::vector<LeftOutAnchor> put_elsewhere(const FittedMapping& laid, const LayInput& input,
-                                         const std::vector<std::size_t>& left_out) {
-  // Of the target's diagonal. Fifteen right pairs of each of five pairs of models, left out one by one, came
-  // to lie within 2.7 %; clicks that slipped by 15 % on ten, at 11.6 % or farther.
-  constexpr double least = 0.04;
-  Points sources(3, static_cast<Eigen::Index>(left_out.size()));
-  for (std::size_t k = 0; k < left_out.size(); ++k)
-    sources.col(static_cast<Eigen::Index>(k)) = input.given.pairs[left_out[k]].a;
-  const Points places = laid_with_source(laid, input.source, sources);
-  std::vector<LeftOutAnchor> elsewhere;
-  for (std::size_t k = 0; k < left_out.size(); ++k) {
-    const double distance =
-        (places.col(static_cast<Eigen::Index>(k)) - input.given.pairs[left_out[k]].b).norm();
-    if (distance > least * diagonal(input.target.vertices)) elsewhere.push_back({left_out[k], distance});
-  }
-  return elsewhere;
-}
-
 double misfit(const FittedMapping& laid, const LayInput& input) {
-  return judge_placement(input.source, laid.target_from_source * laid.fitted_vertices, input.target).misfit();
+  return judge_placement(input.source, laid_vertices(laid), input.target).misfit();
 }
 
 /// Lays the source without the pairs that surfaces so laid disown, and takes that if it explains the target
-/// no worse than with them. Where it explains it worse, right pairs may have been disowned beside wrong ones:
-/// then each is asked for alone. Returns the pairs then to be used.
+/// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been disowned
+/// beside wrong ones: then each is asked for alone. Returns the pairs then to be used.
 RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
-                              const std::vector<std::size_t>& doubted, const Progress& progress) {
-  FittedMapping undoubted;
+                              const AnchorJudge& judge, const std::vector<std::size_t>& doubted,
+                              const Progress& progress) {
+  FittedMapping undoubted = result;
   const auto lay_without = [&](const std::vector<std::size_t>& left_out) {
     std::vector<LeftOutAnchor> all;
     for (const std::size_t index : left_out) all.push_back({index, 0});
-    undoubted = result;
     lay_by_rated(undoubted, input, without(rated, all), progress);
-    return put_elsewhere(undoubted, input, left_out);
+    return judge.put_elsewhere(laid_vertices(undoubted), left_out);
   };
   std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, lay_without);
-  FittedMapping trusting = result;
-  lay_by_rated(trusting, input, rated, progress);
-  const double trusting_misfit = misfit(trusting, input);
+  const double trusting_misfit = misfit(result, input);
   const auto explains_worse = [&] { return disowned.empty() || misfit(undoubted, input) > trusting_misfit; };
   bool trusts = explains_worse();
   if (trusts && disowned.size() > 1) {
     disowned = disowned_anchors(disowned_alone(disowned, lay_without), lay_without);
     trusts = explains_worse();
   }
-  result = std::move(trusts ? trusting : undoubted);
-  return trusts ? rated : without(rated, disowned);
+  if (trusts) return rated;
+  result = std::move(undoubted);
+  return without(rated, disowned);
 }
 
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
@@ -168,12 +135,14 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
 Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
                        const Progress& progress) {
   RatedAnchors rated = rate_anchors(anchors, input.source, input.target);
+  lay_by_rated(result, input, rated, progress);
   AnchorAudit audit = audit_anchors(input.given);
-  const std::vector<std::size_t> doubted = doubted_pairs(input, audit, rated);
-  if (doubted.empty())
-    lay_by_rated(result, input, rated, progress);
-  else
-    rated = lay_by_undoubted(result, input, rated, doubted, progress);
+  // The printed method takes all pairs.
+  if (input.options.surface_fit.method == SurfaceFitMethod::deformation_graph) {
+    const AnchorJudge judge(input.source, input.target, input.given, rated);
+    const std::vector<std::size_t> doubted = judge.doubted(laid_vertices(result), audit);
+    if (!doubted.empty()) rated = lay_by_undoubted(result, input, rated, judge, doubted, progress);
+  }
   result.summary.coarse->audit = std::move(audit);
   result.summary.accuracy = std::move(rated.accuracy);
   result.anchor_sigma = std::move(rated.sigmas);

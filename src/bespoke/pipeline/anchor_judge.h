@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "bespoke/anchors/anchor_accuracy.h"
+#include "bespoke/anchors/anchor_audit.h"
+#include "bespoke/mesh/closest_point.h"
+
+namespace bespoke {
+
+/// What surfaces laid on each other say about pairs that are on the source and that nobody stands by: neither
+/// σ nor weight was given. `laid` stands for where the source's vertices lie then, 3×n, target frame, mesh
+/// units.
+class AnchorJudge {
+ public:
+  /// rated: `given`, perhaps with pairs of curves behind. What is referred to must outlive this.
+  AnchorJudge(const TriangleMesh& source, const TriangleMesh& target, const Anchors& given,
+              const RatedAnchors& rated);
+
+  /// Pairs that a source laid with all of them does not meet, or only by a strain around them
+  /// (surface_strain.h) as of a stretch to twice the length; half of that for pairs that the others
+  /// contradict. At most a third, the worst, and none among fewer than seven. Numbers among those given,
+  /// ascending.
+  std::vector<std::size_t> doubted(const Points& laid, const AnchorAudit& audit) const;
+
+  /// Of these pairs, which must be judged ones, those that lie farther than 4 % of the target's diagonal from
+  /// where the laid source has them.
+  std::vector<LeftOutAnchor> put_elsewhere(const Points& laid, const std::vector<std::size_t>& pairs) const;
+
+ private:
+  double distance(const Points& laid, std::size_t judged) const;
+  bool is_met(double distance) const;
+
+  const TriangleMesh& source_;
+  const Anchors& given_;
+  double source_size_, target_size_;  // diagonals
+  std::size_t count_ = 0;             // of the given pairs that the fit uses
+  std::vector<std::size_t> judged_;
+  std::vector<SurfacePoint> feet_;  // of the judged pairs' sources
+};
+
+}  // namespace bespoke
