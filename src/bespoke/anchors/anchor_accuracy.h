@@ -16,7 +16,7 @@ struct SlippedAnchor {
   double distance = 0;  ///< mesh units
 };
 
-/// A pair that the others contradict, and that the surfaces laid without it put elsewhere.
+/// A pair that strains the surfaces, and that surfaces laid without it put elsewhere.
 struct LeftOutAnchor {
   std::size_t index = 0;
   double distance = 0;  ///< of its target from where they put it, mesh units
