@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
@@ -413,6 +414,28 @@ TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("bespoke: warning: half of the source was laid "));
   EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it, and are the anchors its own?"));
+}
+
+TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesBareUnlessAPatchExcludesIt) {
+  const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
+  EXPECT_THAT(pair_.fit("map.vdb", quick).err, Not(HasSubstr("bare")));
+  const TriangleMesh target = read_triangle_mesh(pair_.file("target.obj"));
+  const Vector3 beside = target.vertices.rowwise().maxCoeff() + Vector3(1, 0, 0);
+  const TriangleMesh ball = shapes::moved(shapes::icosphere(2), {0.4 * Matrix3::Identity(), beside});
+  write_triangle_mesh(pair_.file("target.obj"), shapes::joined(target, ball));
+  ProgramResult fit = pair_.fit("map.vdb", quick);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr(" % of the target is bare, at most "));
+  EXPECT_THAT(fit.err, HasSubstr("bespoke anchors suggest"));
+
+  json anchors = read_json("anchors.json");
+  std::vector<int> faces(static_cast<std::size_t>(ball.faces.cols()));
+  std::iota(faces.begin(), faces.end(), static_cast<int>(target.faces.cols()));
+  anchors["patches"] = {{{"name", "ball"}, {"b", {{"faces", faces}}}, {"exclude", true}}};
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  fit = pair_.fit("map.vdb", quick);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, Not(HasSubstr("bare")));
 }
 
 TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {

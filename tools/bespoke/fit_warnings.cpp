@@ -63,6 +63,13 @@ void warn_of_uncovered_source(const RunContext& context, double diagonal, const 
                ", or more from the target; is it the right target, all of it, and are the anchors its own?");
 }
 
+void warn_of_bare_target(const RunContext& context, const BareArea& bare) {
+  if (bare.is_notable())
+    context.warn(to_string(bare) +
+                 "; if the source has that part, give pairs on it (bespoke anchors suggest says where), else "
+                 "exclude it by a patch");
+}
+
 /// A certified map may still not be the one that was asked for.
 void warn_of_missed_vertices(const RunContext& context, double diagonal, std::vector<UnmetVertex> far) {
   std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * diagonal); });
@@ -88,6 +95,7 @@ void warn_of_misses(const RunContext& context, const TriangleMesh& source, const
   const FitSummary& summary = made.fit.summary;
   const double size = diagonal(source.vertices);
   if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
+  if (summary.bare) warn_of_bare_target(context, *summary.bare);
   warn_of_missed_vertices(context, size, summary.elastic.unmet);
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
 }

@@ -111,6 +111,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   lines.push_back({"surface-fit", summary.surface ? std::string(entry_of(summary.surface_method).name) +
                                                         ": " + to_string(*summary.surface)
                                                   : "given: the fitted mesh as it is"});
+  if (summary.bare && summary.bare->is_notable()) lines.push_back({"bare", to_string(*summary.bare)});
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});

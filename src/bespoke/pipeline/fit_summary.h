@@ -13,6 +13,7 @@
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/fit_unanchored.h"
 #include "bespoke/pipeline/unmet_vertices.h"
+#include "bespoke/quality/bare_area.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/contact.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -83,6 +84,8 @@ struct FitSummary {
   std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given, or no anchors
   std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
+  std::optional<BareArea>
+      bare;  ///< farther than 1 % of the target's diagonal; empty when the fitted source was given
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
   ElasticSummary elastic;
   std::vector<CurveSummary> curves;
@@ -101,13 +104,13 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "surface-fit",
+  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "surface-fit", "bare",
                      ///< "contact", "elastic", "curves", "patches", "bake"
   std::string line;
 };
 
 /// In their order; "cloud" for a target that was one, "seams" for models that have some, "alignment" without
-/// anchors only, "accuracy" only where it found something.
+/// anchors only, "accuracy" and "bare" only where they found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

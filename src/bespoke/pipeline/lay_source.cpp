@@ -12,6 +12,7 @@
 #include "bespoke/pipeline/anchor_judge.h"
 #include "bespoke/pipeline/disowned_anchors.h"
 #include "bespoke/pipeline/fit_patches.h"
+#include "bespoke/quality/bare_area.h"
 #include "bespoke/rbf/global_rbf.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
@@ -192,19 +193,27 @@ void lay_by_surfaces(FittedMapping& result, const TriangleMesh& source, const Tr
   summary.unanchored = std::move(fit.summary);
 }
 
+/// Γ and H'_a, however they are found. Returns the anchors as the fit took them.
+Anchors lay(FittedMapping& result, const LayInput& input, const Progress& progress) {
+  Anchors lines = input.given;
+  for (const PatchBorder& border : input.patches.borders) lines.curves.push_back(border.curve);
+  if (!lines.curves.empty()) return lay_by_curves(result, input, lines, progress);
+  if (!input.given.pairs.empty()) return lay_by_anchors(result, input, input.given, progress);
+  lay_by_surfaces(result, input.source, input.target, input.options, progress);
+  return {};
+}
+
 }  // namespace
 
 Anchors lay_source(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
                    const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   const FitPatches patches = fit_patches(anchors, source, target);
   result.summary.patches = patches.found;
-  const LayInput input{source, target, patches, anchors, options};
-  Anchors lines = anchors;
-  for (const PatchBorder& border : patches.borders) lines.curves.push_back(border.curve);
-  if (!lines.curves.empty()) return lay_by_curves(result, input, lines, progress);
-  if (!anchors.pairs.empty()) return lay_by_anchors(result, input, anchors, progress);
-  lay_by_surfaces(result, source, target, options, progress);
-  return {};
+  Anchors rated = lay(result, {source, target, patches, anchors, options}, progress);
+  constexpr double reach = 0.01;  // of the target's diagonal
+  result.summary.bare = bare_area(without_excluded(target, patches.target).mesh,
+                                  {laid_vertices(result), source.faces}, reach * diagonal(target.vertices));
+  return rated;
 }
 
 }  // namespace bespoke

@@ -257,6 +257,13 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     add("surface-fit", to_json(*summary.surface, summary.surface_method), summary.surface->seconds);
   else
     add("surface-fit", {{"method", "given"}}, 0);
+  // Only where there is any: the records of all other fits stay as they were.
+  if (summary.bare && summary.bare->is_notable())
+    add("bare",
+        {{"share", summary.bare->share},
+         {"distance", summary.bare->distance},
+         {"farthest", to_json(summary.bare->farthest)}},
+        0);
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
   if (!summary.curves.empty()) add("curves", to_json(summary.curves), 0);
