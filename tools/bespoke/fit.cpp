@@ -230,6 +230,12 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   CLI::Option* elastic = add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
+  add_name_option(
+      fit, "--guides", arguments.guides, guided_maps,
+      with_default("multiscale, diffeomorphic: maps that take space off the surface along with it as a "
+                   "rigid body, so that a loose sleeve turns with its arm; all costs up to twice the "
+                   "time and voxels",
+                   name_of(guided_maps, defaults.fit.guides)));
   CLI::Option* path =
       add_name_option(fit, "--path", arguments.path, rotation_paths,
                       "How the motion goes with t; stored in the asset (default: flow for a map of "

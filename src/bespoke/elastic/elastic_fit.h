@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/named.h"
 
 namespace bespoke {
 
@@ -24,6 +26,16 @@ enum class AffinePart {
   similarity,  ///< the nearest similarity: for steps of a change of pose, whose affine maps would shear space
 };
 
+/// Which maps go by guides in space (space_guides.h) beside the surface.
+enum class GuidedMaps {
+  none,   ///< the surface alone is met, as printed
+  steps,  ///< steps of a chain, whose turns space would follow less the farther it is from the surface
+  all,
+};
+inline constexpr std::array guided_maps{Named<GuidedMaps>{"none", GuidedMaps::none},
+                                        Named<GuidedMaps>{"steps", GuidedMaps::steps},
+                                        Named<GuidedMaps>{"all", GuidedMaps::all}};
+
 struct ElasticOptions {
   double lambda = 0;  ///< effective distance, > 0, mesh units
   double fit_tolerance =
@@ -31,6 +43,7 @@ struct ElasticOptions {
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   /// csrbf and p-FFD have an affine part by construction and take no other.
   AffinePart affine_part = AffinePart::least_squares;
+  bool guided = false;  ///< the multiscale methods meet guides in space too
 };
 
 /// A number, or a list of them, that a method found, under the name that reports and assets give it.

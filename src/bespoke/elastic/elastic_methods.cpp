@@ -30,6 +30,7 @@ ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, 
   multiscale.tolerance = options.fit_tolerance;
   multiscale.composed = composed;
   multiscale.affine_part = options.affine_part;
+  if (options.guided) multiscale.guides = space_guides(input.source, input.fitted, options.lambda);
   MultiscaleFit fit = fit_multiscale(input.sources, input.targets, multiscale, progress);
   return {std::move(fit.map), std::move(fit.summary)};
 }
@@ -54,12 +55,13 @@ ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const 
 }  // namespace
 
 constinit const std::array<ElasticMethodRow, 5> elastic_methods{
-    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, {}, stored<CsrbfMap, read_csrbf>(1)},
+    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, false, {}, stored<CsrbfMap, read_csrbf>(1)},
      {"multiscale",
       ElasticMethod::multiscale,
       multiscale<false>,
       true,
       false,
+      true,
       {},
       stored<MultiscaleMap, read_multiscale>(2)},
      {"diffeomorphic",
@@ -67,12 +69,14 @@ constinit const std::array<ElasticMethodRow, 5> elastic_methods{
       multiscale<true>,
       true,
       true,
+      true,
       {multiscale_layers, multiscale_halves},
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, {}, stored<PffdMap, read_pffd>(4)},
+     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, false, {}, stored<PffdMap, read_pffd>(4)},
      {"pffd-smooth",
       ElasticMethod::pffd_smooth,
       pffd<SmoothPffdMap>,
+      false,
       false,
       false,
       {},

@@ -59,6 +59,7 @@ struct ElasticMethodRow {
   bool meets_points;
   /// Whether its maps fold nowhere, so that a bake's folds are those of its voxels.
   bool keeps_orientation;
+  bool takes_guides;  ///< in space, beside the surface
   CompositionOfMaps composition;
   StoredMapType stored;
 };

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/elastic/elastic_fit.h"
+#include "bespoke/elastic/space_guides.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
 #include "bespoke/rbf/rbf_layer.h"
@@ -23,6 +24,9 @@ struct MultiscaleOptions {
                          ///< otherwise summed
   int max_levels = 12;
   AffinePart affine_part = AffinePart::least_squares;
+  /// Met as well, within 5 % of their offset and by layers whose λ_k is no smaller than it: finer ones are
+  /// the surface's alone. They change neither the affine part nor what the summary says.
+  SpaceGuides guides = {};
 };
 
 struct MultiscaleSummary {

@@ -25,6 +25,16 @@ constexpr double largest_gradient = 0.9;
 constexpr int most_layers_per_scale = 6;
 // λ_k in tolerances below which a layer could repair next to nothing.
 constexpr double least_radius = 4;
+// Of a guide's offset: how far it may be missed. Not varied.
+constexpr double guide_tolerance = 0.05;
+
+void require_usable(const SpaceGuides& guides) {
+  if (guides.sources.cols() == 0) return;
+  if (guides.sources.cols() != guides.targets.cols() ||
+      !(guides.sources.allFinite() && guides.targets.allFinite() && guides.offset > 0))
+    throw InvalidInput(
+        "multiscale: guides need finite sources, as many finite targets, and an offset above 0");
+}
 
 void require_usable(const Points& sources, const Points& targets, const MultiscaleOptions& options) {
   if (sources.cols() != targets.cols())
@@ -41,6 +51,7 @@ void require_usable(const Points& sources, const Points& targets, const Multisca
   if (!(options.max_levels > 0))
     throw InvalidInput("multiscale: " + std::to_string(options.max_levels) +
                        " levels; there must be one at least");
+  require_usable(options.guides);
 }
 
 AffineMap upright_affine(const Points& sources, const Points& targets, AffinePart part) {
@@ -96,12 +107,13 @@ class Fitter {
  public:
   Fitter(const Points& sources, const Points& targets, const MultiscaleOptions& options,
          const Progress& progress)
-      : sources_(sources),
-        targets_(targets),
+      : pairs_(sources.cols()),
+        sources_(joined(sources, options.guides.sources)),
+        targets_(joined(targets, options.guides.targets)),
         options_(options),
         progress_(progress),
         affine_(upright_affine(sources, targets, options.affine_part)),
-        images_(affine_ * sources) {}
+        images_(affine_ * sources_) {}
 
   MultiscaleFit run() {
     double lambda = options_.lambda;
@@ -120,12 +132,28 @@ class Fitter {
   }
 
  private:
-  double worst() const { return (targets_ - images_).colwise().norm().maxCoeff(); }
+  static Points joined(const Points& points, const Points& guides) {
+    Points all(3, points.cols() + guides.cols());
+    all << points, guides;
+    return all;
+  }
+
+  double worst() const { return (targets_ - images_).leftCols(pairs_).colwise().norm().maxCoeff(); }
+
+  /// How many points a layer of this radius goes by: finer ones are the surface's alone.
+  Eigen::Index points_for(double lambda) const {
+    return lambda >= options_.guides.offset ? sources_.cols() : pairs_;
+  }
+
+  double tolerance(Eigen::Index i) const {
+    return i < pairs_ ? options_.tolerance
+                      : std::max(options_.tolerance, guide_tolerance * options_.guides.offset);
+  }
 
   void compose_scale(double lambda) {
     for (int count = 0; count < most_layers_per_scale; ++count) {
       progress_.check();
-      const double before = (targets_ - images_).squaredNorm();
+      const double before = (targets_ - images_).leftCols(pairs_).squaredNorm();
       const Points centers = centers_at(lambda);
       bool finished = true;
       for (auto value : residuals_at_centers_.colwise()) {
@@ -141,19 +169,20 @@ class Fitter {
       add(std::move(layer));
       constexpr double least_progress = 0.9;
       if (finished || worst() <= options_.tolerance) return;
-      if ((targets_ - images_).squaredNorm() > least_progress * before) return;
+      if ((targets_ - images_).leftCols(pairs_).squaredNorm() > least_progress * before) return;
     }
   }
 
   /// Thinned places where a residual exceeds the tolerance, with those around them, which must not be dragged
   /// along; fills residuals_at_centers_.
   Points centers_at(double lambda) {
-    const Points& places = options_.composed ? images_ : sources_;
+    const Eigen::Index count = points_for(lambda);
+    const Points places = (options_.composed ? images_ : sources_).leftCols(count);
     const double spacing = lambda / 4;
-    const Points residuals = targets_ - images_;
+    const Points residuals = (targets_ - images_).leftCols(count);
     std::vector<int> beyond;
     for (int i = 0; i < residuals.cols(); ++i)
-      if (residuals.col(i).norm() > options_.tolerance) beyond.push_back(i);
+      if (residuals.col(i).norm() > tolerance(i)) beyond.push_back(i);
     const Points wanted = places(Eigen::all, beyond);
     const Points wanted_thinned = wanted(Eigen::all, thin_points(wanted, spacing));
     const PointGrid wanted_grid(wanted_thinned, lambda);
@@ -178,13 +207,14 @@ class Fitter {
   }
 
   void finish() {
-    const Eigen::RowVectorXd residuals = (targets_ - images_).colwise().norm();
+    const Eigen::RowVectorXd residuals = (targets_ - images_).leftCols(pairs_).colwise().norm();
     summary_.residuals = summarize({residuals.begin(), residuals.end()});
     summary_.within_tolerance = std::size_t((residuals.array() <= options_.tolerance).count());
   }
 
-  const Points& sources_;
-  const Points& targets_;
+  Eigen::Index pairs_;  // at the front of the points; guides follow
+  Points sources_;
+  Points targets_;
   const MultiscaleOptions& options_;
   const Progress& progress_;
   AffineMap affine_;

@@ -52,8 +52,10 @@ void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anc
   summary.anchor_residuals = summarize(result.anchor_residual);
 }
 
-ElasticOptions elastic_options(const FitOptions& options) {
-  return {options.lambda, options.fit_tolerance, options.max_memory};
+/// Of a map that is all there is, or of the steps of a chain.
+ElasticOptions elastic_options(const FitOptions& options, bool of_steps) {
+  const bool guided = options.guides == GuidedMaps::all || (of_steps && options.guides == GuidedMaps::steps);
+  return {options.lambda, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
 }
 
 void take_steps(FittedMapping& result, ElasticSteps steps) {
@@ -75,11 +77,11 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
     if (!options.steps) result.plan->times = equal_times(std::max(count, step_count(motion)));
     result.summary.elastic.motion = motion;
     take_steps(result, fit_elastic_steps(source, result.pairs, *result.plan, options.elastic,
-                                         elastic_options(options), progress));
+                                         elastic_options(options, true), progress));
   } else {
     ElasticFit fit = elastic_method(options.elastic)
                          .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
-                              elastic_options(options), progress);
+                              elastic_options(options, false), progress);
     take_steps(result, {{std::move(fit.map)}, {std::move(fit.found)}, {source.vertices}});
   }
   judge(result, source, anchors, options);
@@ -147,7 +149,7 @@ FittedMapping halved_on_path(const FittedMapping& fitted, const TriangleMesh& so
   result.plan = halved(*result.plan, step);
   put_in_place(result, step,
                fit_halves(source, result.pairs, *result.plan, *result.elastic, step, options.elastic,
-                          elastic_options(options), progress));
+                          elastic_options(options, true), progress));
   judge(result, source, anchors, options);
   return result;
 }

@@ -21,7 +21,14 @@ Json laplacian_json(const SurfaceFitOptions& options) {
   return json;
 }
 
-std::string recorded_options(const MakeMapOptions& options, RotationPath path, bool given_fitted) {
+/// Where guides, or that there are none, shaped the map: the records of all others stay as they were.
+bool are_guides_recorded(const FitOptions& options, const FittedMapping& fit) {
+  return elastic_method(options.elastic).takes_guides &&
+         (options.guides != GuidedMaps::steps || fit.elastic->steps().size() > 1);
+}
+
+std::string recorded_options(const MakeMapOptions& options, const FittedMapping& fit, RotationPath path,
+                             bool given_fitted) {
   Json json;
   json["path"] = name_of(rotation_paths, path);
   if (!given_fitted) {
@@ -36,6 +43,7 @@ std::string recorded_options(const MakeMapOptions& options, RotationPath path, b
   }
   json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
+  if (are_guides_recorded(options.fit, fit)) json["guides"] = name_of(guided_maps, options.fit.guides);
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["contact_gap"] = options.fit.contact_gap;
   json["tolerance"] = options.bake.tolerance;
@@ -115,7 +123,7 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
   record.lambda = options.fit.lambda;
   record.tolerance = options.bake.tolerance;
   record.bake_error = fit.summary.bake->error;
-  record.options_json = recorded_options(options, path_of(fit, options), input.fitted != nullptr);
+  record.options_json = recorded_options(options, fit, path_of(fit, options), input.fitted != nullptr);
   record.stages_json = recorded_stages(fit.summary, input.anchors);
   record.anchors = anchor_records(input.anchors, fit);
   record.source = {content_hash(input.source), bounding_box(input.source.vertices)};

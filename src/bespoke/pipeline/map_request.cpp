@@ -8,6 +8,7 @@ void use_printed_method(MakeMapOptions& options) {
   options.fit.surface_fit.laplacian = no_additions;
   options.fit.surface_fit.mend_models = false;
   options.fit.elastic = ElasticMethod::csrbf;
+  options.fit.guides = GuidedMaps::none;
   options.path = RotationPath::euler;
   options.fit.steps = 1;
   options.fit.contact_gap = 0;
@@ -34,6 +35,7 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
   if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
   if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
   if (request.elastic) options.fit.elastic = *request.elastic;
+  if (request.guides) options.fit.guides = *request.guides;
   if (request.path) options.path = *request.path;
   if (request.steps) options.fit.steps = *request.steps;
   set_lengths(request, source_diagonal, options);

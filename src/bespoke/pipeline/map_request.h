@@ -14,6 +14,7 @@ struct MapRequest {
   std::optional<BoundaryRule> boundaries;
   std::optional<double> max_stretch;  ///< > 1
   std::optional<ElasticMethod> elastic;
+  std::optional<GuidedMaps> guides;
   std::optional<RotationPath> path;
   std::optional<int> steps;  ///< > 0
   std::optional<Length> anchor_sigma;

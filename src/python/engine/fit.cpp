@@ -32,6 +32,7 @@ class RequestReader {
     take("surface_fit", surface_fits, request.surface_fit);
     take("boundaries", boundary_rules, request.boundaries);
     take("elastic", elastic_methods, request.elastic);
+    take("guides", guided_maps, request.guides);
     take("path", rotation_paths, request.path);
     take("max_stretch", request.max_stretch);
     take("steps", request.steps);
