@@ -179,6 +179,28 @@ TEST(FitMapping, LeavesOutASlippedAnchorThatABendHidesFromTheOthers) {
   EXPECT_EQ(fit.summary.accuracy.left_out[0].index, std::size_t{slipped});
 }
 
+TEST(FitMapping, StepsTakeALooseSleeveAlongWithItsArm) {
+  const BentTube tube;
+  const auto lag = [&](GuidedMaps guides, int steps) {
+    FitOptions options;
+    options.lambda = 0.5;
+    options.fit_tolerance = 1e-3;
+    options.steps = steps;
+    options.guides = guides;
+    const FittedMapping fit = fit_mapping(tube.source, tube.target, tube.anchors, options);
+    double largest = 0;
+    for (int k = 0; k < 12; ++k) {
+      const Vector3 sleeve(3, 0.35 * std::cos(k / 2.0), 0.35 * std::sin(k / 2.0));
+      const Points image = fit.target_from_source * (*fit.elastic)(Points(sleeve));
+      largest = std::max(largest, (Vector3(image) - shapes::bent(sleeve, 60)).norm());
+    }
+    return largest;
+  };
+  EXPECT_LT(lag(GuidedMaps::steps, 2), 0.5 * lag(GuidedMaps::none, 2));
+  EXPECT_EQ(lag(GuidedMaps::steps, 1), lag(GuidedMaps::none, 1));
+  EXPECT_LT(lag(GuidedMaps::all, 1), 0.5 * lag(GuidedMaps::none, 1));
+}
+
 TEST(FitMapping, SaysWhatEveryStageFound) {
   const Pair pair;
   const FitSummary summary = pair.fit().summary;

@@ -1,5 +1,6 @@
 #include "bespoke/elastic/space_guides.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +10,6 @@
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/point_grid.h"
 #include "bespoke/rigid/nearest_rotation.h"
-#include "bespoke/rigid/similarity_alignment.h"
 
 namespace bespoke {
 namespace {
@@ -29,7 +29,7 @@ class Guiding {
   Guiding(const TriangleMesh& source, const Points& fitted)
       : source_(source),
         fitted_(fitted),
-        scale_(align_similarly(source.vertices, fitted, Eigen::VectorXd::Ones(fitted.cols())).scale),
+        scale_(std::sqrt(vertex_areas({fitted, source.faces}).sum() / vertex_areas(source).sum())),
         normals_(vertex_normals(source)),
         areas_(vertex_areas(source)),
         here_(source),
