@@ -242,6 +242,9 @@ TEST(ElasticSteps, BecomeMoreWherePartsSlideAlongEachOther) {
   EXPECT_GT(chain.elastic->steps().size(), 1u);
   EXPECT_TRUE(chain.summary.elastic.divided_where_missed);
   EXPECT_LE(chain.summary.elastic.vertex_residuals.p99, options.fit_tolerance);
+  // Guides beside one tube would have to go with the other too.
+  EXPECT_TRUE(chain.summary.elastic.left_guides);
+  EXPECT_FALSE(one.summary.elastic.left_guides);
 }
 
 }  // namespace

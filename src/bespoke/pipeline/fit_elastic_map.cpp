@@ -107,6 +107,33 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
   }
 }
 
+/// One map or a chain of as many steps as the motion asks for, more where they miss vertices.
+void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
+                  const FitOptions& options, const Progress& progress) {
+  fit_steps(result, source, anchors, options,
+            options.steps.value_or(step_count(result.summary.elastic.motion)), progress);
+  const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
+  if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
+}
+
+FitOptions without_guides(FitOptions options) {
+  options.guides = GuidedMaps::none;
+  return options;
+}
+
+/// The surface comes first: where parts slide along each other, space between them cannot go with both.
+void leave_guides_that_harm(FittedMapping& guided, FittedMapping unfitted, const TriangleMesh& source,
+                            const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
+  const bool is_guided = elastic_method(options.elastic).takes_guides &&
+                         elastic_options(options, guided.elastic->steps().size() > 1).guided;
+  if (!is_guided || !(missed(guided) > options.fit_tolerance)) return;
+  fit_as_asked(unfitted, source, anchors, without_guides(options), progress);
+  if (!(missed(unfitted) < missed(guided))) return;
+  guided = std::move(unfitted);
+  guided.summary.elastic.left_guides = true;
+}
+
 /// Whether steps are, or would be, along surfaces in between.
 bool follows_path(const FittedMapping& fitted) { return fitted.plan || fitted.elastic->steps().size() == 1; }
 
@@ -147,9 +174,10 @@ FittedMapping halved_on_path(const FittedMapping& fitted, const TriangleMesh& so
   FittedMapping result = fitted;
   if (!result.plan) result.plan = plan_steps(source, result.fitted_vertices, result.pairs, 1);
   result.plan = halved(*result.plan, step);
+  const FitOptions taken = result.summary.elastic.left_guides ? without_guides(options) : options;
   put_in_place(result, step,
                fit_halves(source, result.pairs, *result.plan, *result.elastic, step, options.elastic,
-                          elastic_options(options, true), progress));
+                          elastic_options(taken, true), progress));
   judge(result, source, anchors, options);
   return result;
 }
@@ -172,9 +200,9 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   summary.method = options.elastic;
   summary.lambda = options.lambda;
   summary.motion = regional_motion(source, result.fitted_vertices);
-  fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
-  const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
-  if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
+  FittedMapping unfitted = result;
+  fit_as_asked(result, source, anchors, options, progress);
+  leave_guides_that_harm(result, std::move(unfitted), source, anchors, options, progress);
   summary.seconds = watch.seconds();
 }
 

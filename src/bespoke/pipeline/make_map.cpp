@@ -43,7 +43,9 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
   }
   json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
-  if (are_guides_recorded(options.fit, fit)) json["guides"] = name_of(guided_maps, options.fit.guides);
+  if (are_guides_recorded(options.fit, fit))
+    json["guides"] =
+        name_of(guided_maps, fit.summary.elastic.left_guides ? GuidedMaps::none : options.fit.guides);
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["contact_gap"] = options.fit.contact_gap;
   json["tolerance"] = options.bake.tolerance;
