@@ -121,7 +121,9 @@ TEST(SpaceGuides, AreRefusedByAMapWhenTheyDoNotBelongTogether) {
   };
   const Points two = Points::Ones(3, 2);
   EXPECT_NO_THROW(fit({two, two, 0.2}));
+  EXPECT_NO_THROW(fit({}));
   EXPECT_THROW(fit({two, two.leftCols(1), 0.2}), InvalidInput);
+  EXPECT_THROW(fit({Points(3, 0), two, 0.2}), InvalidInput);
   EXPECT_THROW(fit({two, two, 0}), InvalidInput);
   EXPECT_THROW(fit({two, two * std::nan(""), 0.2}), InvalidInput);
 }

@@ -286,5 +286,17 @@ TEST(ClosestPoint, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(tree.closest({0, 0, std::numeric_limits<double>::infinity()}), InvalidInput);
 }
 
+TEST(Carried, PointsGoWithTheirFaceByAnyAffineMap) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const ClosestPointTree tree(sphere);
+  const AffineMap map{(Matrix3() << 2, 1, 0, 0, 0.5, 0, -1, 0, 3).finished(), Vector3(4, 5, 6)};
+  const Points moved = map * sphere.vertices, queries = random_points(50, 1, 3);
+  for (const auto& x : queries.colwise()) {
+    const SurfacePoint place = *tree.closest(x);
+    EXPECT_LT((carried(place, sphere.faces, sphere.vertices) - place.point).norm(), 1e-14);
+    EXPECT_LT((carried(place, sphere.faces, moved) - map * place.point).norm(), 1e-13);
+  }
+}
+
 }  // namespace
 }  // namespace bespoke

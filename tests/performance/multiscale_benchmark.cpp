@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bespoke/elastic/multiscale.h"
+#include "bespoke/elastic/space_guides.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "support/random_points.h"
@@ -104,6 +105,16 @@ BENCHMARK(evaluate)
     ->ArgsProduct({{0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
+
+/// Guides of 10,242 vertices, and of four times as many, as a step of a chain asks for them.
+void guides(benchmark::State& state) {
+  const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
+  const Points fitted = test::random_rotation(1) * source.vertices;
+  SpaceGuides found;
+  for (auto _ : state) found = space_guides(source, fitted, 0.35);
+  state.counters["guides"] = static_cast<double>(found.sources.cols());
+}
+BENCHMARK(guides)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace bespoke

@@ -1,5 +1,11 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <vector>
+
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/quality/bare_area.h"
+#include "bespoke/quality/surface_strain.h"
 #include "bespoke/surface_fit/surface_fit.h"
 #include "support/shapes.h"
 
@@ -45,6 +51,26 @@ BENCHMARK_CAPTURE(fit, deformation_graph, SurfaceFitMethod::deformation_graph)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+
+/// What every fit asks of a laid source of 10,242 vertices, and of four times as many: the strain around 36
+/// anchors.
+void strain(benchmark::State& state) {
+  const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
+  const Points laid = bumpy_sphere(static_cast<int>(state.range(0))).vertices;
+  const ClosestPointTree surface(source);
+  std::vector<SurfacePoint> places;
+  for (Eigen::Index i = 0; i < 36; ++i) places.push_back(*surface.closest(source.vertices.col(i)));
+  for (auto _ : state) benchmark::DoNotOptimize(strain_around(source, laid, places, 0.07));
+}
+BENCHMARK(strain)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The same: what of the target it leaves bare.
+void bare(benchmark::State& state) {
+  const TriangleMesh target = shapes::icosphere(static_cast<int>(state.range(0)));
+  const TriangleMesh laid = bumpy_sphere(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(bare_area(target, laid, 0.035));
+}
+BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 }  // namespace
 }  // namespace bespoke

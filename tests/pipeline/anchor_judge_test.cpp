@@ -82,17 +82,23 @@ TEST(AnchorJudge, DoubtsPairsThatAreNotMet) {
   EXPECT_NEAR(elsewhere[0].distance, 0.041 * std::sqrt(2), 1e-12);
 }
 
-TEST(AnchorJudge, DoubtsTheWorstThirdAtMostAndNoneOfSix) {
-  JudgedSquare scene;
-  for (std::size_t pair = 0; pair < 6; ++pair) scene.stretch(pair, 2 + 0.2 * double(pair));
-  EXPECT_THAT(scene.doubted(), ElementsAre(2, 3, 4, 5));
-  JudgedSquare seven(7);
-  seven.stretch(0, 2.5);
+TEST(AnchorJudge, DoubtsAThirdAtMostAndNoneOfSix) {
+  JudgedSquare third;
+  for (std::size_t pair = 0; pair < 4; ++pair) third.stretch(pair, 3);
+  EXPECT_THAT(third.doubted(), ElementsAre(0, 1, 2, 3));
+  JudgedSquare seven(7), six(6);
   seven.stretch(1, 3);
+  six.stretch(1, 3);
   EXPECT_THAT(seven.doubted(), ElementsAre(1));
-  JudgedSquare six(6);
-  six.stretch(0, 3);
   EXPECT_THAT(six.doubted(), IsEmpty());
+}
+
+TEST(AnchorJudge, GoesByTheOtherPairsWhereMoreThanAThirdAreStrained) {
+  JudgedSquare half;
+  for (std::size_t pair = 0; pair < 6; ++pair) half.stretch(pair, 3);
+  EXPECT_THAT(half.doubted(), IsEmpty());
+  EXPECT_THAT(half.doubted(contradicting(3)), ElementsAre(3));
+  EXPECT_THAT(half.doubted(contradicting(9)), IsEmpty());
 }
 
 TEST(AnchorJudge, DoubtsNoPairThatSomebodyStandsByOrThatIsNoPlaceOfTheSource) {

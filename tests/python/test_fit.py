@@ -156,6 +156,7 @@ def test_interrupt_becomes_keyboard_interrupt(pair):
         ({"lambda_": "wide"}, "lambda_ wide"),
         ({"max_stretch": 0.5}, "max_stretch"),
         ({"steps": 0}, "steps"),
+        ({"guides": "some"}, "guides 'some'.*steps"),
     ],
 )
 def test_refuses_options_with_reasons(pair, options, words):

@@ -172,8 +172,9 @@ void audit(const AuditArguments& arguments) {
 
 void add_audit(CLI::App& app) {
   auto arguments = std::make_shared<AuditArguments>();
-  CLI::App* command =
-      app.add_subcommand("audit", "Say what is suspicious about pairs, as fit does, without fitting");
+  CLI::App* command = app.add_subcommand(
+      "audit",
+      "Say what is suspicious about pairs without fitting; fit also tries doubtful ones on the surfaces");
   command->add_option("INPUT", arguments->inputs, "Pairs, in any format of `anchors convert`")
       ->required()
       ->expected(1, 2);

@@ -29,9 +29,9 @@ constexpr double least_radius = 4;
 constexpr double guide_tolerance = 0.05;
 
 void require_usable(const SpaceGuides& guides) {
-  if (guides.sources.cols() == 0) return;
-  if (guides.sources.cols() != guides.targets.cols() ||
-      !(guides.sources.allFinite() && guides.targets.allFinite() && guides.offset > 0))
+  const Eigen::Index count = guides.sources.cols();
+  if (guides.targets.cols() != count || !guides.sources.allFinite() || !guides.targets.allFinite() ||
+      (count > 0 && !(guides.offset > 0)))
     throw InvalidInput(
         "multiscale: guides need finite sources, as many finite targets, and an offset above 0");
 }

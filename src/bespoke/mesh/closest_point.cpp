@@ -259,4 +259,11 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
   return nearest.answer();
 }
 
+Vector3 carried(const SurfacePoint& point, const Faces& faces, const Points& vertices) {
+  Vector3 place = Vector3::Zero();
+  for (int corner = 0; corner < 3; ++corner)
+    place += point.barycentric[corner] * vertices.col(faces(corner, point.face));
+  return place;
+}
+
 }  // namespace bespoke

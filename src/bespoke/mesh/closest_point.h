@@ -19,6 +19,9 @@ struct SurfacePoint {
   double squared_distance = std::numeric_limits<double>::infinity();  ///< from the query
 };
 
+/// Where a point of a surface is when the surface's vertices are here (3×n): it goes with its face.
+Vector3 carried(const SurfacePoint& point, const Faces& faces, const Points& vertices);
+
 /// Which points of the surface may answer a query.
 struct ClosestPointQuery {
   double max_distance = std::numeric_limits<double>::infinity();  ///< mesh units

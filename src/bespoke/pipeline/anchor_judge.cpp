@@ -1,7 +1,6 @@
 #include "bespoke/pipeline/anchor_judge.h"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 
 #include "bespoke/quality/surface_strain.h"
@@ -43,31 +42,21 @@ AnchorJudge::AnchorJudge(const TriangleMesh& source, const TriangleMesh& target,
 }
 
 std::vector<std::size_t> AnchorJudge::doubted(const Points& laid, const AnchorAudit& audit) const {
-  struct Doubt {
-    std::size_t pair;
-    double strain;
-  };
   const Eigen::VectorXd strains = strain_around(source_, laid, feet_, near_surface * source_size_);
-  std::vector<Doubt> doubts;
+  std::vector<std::size_t> all, contradicted;
   for (std::size_t k = 0; k < judged_.size(); ++k) {
     const std::size_t pair = judged_[k];
     const bool is_contradicted =
         std::any_of(audit.suspicious.begin(), audit.suspicious.end(),
                     [&](const SuspiciousAnchor& anchor) { return anchor.index == pair; });
-    const double strain = strains[static_cast<Eigen::Index>(k)];
-    if (!is_met(distance(laid, k)))
-      doubts.push_back({pair, std::numeric_limits<double>::infinity()});
-    else if (strain > (is_contradicted ? most_strain_of_contradicted : most_strain))
-      doubts.push_back({pair, strain});
+    const double most = is_contradicted ? most_strain_of_contradicted : most_strain;
+    if (is_met(distance(laid, k)) && !(strains[static_cast<Eigen::Index>(k)] > most)) continue;
+    all.push_back(pair);
+    if (is_contradicted) contradicted.push_back(pair);
   }
-  std::stable_sort(doubts.begin(), doubts.end(),
-                   [](const Doubt& a, const Doubt& b) { return a.strain > b.strain; });
-  const std::size_t trusted = std::max(count_ - count_ / 3, least_trusted);
-  doubts.resize(std::min(doubts.size(), count_ - std::min(count_, trusted)));
-  std::vector<std::size_t> pairs;
-  for (const Doubt& doubt : doubts) pairs.push_back(doubt.pair);
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+  const std::size_t spared = count_ - std::min(count_, std::max(count_ - count_ / 3, least_trusted));
+  if (all.size() <= spared) return all;
+  return contradicted.size() <= spared ? contradicted : std::vector<std::size_t>();
 }
 
 std::vector<LeftOutAnchor> AnchorJudge::put_elsewhere(const Points& laid,
@@ -82,9 +71,7 @@ std::vector<LeftOutAnchor> AnchorJudge::put_elsewhere(const Points& laid,
 }
 
 double AnchorJudge::distance(const Points& laid, std::size_t judged) const {
-  const SurfacePoint& foot = feet_[judged];
-  return (laid(Eigen::all, source_.faces.col(foot.face)) * foot.barycentric - given_.pairs[judged_[judged]].b)
-      .norm();
+  return (carried(feet_[judged], source_.faces, laid) - given_.pairs[judged_[judged]].b).norm();
 }
 
 bool AnchorJudge::is_met(double distance) const { return distance <= unmet * target_size_; }

@@ -21,8 +21,9 @@ class AnchorJudge {
 
   /// Pairs that a source laid with all of them does not meet, or only by a strain around them
   /// (surface_strain.h) as of a stretch to twice the length; half of that for pairs that the others
-  /// contradict. At most a third, the worst, and none among fewer than seven. Numbers among those given,
-  /// ascending.
+  /// contradict. Where these are more than a third, they tell no wrong pair from its neighbours, and those
+  /// that the others contradict are left; none where these are more than a third too, or among fewer than
+  /// seven pairs. Numbers among those given, ascending.
   std::vector<std::size_t> doubted(const Points& laid, const AnchorAudit& audit) const;
 
   /// Of these pairs, which must be judged ones, those that lie farther than 4 % of the target's diagonal from

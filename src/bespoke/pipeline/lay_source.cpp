@@ -92,12 +92,9 @@ Points laid_vertices(const FittedMapping& laid) { return laid.target_from_source
 Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, const Points& x) {
   const ClosestPointTree tree(source);
   const Points vertices = laid_vertices(laid);
-  Points places = Points::Zero(3, x.cols());
-  for (Eigen::Index i = 0; i < x.cols(); ++i) {
-    const SurfacePoint foot = *tree.closest(x.col(i));
-    for (int corner = 0; corner < 3; ++corner)
-      places.col(i) += foot.barycentric[corner] * vertices.col(source.faces(corner, foot.face));
-  }
+  Points places(3, x.cols());
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    places.col(i) = carried(*tree.closest(x.col(i)), source.faces, vertices);
   return places;
 }
 
@@ -105,9 +102,11 @@ double misfit(const FittedMapping& laid, const LayInput& input) {
   return judge_placement(input.source, laid_vertices(laid), input.target).misfit();
 }
 
+constexpr std::size_t most_asked_alone = 6;  // a surface fitting each: seconds
+
 /// Lays the source without the pairs that surfaces so laid disown, and takes that if it explains the target
 /// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been disowned
-/// beside wrong ones: then each is asked for alone. Returns the pairs then to be used.
+/// beside wrong ones: then each of a few is asked for alone. Returns the pairs then to be used.
 RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
                               const AnchorJudge& judge, const std::vector<std::size_t>& doubted,
                               const Progress& progress) {
@@ -122,7 +121,7 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   const double trusting_misfit = misfit(result, input);
   const auto explains_worse = [&] { return disowned.empty() || misfit(undoubted, input) > trusting_misfit; };
   bool trusts = explains_worse();
-  if (trusts && disowned.size() > 1) {
+  if (trusts && disowned.size() > 1 && disowned.size() <= most_asked_alone) {
     disowned = disowned_anchors(disowned_alone(disowned, lay_without), lay_without);
     trusts = explains_worse();
   }

@@ -206,6 +206,7 @@ Json to_json(const ElasticSummary& summary) {
   if (summary.anchors_off_surface > 0)
     json[summary.meets_anchors_off_surface ? "anchors_off_surface" : "anchors_off_surface_left_out"] =
         summary.anchors_off_surface;
+  if (summary.left_guides) json["left_guides"] = true;
   if (summary.later_steps.empty()) return json;
   json["turn"] = summary.motion.turn;
   json["stretch"] = summary.motion.stretch;

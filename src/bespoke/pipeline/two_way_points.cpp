@@ -31,9 +31,7 @@ TwoWayPoints two_way_points(const TriangleMesh& source, const Points& laid, cons
     for (std::size_t i = begin; i < end; ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       const SurfacePoint foot = *tree.closest(source.vertices.col(vertices[i]));
-      Vector3 other = Vector3::Zero();
-      for (int corner = 0; corner < 3; ++corner)
-        other += foot.barycentric[corner] * target.vertices.col(target.faces(corner, foot.face));
+      const Vector3 other = carried(foot, target.faces, target.vertices);
       const Vector3 one = laid.col(vertices[i]);
       points.apart[k] = (other - one).norm();
       points.middles.col(k) = (one + other) / 2;

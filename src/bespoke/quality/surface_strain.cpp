@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
@@ -66,15 +67,17 @@ Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& laid,
                                     : 0;
 
   Eigen::VectorXd around(static_cast<Eigen::Index>(places.size()));
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    double sum = 0, weight = 0;
-    for (Eigen::Index face = 0; face < faces; ++face)
-      if (face == places[k].face || (centers.col(face) - places[k].point).squaredNorm() <= reach * reach) {
-        sum += areas[face] * strains[face];
-        weight += areas[face];
-      }
-    around[static_cast<Eigen::Index>(k)] = weight > 0 ? std::sqrt(sum / weight) : 0;
-  }
+  parallel_for(places.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum = 0, weight = 0;
+      for (Eigen::Index face = 0; face < faces; ++face)
+        if (face == places[k].face || (centers.col(face) - places[k].point).squaredNorm() <= reach * reach) {
+          sum += areas[face] * strains[face];
+          weight += areas[face];
+        }
+      around[static_cast<Eigen::Index>(k)] = weight > 0 ? std::sqrt(sum / weight) : 0;
+    }
+  });
   return around;
 }
 

@@ -77,12 +77,7 @@ class ContactSearch {
     return Contact{vertex, *foot, there, (1 + overshoot) * wanted - distance, std::max(0.0, -distance)};
   }
 
-  Vector3 on_source(const SurfacePoint& foot) const {
-    Vector3 place = Vector3::Zero();
-    for (int k = 0; k < 3; ++k)
-      place += foot.barycentric[k] * source_.vertices.col(source_.faces(k, foot.face));
-    return place;
-  }
+  Vector3 on_source(const SurfacePoint& foot) const { return carried(foot, source_.faces, source_.vertices); }
 
   double source_distance(int vertex, const SurfacePoint& foot) const {
     return (source_.vertices.col(vertex) - on_source(foot)).norm();
