@@ -57,5 +57,19 @@ TEST(DisownedAnchors, AreToldByTheDistanceOfTheLastTime) {
   EXPECT_EQ(found[0].distance, 1);
 }
 
+TEST(DisownedAnchors, AreTakenBackNearestFirstEachBesideThoseStillLeftOut) {
+  // 4 is right once 3, which has slipped, is left out; 5 once 4 is back.
+  std::vector<std::size_t> asked;
+  const auto take_back = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
+    asked.push_back(anchor);
+    return has(others, 3) && (anchor == 4 || (anchor == 5 && !has(others, 4)));
+  };
+  const std::vector<LeftOutAnchor> disowned = {{3, 0.9}, {4, 0.1}, {5, 0.2}};
+  EXPECT_THAT(numbers(not_taken_back(disowned, take_back)), ElementsAre(3));
+  EXPECT_THAT(asked, ElementsAre(4, 5, 3));
+  const std::vector<LeftOutAnchor> in_turn = {{3, 0.9}, {4, 0.2}, {5, 0.1}};
+  EXPECT_THAT(numbers(not_taken_back(in_turn, take_back)), ElementsAre(3, 5));
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -21,4 +21,12 @@ std::vector<LeftOutAnchor> disowned_anchors(std::vector<std::size_t> doubted, co
 std::vector<std::size_t> disowned_alone(const std::vector<LeftOutAnchor>& together,
                                         const DisownAnchors& disown);
 
+/// Whether this pair is right after all: lays the source without the others alone.
+using TakeBackAnchor = std::function<bool(std::size_t anchor, const std::vector<std::size_t>& others)>;
+
+/// Of disowned pairs those that are not taken back. Each is asked for once, the nearest to where the surfaces
+/// put it first; what is taken back is not among the others of the next.
+std::vector<LeftOutAnchor> not_taken_back(const std::vector<LeftOutAnchor>& disowned,
+                                          const TakeBackAnchor& take_back);
+
 }  // namespace bespoke

@@ -102,32 +102,53 @@ double misfit(const FittedMapping& laid, const LayInput& input) {
   return judge_placement(input.source, laid_vertices(laid), input.target).misfit();
 }
 
-constexpr std::size_t most_asked_alone = 6;  // a surface fitting each: seconds
+/// The source laid by its rated pairs without some of them.
+struct LayTrial {
+  const LayInput& input;
+  const RatedAnchors& rated;
+  const AnchorJudge& judge;
+  const Progress& progress;
+  FittedMapping laid;  // the last
+
+  /// Those of the pairs left out that surfaces so laid put elsewhere.
+  std::vector<LeftOutAnchor> lay_without(const std::vector<std::size_t>& left_out) {
+    std::vector<LeftOutAnchor> all;
+    for (const std::size_t index : left_out) all.push_back({index, 0});
+    lay_by_rated(laid, input, without(rated, all), progress);
+    return judge.put_elsewhere(laid_vertices(laid), left_out);
+  }
+};
 
 /// Lays the source without the pairs that surfaces so laid disown, and takes that if it explains the target
 /// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been disowned
-/// beside wrong ones: then each of a few is asked for alone. Returns the pairs then to be used.
+/// beside wrong ones: then each of a few is asked for alone. Of a few that are left out, those are taken back
+/// that raise no doubt, and with which the target is explained no worse, once the others are left out.
+/// Returns the pairs then to be used.
 RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
-                              const AnchorJudge& judge, const std::vector<std::size_t>& doubted,
-                              const Progress& progress) {
-  FittedMapping undoubted = result;
-  const auto lay_without = [&](const std::vector<std::size_t>& left_out) {
-    std::vector<LeftOutAnchor> all;
-    for (const std::size_t index : left_out) all.push_back({index, 0});
-    lay_by_rated(undoubted, input, without(rated, all), progress);
-    return judge.put_elsewhere(laid_vertices(undoubted), left_out);
-  };
-  std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, lay_without);
+                              const AnchorJudge& judge, const AnchorAudit& audit,
+                              const std::vector<std::size_t>& doubted, const Progress& progress) {
+  constexpr std::size_t few = 6;  // each is a surface fitting
+  LayTrial trial{input, rated, judge, progress, result};
+  const DisownAnchors disown = [&](const auto& left_out) { return trial.lay_without(left_out); };
   const double trusting_misfit = misfit(result, input);
-  const auto explains_worse = [&] { return disowned.empty() || misfit(undoubted, input) > trusting_misfit; };
-  bool trusts = explains_worse();
-  if (trusts && disowned.size() > 1 && disowned.size() <= most_asked_alone) {
-    disowned = disowned_anchors(disowned_alone(disowned, lay_without), lay_without);
-    trusts = explains_worse();
-  }
-  if (trusts) return rated;
-  result = std::move(undoubted);
-  return without(rated, disowned);
+  const auto explains_worse = [&](double than) { return misfit(trial.laid, input) > than; };
+
+  std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, disown);
+  if (disowned.size() > 1 && disowned.size() <= few && explains_worse(trusting_misfit))
+    disowned = disowned_anchors(disowned_alone(disowned, disown), disown);
+  if (disowned.empty() || explains_worse(trusting_misfit)) return rated;
+
+  result = trial.laid;
+  if (disowned.size() == 1 || disowned.size() > few) return without(rated, disowned);
+  const TakeBackAnchor take_back = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
+    trial.lay_without(others);
+    const std::vector<std::size_t> doubts = judge.doubted(laid_vertices(trial.laid), audit);
+    if (std::binary_search(doubts.begin(), doubts.end(), anchor) || explains_worse(misfit(result, input)))
+      return false;
+    result = trial.laid;
+    return true;
+  };
+  return without(rated, not_taken_back(disowned, take_back));
 }
 
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
@@ -141,7 +162,7 @@ Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Ancho
   if (input.options.surface_fit.method == SurfaceFitMethod::deformation_graph) {
     const AnchorJudge judge(input.source, input.target, input.given, rated);
     const std::vector<std::size_t> doubted = judge.doubted(laid_vertices(result), audit);
-    if (!doubted.empty()) rated = lay_by_undoubted(result, input, rated, judge, doubted, progress);
+    if (!doubted.empty()) rated = lay_by_undoubted(result, input, rated, judge, audit, doubted, progress);
   }
   result.summary.coarse->audit = std::move(audit);
   result.summary.accuracy = std::move(rated.accuracy);
