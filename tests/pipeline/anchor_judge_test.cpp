@@ -18,6 +18,7 @@ struct JudgedSquare {
   TriangleMesh square = shapes::square_grid(60);
   Points laid = square.vertices;
   Anchors given;
+  double sigma = 0;  // of all pairs
 
   explicit JudgedSquare(int pairs = 12) {
     for (int k = 0; k < pairs; ++k) {
@@ -31,6 +32,7 @@ struct JudgedSquare {
     all.anchors = given;
     all.kept.resize(given.pairs.size());
     std::iota(all.kept.begin(), all.kept.end(), 0);
+    all.sigmas.assign(given.pairs.size(), sigma);
     return all;
   }
 
@@ -80,6 +82,17 @@ TEST(AnchorJudge, DoubtsPairsThatAreNotMet) {
   ASSERT_EQ(elsewhere.size(), 1u);
   EXPECT_EQ(elsewhere[0].index, 5u);
   EXPECT_NEAR(elsewhere[0].distance, 0.041 * std::sqrt(2), 1e-12);
+}
+
+TEST(AnchorJudge, DoubtsNoPairThatIsNotMetAsItsSigmaSays) {
+  JudgedSquare scene;
+  scene.given.pairs[2].b += Vector3(0, 0.079, 0);
+  scene.given.pairs[5].b += Vector3(0, 0.081, 0);
+  scene.sigma = 0.02;
+  EXPECT_THAT(scene.doubted(), ElementsAre(5));
+  EXPECT_EQ(scene.judge().put_elsewhere(scene.laid, {2, 5}).size(), 1u);
+  scene.sigma = 0.01;
+  EXPECT_THAT(scene.doubted(), ElementsAre(2, 5));
 }
 
 TEST(AnchorJudge, DoubtsAThirdAtMostAndNoneOfSix) {

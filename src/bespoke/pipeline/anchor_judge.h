@@ -26,20 +26,21 @@ class AnchorJudge {
   /// seven pairs. Numbers among those given, ascending.
   std::vector<std::size_t> doubted(const Points& laid, const AnchorAudit& audit) const;
 
-  /// Of these pairs, which must be judged ones, those that lie farther than 4 % of the target's diagonal from
-  /// where the laid source has them.
+  /// Of these pairs, which must be judged ones, those that the laid source does not meet: they lie farther
+  /// from where it has them than 4 % of the target's diagonal, and than four times their estimated σ.
   std::vector<LeftOutAnchor> put_elsewhere(const Points& laid, const std::vector<std::size_t>& pairs) const;
 
  private:
   double distance(const Points& laid, std::size_t judged) const;
-  bool is_met(double distance) const;
+  bool is_met(std::size_t judged, double distance) const;
 
   const TriangleMesh& source_;
   const Anchors& given_;
-  double source_size_, target_size_;  // diagonals
-  std::size_t count_ = 0;             // of the given pairs that the fit uses
+  double source_size_;     // the diagonal
+  std::size_t count_ = 0;  // of the given pairs that the fit uses
   std::vector<std::size_t> judged_;
   std::vector<SurfacePoint> feet_;  // of the judged pairs' sources
+  std::vector<double> limits_;      // how far these may be missed, mesh units
 };
 
 }  // namespace bespoke
