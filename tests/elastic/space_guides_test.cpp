@@ -38,6 +38,14 @@ TEST(SpaceGuides, GoWhereASimilarityTakesThem) {
   }
 }
 
+TEST(SpaceGuides, TurnWithASurfaceWhoseEdgesAreLongerThanTheirOffset) {
+  const TriangleMesh coarse = shapes::icosphere(2);
+  const Matrix3 turned = test::random_rotation(5);
+  const SpaceGuides guides = space_guides(coarse, turned * coarse.vertices, 0.25);
+  EXPECT_EQ(guides.sources.cols(), coarse.vertices.cols());
+  EXPECT_LT((guides.targets - turned * guides.sources).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(SpaceGuides, TurnWithTheirLimb) {
   const TriangleMesh tube = shapes::tube();
   const Points fitted = bent_by(tube.vertices, 30);

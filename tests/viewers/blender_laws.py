@@ -31,10 +31,12 @@ def read_obj(name):
     return np.array(vertices), faces
 
 
-def apply(name, t):
-    output = DIRECTORY / "applied.obj"
-    line = [COMMAND, "apply", DIRECTORY / "map.vdb", DIRECTORY / name, "-o", output, "--t", str(t), "--quiet"]
-    subprocess.run(line, check=True)
+def command(*words):
+    subprocess.run([COMMAND, *map(str, words), "--quiet"], check=True)
+
+
+def apply(name, t, asset="map.vdb"):
+    command("apply", DIRECTORY / asset, DIRECTORY / name, "-o", DIRECTORY / "applied.obj", "--t", t)
     return read_obj("applied.obj")[0]
 
 
@@ -293,9 +295,11 @@ def fitted_map_is_the_commands():
     product = add_mesh("product.obj")
     choose(product)
     bpy.ops.bespoke.carry()
+    models = [DIRECTORY / "source.obj", DIRECTORY / "target.obj"]
+    command("fit", *models, "--anchors", DIRECTORY / "anchors.json", "-o", DIRECTORY / "commands.vdb")
     extent = np.linalg.norm(np.ptp(read_obj("source.obj")[0], axis=0))
-    # map.vdb was baked to 0.5 %, this one to the default 0.025 %.
-    close(shown_points(product, asset), apply("product.obj", 1), 0.006 * extent)
+    # Blender rounds the models to floats; each map is baked to 0.025 %.
+    close(shown_points(product, asset), apply("product.obj", 1, "commands.vdb"), 0.0005 * extent)
 
 
 def fit_says_what_is_missing():

@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/point_grid.h"
 #include "bespoke/rigid/nearest_rotation.h"
@@ -32,6 +33,7 @@ class Guiding {
         scale_(std::sqrt(vertex_areas({fitted, source.faces}).sum() / vertex_areas(source).sum())),
         normals_(vertex_normals(source)),
         areas_(vertex_areas(source)),
+        ring_(vertex_adjacency(source)),
         here_(source),
         there_({fitted, source.faces}) {}
 
@@ -58,15 +60,21 @@ class Guiding {
     std::vector<int> around;
     Vector3 normal = Vector3::Zero(), from = Vector3::Zero(), to = Vector3::Zero();
     double area = 0;
-    grid.for_each_within(source_.vertices.col(vertex), distance, [&](int other, double) {
+    const auto take = [&](int other) {
       if (!(normals_.col(other).dot(normals_.col(vertex)) > 0)) return;
       around.push_back(other);
       area += areas_[other];
       normal += areas_[other] * normals_.col(other);
       from += areas_[other] * source_.vertices.col(other);
       to += areas_[other] * fitted_.col(other);
-    });
-    if (!(area > 0 && normal.norm() > 0)) return std::nullopt;
+    };
+    const Vector3 here = source_.vertices.col(vertex);
+    grid.for_each_within(here, distance, [&](int other, double) { take(other); });
+    for (int k = ring_.start[vertex]; k < ring_.start[vertex + 1]; ++k) {
+      const int other = ring_.neighbours[k];
+      if ((source_.vertices.col(other) - here).squaredNorm() > distance * distance) take(other);
+    }
+    if (around.size() < 3 || !(area > 0 && normal.norm() > 0)) return std::nullopt;  // no rotation
     from /= area;
     to /= area;
     Matrix3 covariance = Matrix3::Zero();
@@ -74,7 +82,7 @@ class Guiding {
       covariance +=
           areas_[other] * (fitted_.col(other) - to) * (source_.vertices.col(other) - from).transpose();
     const Vector3 arm = distance * normal.normalized();
-    const Guide guide{source_.vertices.col(vertex) + arm,
+    const Guide guide{here + arm,
                       fitted_.col(vertex) + scale_ * (nearest_rotation(covariance).rotation * arm)};
     if (here_.closest(guide.source, {.max_distance = least_clearance * distance}) ||
         there_.closest(guide.target, {.max_distance = least_clearance * scale_ * distance}))
@@ -87,6 +95,7 @@ class Guiding {
   double scale_;
   Points normals_;
   Eigen::VectorXd areas_;
+  VertexAdjacency ring_;
   ClosestPointTree here_, there_;
 };
 

@@ -14,10 +14,11 @@ struct SpaceGuides {
 };
 
 /// Guides at 0.4 λ from the source, about half of that apart: at v + d n for a vertex v and the mean normal n
-/// of the vertices within d that face as v does, taken to v' + s d R n, with R the least-squares rotation of
-/// these vertices and s² the factor of the whole area, which no pose changes. None where another part of the
-/// source, or of the fitted source, is nearer than v: space between fingers goes as these ask. fitted: 3×n;
-/// lambda > 0, mesh units. Throws InvalidInput for another number of vertices and meshes that are not valid.
+/// of the vertices within d, or one edge, that face as v does, taken to v' + s d R n, with R the
+/// least-squares rotation of these vertices and s² the factor of the whole area, which no pose changes. None
+/// where another part of the source, or of the fitted source, is nearer than v: space between fingers goes as
+/// these ask. fitted: 3×n; lambda > 0, mesh units. Throws InvalidInput for another number of vertices and
+/// meshes that are not valid.
 SpaceGuides space_guides(const TriangleMesh& source, const Points& fitted, double lambda);
 
 }  // namespace bespoke

@@ -15,7 +15,7 @@ struct FitOptions {
   SurfaceFitOptions surface_fit;
   ElasticMethod elastic = ElasticMethod::diffeomorphic;
   double lambda = 0;                      ///< effective distance, > 0, mesh units
-  GuidedMaps guides = GuidedMaps::steps;  ///< the multiscale methods; others know none
+  GuidedMaps guides = GuidedMaps::all;  ///< the multiscale methods; others know none
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes

@@ -21,12 +21,6 @@ Json laplacian_json(const SurfaceFitOptions& options) {
   return json;
 }
 
-/// Where guides, or that there are none, shaped the map: the records of all others stay as they were.
-bool are_guides_recorded(const FitOptions& options, const FittedMapping& fit) {
-  return elastic_method(options.elastic).takes_guides &&
-         (options.guides != GuidedMaps::steps || fit.elastic->steps().size() > 1);
-}
-
 std::string recorded_options(const MakeMapOptions& options, const FittedMapping& fit, RotationPath path,
                              bool given_fitted) {
   Json json;
@@ -43,7 +37,7 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
   }
   json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
-  if (are_guides_recorded(options.fit, fit))
+  if (elastic_method(options.fit.elastic).takes_guides)
     json["guides"] =
         name_of(guided_maps, fit.summary.elastic.left_guides ? GuidedMaps::none : options.fit.guides);
   json["fit_tolerance"] = options.fit.fit_tolerance;
