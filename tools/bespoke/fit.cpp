@@ -233,8 +233,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   add_name_option(
       fit, "--guides", arguments.guides, guided_maps,
       with_default("multiscale, diffeomorphic: maps that take space off the surface along with it as a "
-                   "rigid body, so that a loose sleeve turns with its arm; all costs up to twice the "
-                   "time and voxels",
+                   "rigid body, so that a loose sleeve turns with its arm; steps are those of chains",
                    name_of(guided_maps, defaults.fit.guides)));
   CLI::Option* path =
       add_name_option(fit, "--path", arguments.path, rotation_paths,
