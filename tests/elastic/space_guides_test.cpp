@@ -81,6 +81,27 @@ TEST(SpaceGuides, AreNoneBetweenPartsThatAreNear) {
   EXPECT_EQ(count(far, near), 0);
 }
 
+TEST(SpaceGuides, NeitherCrowdNorPartMoreThanTwofold) {
+  // Guides are at .2: the gap of .8 between them shrinks to .06, or grows from it.
+  const auto apart_by = [](double gap) {
+    const AffineMap aside{Matrix3::Identity(), Vector3(2 + gap, 0, 0)};
+    return shapes::joined(shapes::icosphere(3), shapes::moved(shapes::icosphere(3), aside));
+  };
+  const TriangleMesh far = apart_by(1.2), near = apart_by(0.46);
+  for (const auto& [source, fitted] : {std::pair(far, near.vertices), std::pair(near, far.vertices)}) {
+    const SpaceGuides guides = space_guides(source, fitted, 0.5);
+    EXPECT_GT(guides.sources.cols(), 100);
+    for (Eigen::Index i = 0; i < guides.sources.cols(); ++i)
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const double here = (guides.sources.col(i) - guides.sources.col(j)).norm();
+        const double there = (guides.targets.col(i) - guides.targets.col(j)).norm();
+        if (std::min(here, there) > guides.offset) continue;
+        EXPECT_LE(there, 2 * here);
+        EXPECT_LE(here, 2 * there);
+      }
+  }
+}
+
 TEST(SpaceGuides, RefuseWhatTheyCannotFollow) {
   const TriangleMesh square = shapes::square_grid(2);
   EXPECT_THROW(space_guides(square, square.vertices.leftCols(2), 0.5), InvalidInput);

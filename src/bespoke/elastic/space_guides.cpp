@@ -20,6 +20,9 @@ namespace {
 // clearance at up to twice the time of a chain.
 constexpr double offset_share = 0.4;
 constexpr double least_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
+// By which guides may part or come together: 3 leaves folds to mend on an adult and a toddler, 1.5 drops
+// three times as many for the same products.
+constexpr double most_strain = 2;
 
 struct Guide {
   Vector3 source, target;
@@ -52,10 +55,29 @@ class Guiding {
       guides.sources.col(k) = found[static_cast<std::size_t>(k)]->source;
       guides.targets.col(k) = found[static_cast<std::size_t>(k)]->target;
     }
-    return guides;
+    return those_in_accord(guides);
   }
 
  private:
+  /// Without those that some other, near before or after, would squeeze or stretch the space between.
+  SpaceGuides those_in_accord(const SpaceGuides& guides) const {
+    const Points targets = guides.targets / scale_;
+    const PointGrid before(guides.sources, guides.offset), after(targets, guides.offset);
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < targets.cols(); ++k) {
+      bool is_in_accord = true;
+      const auto compare = [&](Eigen::Index other, double) {
+        const double source = (guides.sources.col(other) - guides.sources.col(k)).norm();
+        const double target = (targets.col(other) - targets.col(k)).norm();
+        if (target > most_strain * source || source > most_strain * target) is_in_accord = false;
+      };
+      before.for_each_within(guides.sources.col(k), guides.offset, compare);
+      after.for_each_within(targets.col(k), guides.offset, compare);
+      if (is_in_accord) kept.push_back(k);
+    }
+    return {guides.sources(Eigen::all, kept), guides.targets(Eigen::all, kept), guides.offset};
+  }
+
   std::optional<Guide> guide(const PointGrid& grid, int vertex, double distance) const {
     std::vector<int> around;
     Vector3 normal = Vector3::Zero(), from = Vector3::Zero(), to = Vector3::Zero();
