@@ -14,7 +14,7 @@ namespace bespoke {
 struct FitOptions {
   SurfaceFitOptions surface_fit;
   ElasticMethod elastic = ElasticMethod::diffeomorphic;
-  double lambda = 0;                      ///< effective distance, > 0, mesh units
+  double lambda = 0;                    ///< effective distance, > 0, mesh units
   GuidedMaps guides = GuidedMaps::all;  ///< the multiscale methods; others know none
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
