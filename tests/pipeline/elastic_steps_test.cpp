@@ -229,6 +229,31 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
 }
 
+TEST(ElasticSteps, LeaveGuidesThatTakeOneBeyondItsVoxels) {
+  const TriangleMesh source = shapes::icosphere(4);
+  TriangleMesh fitted = source;
+  for (auto x : fitted.vertices.colwise())
+    x = Vector3(1.1 * x[0], 0.9 * x[1] + 0.05 * x[0] * x[0], 1.2 * x[2]);
+  MakeMapOptions options = default_options(diagonal(source.vertices));
+  const auto make = [&] { return make_map({source, fitted, {}, &fitted}, options); };
+  const auto leaves = [](const MadeMap& made) {
+    std::size_t sum = 0;
+    for (const BakeLevelSummary& level : made.fit.summary.bake->levels) sum += level.leaves;
+    return sum;
+  };
+  const MadeMap guided = make();
+  EXPECT_FALSE(guided.fit.summary.elastic.left_guides);
+  EXPECT_GT(leaves(guided), 700u);
+  EXPECT_THAT(guided.asset.record.options_json, HasSubstr("\"guides\":\"all\""));
+
+  options.bake.max_leaves = 700;
+  const MadeMap within = make();
+  EXPECT_TRUE(within.fit.summary.elastic.left_guides);
+  EXPECT_LE(leaves(within), 700u);
+  EXPECT_TRUE(within.fit.summary.bake->relaxed.empty());
+  EXPECT_THAT(within.asset.record.options_json, HasSubstr("\"guides\":\"none\""));
+}
+
 TEST(ElasticSteps, BecomeMoreWherePartsSlideAlongEachOther) {
   const TriangleMesh source = tubes(0), fitted = tubes(0.6);
   FitOptions options = default_options(diagonal(source.vertices)).fit;

@@ -121,13 +121,16 @@ FitOptions without_guides(FitOptions options) {
   return options;
 }
 
+bool is_guided(const FittedMapping& fitted, const FitOptions& options) {
+  return elastic_method(options.elastic).takes_guides && !fitted.summary.elastic.left_guides &&
+         elastic_options(options, fitted.elastic->steps().size() > 1).guided;
+}
+
 /// The surface comes first: where parts slide along each other, space between them cannot go with both.
 void leave_guides_that_harm(FittedMapping& guided, FittedMapping unfitted, const TriangleMesh& source,
                             const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  const bool is_guided = elastic_method(options.elastic).takes_guides &&
-                         elastic_options(options, guided.elastic->steps().size() > 1).guided;
-  if (!is_guided || !(missed(guided) > options.fit_tolerance)) return;
+  if (!is_guided(guided, options) || !(missed(guided) > options.fit_tolerance)) return;
   fit_as_asked(unfitted, source, anchors, without_guides(options), progress);
   if (!(missed(unfitted) < missed(guided))) return;
   guided = std::move(unfitted);
@@ -204,6 +207,16 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   fit_as_asked(result, source, anchors, options, progress);
   leave_guides_that_harm(result, std::move(unfitted), source, anchors, options, progress);
   summary.seconds = watch.seconds();
+}
+
+std::optional<FittedMapping> refitted_without_guides(const FittedMapping& fitted, const TriangleMesh& source,
+                                                     const Anchors& anchors, const FitOptions& options,
+                                                     const Progress& progress) {
+  if (!is_guided(fitted, options)) return std::nullopt;
+  FittedMapping result = fitted;
+  fit_as_asked(result, source, anchors, without_guides(options), progress);
+  result.summary.elastic.left_guides = true;
+  return result;
 }
 
 bool is_divisible(const FittedMapping& fitted, std::size_t step) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "bespoke/pipeline/fit_mapping.h"
@@ -12,6 +13,12 @@ namespace bespoke {
 /// follows from it. Throws as fit_mapping.
 void fit_elastic_map(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
                      const FitOptions& options, const Progress& progress);
+
+/// The same surfaces with an elastic map that meets these alone, or nothing if guides in space did not shape
+/// it. Options as before.
+std::optional<FittedMapping> refitted_without_guides(const FittedMapping& fitted, const TriangleMesh& source,
+                                                     const Anchors& anchors, const FitOptions& options,
+                                                     const Progress& progress = {});
 
 /// |Γ(E(q)) − q'|, mesh units, one per pair.
 std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors& anchors);

@@ -65,7 +65,7 @@ std::string to_string(const ElasticSummary& summary) {
   std::snprintf(text, sizeof text, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
                 summary.vertex_residuals.p95, summary.vertex_residuals.max, summary.anchor_residuals.max);
   line += text;
-  if (summary.left_guides) line += "; without guides, which kept it from the surface";
+  if (summary.left_guides) line += "; without guides, which took it off the surface or beyond its voxels";
   if (!summary.unmet.empty()) line += "; " + to_string(summary.unmet);
   if (summary.unreferenced_vertices > 0)
     line += "; " + std::to_string(summary.unreferenced_vertices) + " unreferenced vertices left out";

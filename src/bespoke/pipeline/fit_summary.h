@@ -42,7 +42,7 @@ struct ElasticSummary {
   bool divided_where_missed = false;         ///< more steps than the motion asks for, to meet the vertices
   std::size_t divided_steps = 0;             ///< halved as their bakes folded
   double lambda = 0;                         ///< effective distance, mesh units
-  bool left_guides = false;                  ///< since the surface is met better without
+  bool left_guides = false;                  ///< the surface, or the bake's tolerance, is met without
   Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units
   Statistics anchor_residuals;               ///< |Γ(E(q)) − q'|, mesh units
   std::vector<UnmetVertex> unmet;            ///< beyond a fit tolerance above 0; none asked for at 0

@@ -1,5 +1,6 @@
 #include "bespoke/pipeline/make_map.h"
 
+#include <optional>
 #include <utility>
 
 #include "bespoke/elastic/exact_map_io.h"
@@ -111,6 +112,21 @@ BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const Make
   }
 }
 
+/// The same, but for guides that take a map of one step beyond its share of voxels: the tolerance comes
+/// first.
+BakedSteps bake_within_share(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
+                             const Progress& progress) {
+  BakedSteps baked = bake_fitted(fit, input, options, progress);
+  if (baked.whole.relaxed.empty() || baked.steps.size() > 1) return baked;
+  std::optional<FittedMapping> unguided =
+      refitted_without_guides(fit, input.source, input.anchors, options.fit, progress);
+  if (!unguided) return baked;
+  BakedSteps within = bake_fitted(*unguided, input, options, progress);
+  if (!within.whole.relaxed.empty()) return baked;
+  fit = std::move(*unguided);
+  return within;
+}
+
 AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
   AssetRecord record;
   record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
@@ -146,7 +162,7 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
   if (input.target_cloud) made.fit.summary.cloud = *input.target_cloud;
-  BakedSteps baked = bake_fitted(made.fit, input, options, progress);
+  BakedSteps baked = bake_within_share(made.fit, input, options, progress);
   made.fit.summary.bake = std::move(baked.whole);
   if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);
 
