@@ -298,8 +298,9 @@ def fitted_map_is_the_commands():
     models = [DIRECTORY / "source.obj", DIRECTORY / "target.obj"]
     command("fit", *models, "--anchors", DIRECTORY / "anchors.json", "-o", DIRECTORY / "commands.vdb")
     extent = np.linalg.norm(np.ptp(read_obj("source.obj")[0], axis=0))
-    # Blender rounds the models to floats; each map is baked to 0.025 %.
-    close(shown_points(product, asset), apply("product.obj", 1, "commands.vdb"), 0.0005 * extent)
+    # Blender rounds models and anchors to floats, which decides otherwise between guides equally far apart: each map
+    # meets its own to 5 % of 0.4 lambda, 0.2 % of the diagonal, and is baked to 0.025 %.
+    close(shown_points(product, asset), apply("product.obj", 1, "commands.vdb"), 2 * (0.002 + 0.00025) * extent)
 
 
 def fit_says_what_is_missing():
