@@ -3,6 +3,7 @@
 DIRECTORY holds source.obj, target.obj, anchors.json, product.obj and map.vdb. Prints the name of every law that held.
 """
 
+import json
 import math
 import subprocess
 import sys
@@ -35,8 +36,8 @@ def command(*words):
     subprocess.run([COMMAND, *map(str, words), "--quiet"], check=True)
 
 
-def apply(name, t, asset="map.vdb"):
-    command("apply", DIRECTORY / asset, DIRECTORY / name, "-o", DIRECTORY / "applied.obj", "--t", t)
+def apply(name, t):
+    command("apply", DIRECTORY / "map.vdb", DIRECTORY / name, "-o", DIRECTORY / "applied.obj", "--t", t)
     return read_obj("applied.obj")[0]
 
 
@@ -284,6 +285,9 @@ def baking_follows_an_animated_t():
 
 
 def fitted_map_is_the_commands():
+    """Byte by byte, on models and anchors as Blender keeps them: in floats."""
+    from bespoke_maps import anchors, fit
+
     source, target = add_mesh("source.obj"), add_mesh("target.obj")
     choose(source, target)
     bpy.ops.bespoke.import_anchors(filepath=str(DIRECTORY / "anchors.json"))
@@ -292,15 +296,25 @@ def fitted_map_is_the_commands():
     assert bpy.ops.bespoke.fit() == {"FINISHED"}
     asset = bpy.context.scene.bespoke.asset
     assert Path(asset.data.filepath) == DIRECTORY / "made_here.vdb"
-    product = add_mesh("product.obj")
-    choose(product)
-    bpy.ops.bespoke.carry()
-    models = [DIRECTORY / "source.obj", DIRECTORY / "target.obj"]
-    command("fit", *models, "--anchors", DIRECTORY / "anchors.json", "-o", DIRECTORY / "commands.vdb")
-    extent = np.linalg.norm(np.ptp(read_obj("source.obj")[0], axis=0))
-    # Blender rounds models and anchors to floats, which decides otherwise between guides equally far apart: each map
-    # meets its own to 5 % of 0.4 lambda, 0.2 % of the diagonal, and is baked to 0.025 %.
-    close(shown_points(product, asset), apply("product.obj", 1, "commands.vdb"), 2 * (0.002 + 0.00025) * extent)
+
+    files = [DIRECTORY / name for name in ("seen_source.obj", "seen_target.obj", "seen_anchors.json")]
+    graph = bpy.context.evaluated_depsgraph_get()
+    for path, model in zip(files, (source, target)):
+        fit.write_model(path, model.evaluated_get(graph))
+        expected, faces = read_obj(model.name)
+        seen, seen_faces = read_obj(path.name)
+        close(seen, expected, FLOAT_ROUNDING * np.abs(expected).max())
+        assert seen_faces == faces
+    pairs = anchors.pairs_of(source, target)
+    given = {pair["name"]: pair for pair in json.loads((DIRECTORY / "anchors.json").read_text())["pairs"]}
+    for pair in pairs:
+        for end in "ab":
+            place = np.array(given[pair["name"]][end])
+            close(np.array(pair[end]), place, FLOAT_ROUNDING * np.abs(place).max())
+    assert len(pairs) == len(given)
+    files[2].write_text(json.dumps({"pairs": pairs}))
+    command("fit", *files[:2], "--anchors", files[2], "-o", DIRECTORY / "commands.vdb")
+    assert (DIRECTORY / "made_here.vdb").read_bytes() == (DIRECTORY / "commands.vdb").read_bytes()
 
 
 def fit_says_what_is_missing():

@@ -107,11 +107,15 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
   }
 }
 
-/// One map or a chain of as many steps as the motion asks for, more where they miss vertices.
+/// One map or a chain of as many steps as the motion asks for, more where they miss vertices. Takes the place
+/// of one that there is.
 void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                   const FitOptions& options, const Progress& progress) {
-  fit_steps(result, source, anchors, options,
-            options.steps.value_or(step_count(result.summary.elastic.motion)), progress);
+  ElasticSummary& summary = result.summary.elastic;
+  summary.motion = regional_motion(source, result.fitted_vertices);
+  summary.divided_where_missed = false;
+  result.plan.reset();
+  fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
   const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
   if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
 }
@@ -127,14 +131,12 @@ bool is_guided(const FittedMapping& fitted, const FitOptions& options) {
 }
 
 /// The surface comes first: where parts slide along each other, space between them cannot go with both.
-void leave_guides_that_harm(FittedMapping& guided, FittedMapping unfitted, const TriangleMesh& source,
-                            const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+void leave_guides_that_harm(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
+                            const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  if (!is_guided(guided, options) || !(missed(guided) > options.fit_tolerance)) return;
-  fit_as_asked(unfitted, source, anchors, without_guides(options), progress);
-  if (!(missed(unfitted) < missed(guided))) return;
-  guided = std::move(unfitted);
-  guided.summary.elastic.left_guides = true;
+  if (!(missed(fitted) > options.fit_tolerance)) return;
+  std::optional<FittedMapping> unguided = refitted_without_guides(fitted, source, anchors, options, progress);
+  if (unguided && missed(*unguided) < missed(fitted)) fitted = std::move(*unguided);
 }
 
 /// Whether steps are, or would be, along surfaces in between.
@@ -202,10 +204,8 @@ void fit_elastic_map(FittedMapping& result, const TriangleMesh& source, const An
   result.pairs = pairs_for_elastic(result, source, anchors, options, summary);
   summary.method = options.elastic;
   summary.lambda = options.lambda;
-  summary.motion = regional_motion(source, result.fitted_vertices);
-  FittedMapping unfitted = result;
   fit_as_asked(result, source, anchors, options, progress);
-  leave_guides_that_harm(result, std::move(unfitted), source, anchors, options, progress);
+  leave_guides_that_harm(result, source, anchors, options, progress);
   summary.seconds = watch.seconds();
 }
 
@@ -213,9 +213,11 @@ std::optional<FittedMapping> refitted_without_guides(const FittedMapping& fitted
                                                      const Anchors& anchors, const FitOptions& options,
                                                      const Progress& progress) {
   if (!is_guided(fitted, options)) return std::nullopt;
+  const Stopwatch watch;
   FittedMapping result = fitted;
   fit_as_asked(result, source, anchors, without_guides(options), progress);
   result.summary.elastic.left_guides = true;
+  result.summary.elastic.seconds += watch.seconds();
   return result;
 }
 

@@ -130,22 +130,25 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   constexpr std::size_t few = 6;  // each is a surface fitting
   LayTrial trial{input, rated, judge, progress, result};
   const DisownAnchors disown = [&](const auto& left_out) { return trial.lay_without(left_out); };
-  const double trusting_misfit = misfit(result, input);
-  const auto explains_worse = [&](double than) { return misfit(trial.laid, input) > than; };
+  const double trusting = misfit(result, input);
 
   std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, disown);
-  if (disowned.size() > 1 && disowned.size() <= few && explains_worse(trusting_misfit))
+  double undoubted = misfit(trial.laid, input);
+  if (disowned.size() > 1 && disowned.size() <= few && undoubted > trusting) {
     disowned = disowned_anchors(disowned_alone(disowned, disown), disown);
-  if (disowned.empty() || explains_worse(trusting_misfit)) return rated;
+    undoubted = misfit(trial.laid, input);
+  }
+  if (disowned.empty() || undoubted > trusting) return rated;
 
   result = trial.laid;
   if (disowned.size() == 1 || disowned.size() > few) return without(rated, disowned);
   const TakeBackAnchor take_back = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
     trial.lay_without(others);
     const std::vector<std::size_t> doubts = judge.doubted(laid_vertices(trial.laid), audit);
-    if (std::binary_search(doubts.begin(), doubts.end(), anchor) || explains_worse(misfit(result, input)))
-      return false;
+    const double with_anchor = misfit(trial.laid, input);
+    if (std::binary_search(doubts.begin(), doubts.end(), anchor) || with_anchor > undoubted) return false;
     result = trial.laid;
+    undoubted = with_anchor;
     return true;
   };
   return without(rated, not_taken_back(disowned, take_back));
