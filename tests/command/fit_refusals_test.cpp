@@ -47,6 +47,17 @@ TEST_F(FitRefusals, TakesNothingOfTheSurfaceFittingWhereThatIsSkipped) {
   }
 }
 
+TEST_F(FitRefusals, TakesNothingThatTheMethodsDoNotKnow) {
+  const std::vector<std::vector<std::string>> options = {
+      {"--guides", "all", "--elastic", "csrbf"},
+      {"--guides", "steps", "--paper"},
+      {"--boundaries", "free", "--surface-fit", "laplacian"},
+      {"--max-stretch", "3", "--paper"}};
+  for (const std::vector<std::string>& option : options)
+    expect_refusal(pair_.fit("map.vdb", option), 1, option.front());
+  EXPECT_EQ(pair_.fit("map.vdb", {"--guides", "none", "--elastic", "pffd-smooth"}).exit_code, 0);
+}
+
 TEST_F(FitRefusals, NeedsItsPositionalArguments) {
   EXPECT_EQ(bespoke({"fit"}).exit_code, 1);
   EXPECT_EQ(bespoke({"fit", pair_.file("source.obj")}).exit_code, 1);

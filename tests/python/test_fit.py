@@ -157,6 +157,8 @@ def test_interrupt_becomes_keyboard_interrupt(pair):
         ({"max_stretch": 0.5}, "max_stretch"),
         ({"steps": 0}, "steps"),
         ({"guides": "some"}, "guides 'some'.*steps"),
+        ({"guides": "all", "elastic": "csrbf"}, "guides: .*csrbf"),
+        ({"max_stretch": 3, "surface_fit": "laplacian"}, "max_stretch: .*laplacian"),
     ],
 )
 def test_refuses_options_with_reasons(pair, options, words):

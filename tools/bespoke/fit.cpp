@@ -58,6 +58,8 @@ void require_consistent(const FitArguments& arguments) {
   for (const auto& [option, is_given] : of_surface_fitting)
     if (is_given && !arguments.fitted.empty())
       throw CLI::ValidationError(option, "belongs to the surface fitting, which --fitted skips");
+  if (const std::optional<UnheededOption> unheeded = unheeded_option(arguments))
+    throw CLI::ValidationError("--" + unheeded->name, unheeded->reason);
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
 }
 

@@ -1,5 +1,10 @@
 #include "bespoke/pipeline/map_request.h"
 
+#include <string>
+
+#include "bespoke/elastic/elastic_methods.h"
+#include "bespoke/surface_fit/surface_fit_methods.h"
+
 namespace bespoke {
 namespace {
 
@@ -45,6 +50,20 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
   if (request.half) options.bake.precision = ValuePrecision::half;
   options.keep_exact = request.keep_exact;
   return options;
+}
+
+std::optional<UnheededOption> unheeded_option(const MapRequest& request) {
+  const FitOptions fit = make_options(request, 1).fit;
+  const ElasticMethodRow& elastic = elastic_method(fit.elastic);
+  if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
+    return UnheededOption{"guides", "the elastic method " + std::string(elastic.name) + " takes none"};
+  if (fit.surface_fit.method == SurfaceFitMethod::deformation_graph) return std::nullopt;
+  const std::string reason = "the surface fitting " +
+                             std::string(name_of(surface_fits, fit.surface_fit.method)) +
+                             " does not know it; deformation-graph does";
+  if (request.boundaries) return UnheededOption{"boundaries", reason};
+  if (request.max_stretch) return UnheededOption{"max-stretch", reason};
+  return std::nullopt;
 }
 
 void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "bespoke/length.h"
 #include "bespoke/pipeline/make_map.h"
@@ -32,6 +33,15 @@ struct MapRequest {
 };
 
 MakeMapOptions make_options(const MapRequest& request, double source_diagonal);
+
+/// Something asked for that the methods asked for know nothing of.
+struct UnheededOption {
+  std::string name;  ///< of `bespoke fit`, without dashes in front
+  std::string reason;
+};
+
+/// The first that there is.
+std::optional<UnheededOption> unheeded_option(const MapRequest& request);
 
 /// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
 void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal);

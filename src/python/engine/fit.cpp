@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
@@ -73,11 +75,15 @@ class RequestReader {
   const py::dict& given_;
 };
 
-void require_in_range(const MapRequest& request) {
+void require_usable(const MapRequest& request) {
   if (request.max_stretch && !(*request.max_stretch > 1))
     throw InvalidInput("max_stretch " + std::to_string(*request.max_stretch) + " must be greater than 1");
   if (request.steps && (*request.steps < 1 || *request.steps > 100))
     throw InvalidInput("steps " + std::to_string(*request.steps) + " must be between 1 and 100");
+  if (std::optional<UnheededOption> unheeded = unheeded_option(request)) {
+    std::replace(unheeded->name.begin(), unheeded->name.end(), '-', '_');
+    throw InvalidInput(unheeded->name + ": " + unheeded->reason);
+  }
 }
 
 /// (map, fitted vertices n×3 in the target frame, confidence n, report as JSON)
@@ -94,7 +100,7 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   std::optional<TriangleMesh> fitted;
   if (!fitted_arrays.is_none()) fitted = mesh(fitted_arrays, "fitted");
   const MapRequest request = RequestReader(options).read();
-  require_in_range(request);
+  require_usable(request);
   Anchors anchors = to_anchors(anchors_text);
   rate_anchors(anchors, request, diagonal(source.vertices));
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
