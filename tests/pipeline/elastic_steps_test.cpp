@@ -229,6 +229,20 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
 }
 
+// Halves of a step share what it had to say, and the voxels that the steps after them have left.
+TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.16);
+  MakeMapOptions options = default_options(diagonal(source.vertices));
+  options.bake.max_leaves = 1500;
+  const MadeMap made = make_map({source, fitted, {}, &fitted}, options);
+  ASSERT_EQ(step_count(made.fit.summary.elastic.motion), 1);
+  ASSERT_GT(made.fit.summary.elastic.divided_steps, 1u);
+  ASSERT_TRUE(made.fit.plan.has_value());
+  EXPECT_EQ(made.fit.plan->times, equal_times(static_cast<int>(made.asset.steps.size())));
+  EXPECT_LE(made.fit.summary.elastic.vertex_residuals.p95, options.fit.fit_tolerance);
+  for (const MapStep& step : made.asset.steps) EXPECT_TRUE(step.certificate.is_bijection());
+}
+
 TEST(ElasticSteps, LeaveGuidesThatTakeOneBeyondItsVoxels) {
   const TriangleMesh source = shapes::icosphere(4);
   TriangleMesh fitted = source;

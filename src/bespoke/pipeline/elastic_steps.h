@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,9 @@
 #include "bespoke/progress.h"
 
 namespace bespoke {
+
+/// So many steps are planned at most; those that fold may be halved beyond.
+inline constexpr std::size_t most_planned_steps = 32;
 
 /// A path of surfaces and the times that divide it into the steps of a chain.
 struct StepPlan {

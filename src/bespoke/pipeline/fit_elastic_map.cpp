@@ -92,9 +92,8 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
 /// are twice as many steps, for as long as that halves what is missed.
 void divide_where_missed(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                          const FitOptions& options, const Progress& progress) {
-  constexpr std::size_t most_steps = 32;
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= most_steps) {
+  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= most_planned_steps) {
     FittedMapping finer = result;
     fit_steps(finer, source, anchors, options, 2 * static_cast<int>(result.elastic->steps().size()),
               progress);
@@ -137,6 +136,11 @@ void leave_guides_that_harm(FittedMapping& fitted, const TriangleMesh& source, c
   if (!(missed(fitted) > options.fit_tolerance)) return;
   std::optional<FittedMapping> unguided = refitted_without_guides(fitted, source, anchors, options, progress);
   if (unguided && missed(*unguided) < missed(fitted)) fitted = std::move(*unguided);
+}
+
+/// Whether no more than one vertex in twenty is missed.
+bool follows_fit(const FittedMapping& fitted, const FitOptions& options) {
+  return fitted.summary.elastic.vertex_residuals.p95 <= options.fit_tolerance;
 }
 
 /// Whether steps are, or would be, along surfaces in between.
@@ -221,6 +225,19 @@ std::optional<FittedMapping> refitted_without_guides(const FittedMapping& fitted
   return result;
 }
 
+std::optional<FittedMapping> refitted_in_steps(const FittedMapping& fitted, const TriangleMesh& source,
+                                               const Anchors& anchors, const FitOptions& options, int count,
+                                               const Progress& progress) {
+  const Stopwatch watch;
+  FittedMapping result = fitted;
+  const FitOptions taken = fitted.summary.elastic.left_guides ? without_guides(options) : options;
+  fit_steps(result, source, anchors, taken, count, progress);
+  if (!follows_fit(result, options)) return std::nullopt;
+  ++result.summary.elastic.divided_steps;
+  result.summary.elastic.seconds += watch.seconds();
+  return result;
+}
+
 bool is_divisible(const FittedMapping& fitted, std::size_t step) {
   const CompositionOfMaps& composition = elastic_method(fitted.summary.elastic.method).composition;
   return !composition || composition.parts(*fitted.elastic->steps().at(step)) > 1;
@@ -235,7 +252,7 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
   bool follows = !elastic_method(options.elastic).composition;
   if (follows || (follows_path(fitted) && !leave_path)) {
     FittedMapping on_path = halved_on_path(fitted, source, anchors, options, step, progress);
-    follows = follows || on_path.summary.elastic.vertex_residuals.p95 <= options.fit_tolerance;
+    follows = follows || follows_fit(on_path, options);
     if (follows) fitted = std::move(on_path);
   }
   if (!follows) part_by_layers(fitted, source, anchors, options, step);

@@ -35,4 +35,10 @@ void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchor
                  const FitOptions& options, std::size_t step, bool leave_path = false,
                  const Progress& progress = {});
 
+/// For a step that folded when baked: so many equal steps along the path in place of all there are, or
+/// nothing where they would miss one vertex in twenty. Options as before; count > 1.
+std::optional<FittedMapping> refitted_in_steps(const FittedMapping& fitted, const TriangleMesh& source,
+                                               const Anchors& anchors, const FitOptions& options, int count,
+                                               const Progress& progress = {});
+
 }  // namespace bespoke

@@ -40,7 +40,7 @@ struct ElasticSummary {
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
   bool divided_where_missed = false;         ///< more steps than the motion asks for, to meet the vertices
-  std::size_t divided_steps = 0;             ///< halved as their bakes folded
+  std::size_t divided_steps = 0;             ///< folded when baked, so that there are more
   double lambda = 0;                         ///< effective distance, mesh units
   bool left_guides = false;                  ///< the surface, or the bake's tolerance, is met without
   Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units

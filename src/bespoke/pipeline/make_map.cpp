@@ -1,11 +1,9 @@
 #include "bespoke/pipeline/make_map.h"
 
-#include <optional>
 #include <utility>
 
 #include "bespoke/elastic/exact_map_io.h"
-#include "bespoke/pipeline/bake_steps.h"
-#include "bespoke/pipeline/fit_elastic_map.h"
+#include "bespoke/pipeline/bake_fitted_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
 
@@ -74,59 +72,6 @@ RotationPath path_of(const FittedMapping& fit, const MakeMapOptions& options) {
   return path == RotationPath::flow ? RotationPath::geodesic : path;
 }
 
-/// Whether a single step that folds may become a chain: where nobody asked for one step or its voxels, and
-/// the map itself does not fold.
-bool may_become_chain(const MakeMapOptions& options) {
-  return !options.fit.steps && !options.bake.voxel_size &&
-         elastic_method(options.fit.elastic).keeps_orientation;
-}
-
-/// Bakes the fitted map; a step that folds although it was mended is halved, as are its halves, and the steps
-/// after it kept.
-BakedSteps bake_fitted(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
-                       const Progress& progress) {
-  // Of a step and its parts: what folds after those on the path folds however small its motion is.
-  constexpr int on_path = 3, by_layers = 2;
-  constexpr std::size_t most_divided_steps = 16;  // each has cost the bake that folded
-  const bool has_layers = bool{elastic_method(options.fit.elastic).composition};
-  const int most_halvings =
-      fit.plan || may_become_chain(options) ? on_path + (has_layers ? by_layers : 0) : 0;
-  std::vector<int> halvings(fit.elastic->steps().size(), most_halvings);
-  BakedSteps last;
-  for (;;) {
-    std::vector<bool> divisible;
-    for (std::size_t k = 0; k < halvings.size(); ++k)
-      divisible.push_back(halvings[k] > 0 && is_divisible(fit, k) &&
-                          fit.summary.elastic.divided_steps < most_divided_steps);
-    BakedSteps baked = bake_steps(*fit.elastic, fit.step_sources, input.source.faces, options.bake, divisible,
-                                  std::move(last), progress);
-    if (!is_to_be_divided(baked, divisible)) return baked;
-    const std::size_t folded = fit.elastic->steps().size() - baked.steps.size();
-    const bool leave_path = has_layers && halvings[folded] <= by_layers;
-    divide_step(fit, input.source, input.anchors, options.fit, folded, leave_path, progress);
-    const int left = --halvings[folded];
-    halvings.insert(halvings.begin() + static_cast<std::ptrdiff_t>(folded), left);
-    baked.steps.erase(baked.steps.begin());
-    baked.summaries.erase(baked.summaries.begin());
-    last = std::move(baked);
-  }
-}
-
-/// The same, but for guides that take a map of one step beyond its share of voxels: the tolerance comes
-/// first.
-BakedSteps bake_within_share(FittedMapping& fit, const MakeMapInput& input, const MakeMapOptions& options,
-                             const Progress& progress) {
-  BakedSteps baked = bake_fitted(fit, input, options, progress);
-  if (baked.whole.relaxed.empty() || baked.steps.size() > 1) return baked;
-  std::optional<FittedMapping> unguided =
-      refitted_without_guides(fit, input.source, input.anchors, options.fit, progress);
-  if (!unguided) return baked;
-  BakedSteps within = bake_fitted(*unguided, input, options, progress);
-  if (!within.whole.relaxed.empty()) return baked;
-  fit = std::move(*unguided);
-  return within;
-}
-
 AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
   AssetRecord record;
   record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
@@ -162,7 +107,8 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
   if (input.target_cloud) made.fit.summary.cloud = *input.target_cloud;
-  BakedSteps baked = bake_within_share(made.fit, input, options, progress);
+  BakedSteps baked =
+      bake_fitted_map(made.fit, input.source, input.anchors, options.fit, options.bake, progress);
   made.fit.summary.bake = std::move(baked.whole);
   if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);
 

@@ -1,0 +1,131 @@
+#include "bespoke/pipeline/bake_fitted_map.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bespoke/pipeline/fit_elastic_map.h"
+
+namespace bespoke {
+namespace {
+
+// Of a step and its parts: what folds after those on the path folds however small its motion is.
+constexpr int halvings_on_path = 3, halvings_by_layers = 2;
+
+// Of a plan; each has cost the bake that folded.
+constexpr std::size_t most_halved_steps = 16;
+
+/// Bakes a chain of planned steps, the last one first. A step that folds is halved, as are its halves, and
+/// the steps after it are kept. But halves share what their step had to say, and later ones leave those
+/// before them fewer voxels: where there are half as many steps again as were planned, twice as many equal
+/// ones take their place. Of ten pairs that this concerns (fists that open, bodies that lower or raise their
+/// arms) it saves up to a half of the time, and a body whose hands had come off is whole.
+class BakeOfAPlan {
+ public:
+  BakeOfAPlan(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,
+              const FitOptions& options, const BakeOptions& bake, const Progress& progress)
+      : fit_(fit),
+        source_(source),
+        anchors_(anchors),
+        options_(options),
+        bake_(bake),
+        progress_(progress),
+        has_layers_(bool{elastic_method(options.elastic).composition}) {
+    if (fit.plan || may_become_chain())
+      most_halvings_ = halvings_on_path + (has_layers_ ? halvings_by_layers : 0);
+    begin_plan();
+  }
+
+  BakedSteps finish() {
+    BakedSteps last;
+    for (;;) {
+      const std::vector<bool> divisible = divisible_steps();
+      BakedSteps baked = bake_steps(*fit_.elastic, fit_.step_sources, source_.faces, bake_, divisible,
+                                    std::move(last), progress_);
+      if (!is_to_be_divided(baked, divisible)) return baked;
+      last = {};
+      if (plan_anew()) continue;
+      halve(steps() - baked.steps.size());
+      baked.steps.erase(baked.steps.begin());
+      baked.summaries.erase(baked.summaries.begin());
+      last = std::move(baked);
+    }
+  }
+
+ private:
+  std::size_t steps() const { return fit_.elastic->steps().size(); }
+
+  /// Whether a single step that folds may become a chain: where nobody asked for one step or its voxels, and
+  /// the map itself does not fold.
+  bool may_become_chain() const {
+    return !options_.steps && !bake_.voxel_size && elastic_method(options_.elastic).keeps_orientation;
+  }
+
+  void begin_plan() {
+    planned_ = steps();
+    halved_ = 0;
+    halvings_left_.assign(planned_, most_halvings_);
+  }
+
+  std::vector<bool> divisible_steps() const {
+    std::vector<bool> divisible;
+    for (std::size_t k = 0; k < steps(); ++k)
+      divisible.push_back(halvings_left_[k] > 0 && halved_ < most_halved_steps && is_divisible(fit_, k));
+    return divisible;
+  }
+
+  /// A single step is halved first: two equal ones are that.
+  bool plan_anew() {
+    const std::size_t with_one_more = steps() + 1;
+    if (steps() == 1 || 2 * with_one_more < 3 * planned_) return false;
+    std::size_t count = planned_;
+    while (count < with_one_more) count *= 2;
+    if (count > most_planned_steps) return false;
+    std::optional<FittedMapping> planned =
+        refitted_in_steps(fit_, source_, anchors_, options_, static_cast<int>(count), progress_);
+    if (!planned) return false;
+    fit_ = std::move(*planned);
+    begin_plan();
+    return true;
+  }
+
+  void halve(std::size_t step) {
+    const bool leave_path = has_layers_ && halvings_left_[step] <= halvings_by_layers;
+    divide_step(fit_, source_, anchors_, options_, step, leave_path, progress_);
+    ++halved_;
+    const int left = --halvings_left_[step];
+    halvings_left_.insert(halvings_left_.begin() + static_cast<std::ptrdiff_t>(step), left);
+  }
+
+  FittedMapping& fit_;
+  const TriangleMesh& source_;
+  const Anchors& anchors_;
+  const FitOptions& options_;
+  const BakeOptions& bake_;
+  const Progress& progress_;
+  bool has_layers_;
+  int most_halvings_ = 0;
+  std::size_t planned_ = 0;
+  std::size_t halved_ = 0;          // of the plan
+  std::vector<int> halvings_left_;  // one per step
+};
+
+}  // namespace
+
+BakedSteps bake_fitted_map(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,
+                           const FitOptions& options, const BakeOptions& bake, const Progress& progress) {
+  const auto baked_as_planned = [&](FittedMapping& map) {
+    return BakeOfAPlan(map, source, anchors, options, bake, progress).finish();
+  };
+  BakedSteps baked = baked_as_planned(fit);
+  if (baked.whole.relaxed.empty() || baked.steps.size() > 1) return baked;
+  // The tolerance comes before guides.
+  std::optional<FittedMapping> unguided = refitted_without_guides(fit, source, anchors, options, progress);
+  if (!unguided) return baked;
+  BakedSteps within = baked_as_planned(*unguided);
+  if (!within.whole.relaxed.empty()) return baked;
+  fit = std::move(*unguided);
+  return within;
+}
+
+}  // namespace bespoke
