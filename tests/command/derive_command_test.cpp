@@ -169,20 +169,11 @@ TEST(UncertifiedMap, IsWrittenOnlyUnlessACertificateIsRequiredAndHasNoInverse) {
     }
   }
   pulled.close();
-  std::vector<std::string> fit{"fit",
-                               pair.file("source.obj"),
-                               pair.file("target.obj"),
-                               "--fitted",
-                               pair.file("pulled.obj"),
-                               "--elastic",
-                               "csrbf",
-                               "--steps",
-                               "1",
-                               "--voxel-size",
-                               "1%",
-                               "-o",
-                               pair.file("map.vdb"),
-                               "--require-certified"};
+  std::vector<std::string> fit{
+      "fit", pair.file("source.obj"), pair.file("target.obj"), "--fitted", pair.file("pulled.obj"),
+      "-o",  pair.file("map.vdb")};
+  for (const char* word : {"--elastic", "csrbf", "--steps", "1", "--voxel-size", "1%", "--require-certified"})
+    fit.emplace_back(word);
   const ProgramResult result = bespoke(fit);
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_THAT(result.err, HasSubstr("not certified"));

@@ -81,10 +81,13 @@ class BakeOfAPlan {
     if (steps() == 1 || 2 * with_one_more < 3 * planned_) return false;
     std::size_t count = planned_;
     while (count < with_one_more) count *= 2;
-    if (count > most_planned_steps) return false;
+    if (count > most_planned_steps || count == refused_) return false;
     std::optional<FittedMapping> planned =
         refitted_in_steps(fit_, source_, anchors_, options_, static_cast<int>(count), progress_);
-    if (!planned) return false;
+    if (!planned) {
+      refused_ = count;  // the same would be found after every other fold
+      return false;
+    }
     fit_ = std::move(*planned);
     begin_plan();
     return true;
@@ -108,6 +111,7 @@ class BakeOfAPlan {
   int most_halvings_ = 0;
   std::size_t planned_ = 0;
   std::size_t halved_ = 0;          // of the plan
+  std::size_t refused_ = 0;         // steps that would miss their vertices
   std::vector<int> halvings_left_;  // one per step
 };
 
