@@ -53,7 +53,7 @@ def read_map(path):
 
 
 if __name__ == "__main__":
-    asset, product, output = sys.argv[1:]
+    asset, product, output = sys.argv[1:] if len(sys.argv) == 4 else sys.exit(__doc__)
     lines = open(product).readlines()
     moved = read_map(asset)(np.array([line.split()[1:4] for line in lines if line.startswith("v ")], float))
     texts = ("v {:.9g} {:.9g} {:.9g}\n".format(*point) for point in moved)
