@@ -28,7 +28,7 @@ TEST_F(FitRefusals, SaysThatModelsWithoutAnchorsCannotBeAligned) {
 TEST_F(FitRefusals, NeedsAnchorsForWhatIsMadeOfThem) {
   expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
                           pair_.file("map.vdb"), "--paper"}),
-                 1, "--anchors");
+                 1, "--paper");
   expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "-o",
                           pair_.file("map.vdb"), "--fitted", pair_.file("source.obj"), "--add-corners"}),
                  1, "--add-corners");
@@ -52,7 +52,10 @@ TEST_F(FitRefusals, TakesNothingThatTheMethodsDoNotKnow) {
       {"--guides", "all", "--elastic", "csrbf"},
       {"--guides", "steps", "--paper"},
       {"--boundaries", "free", "--surface-fit", "laplacian"},
-      {"--max-stretch", "3", "--paper"}};
+      {"--max-stretch", "3", "--paper"},
+      {"--elastic", "pffd", "--paper"},
+      {"--surface-fit", "laplacian", "--paper"},
+      {"--path", "flow", "--paper"}};
   for (const std::vector<std::string>& option : options)
     expect_refusal(pair_.fit("map.vdb", option), 1, option.front());
   EXPECT_EQ(pair_.fit("map.vdb", {"--guides", "none", "--elastic", "pffd-smooth"}).exit_code, 0);

@@ -148,6 +148,18 @@ TEST(PffdMap, BakesAsItIsAndTheCertificateCounts) {
   EXPECT_LT((vertices - map(sphere.vertices)).colwise().norm().maxCoeff(), 0.1);
 }
 
+TEST(PffdMap, BakesToOneLatticeWhoseFoldsAreCounted) {
+  const PffdMap map(sphere, sheared_bend(sphere.vertices), width);
+  BakeOptions options;
+  options.tolerance = 0.02;
+  options.error_points = 1'000;
+  options.voxel_size = 0.1;
+  const Bake baked = bake(map, options);
+  const Certificate certificate = certify(baked.pyramid, map.affine());
+  ASSERT_GT(certificate.folded, 0u);
+  EXPECT_EQ(baked.summary.folded_cells, certificate.folded + certificate.undecided);
+}
+
 TEST(PffdMap, RejectsWhatItCannotUse) {
   const TriangleMesh triangle = shapes::triangle();
   EXPECT_THROW(PffdMap(triangle, triangle.vertices.leftCols(2), 1), InvalidInput);

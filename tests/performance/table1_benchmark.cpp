@@ -12,7 +12,7 @@
 #include "bespoke/bake/bake.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
-#include "bespoke/pipeline/make_map.h"
+#include "bespoke/pipeline/map_request.h"
 #include "bespoke/stopwatch.h"
 #include "resampled.h"
 #include "samples.h"
@@ -45,16 +45,6 @@ const std::vector<PrintedRow> printed_rows = {
     {"IV", "9", "glove", "", 1982, 3960, 2169, 4334, 1457, 2780, 8, 6.1, 8.0, {}},
     {"V", "10", "shoe", "", 7026, 14044, 1610, 3216, 2171, 3636, {}, {}, 14.3, 1.3},
 };
-
-/// What --paper selects.
-MakeMapOptions paper_options(double source_diagonal) {
-  MakeMapOptions options = default_options(source_diagonal);
-  options.fit.surface_fit.method = SurfaceFitMethod::laplacian;
-  options.fit.surface_fit.laplacian = no_additions;
-  options.fit.elastic = ElasticMethod::csrbf;
-  options.path = RotationPath::euler;
-  return options;
-}
 
 /// What one row works on.
 struct Models {
@@ -150,8 +140,12 @@ std::string sizes(const Models& models) {
 }
 
 /// The printed method at the printed λ; where that is refused the reason takes the place of the figures.
-void print_paper_way(const Models& models, const PrintedRow& row) {
-  MakeMapOptions options = paper_options(diagonal(models.source.vertices));
+void print_paper_way(Models models, const PrintedRow& row) {
+  MapRequest request;
+  request.paper = true;
+  const double source_diagonal = diagonal(models.source.vertices);
+  rate_anchors(models.anchors, request, source_diagonal);
+  MakeMapOptions options = make_options(request, source_diagonal);
   if (row.lambda) options.fit.lambda = *row.lambda;
   std::string seconds;
   std::string what = "--paper, lambda " + number(options.fit.lambda) + " cm";

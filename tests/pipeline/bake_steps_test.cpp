@@ -46,6 +46,18 @@ TEST(BakeSteps, MeetTheToleranceAsAWhole) {
   for (const MapStep& step : baked.steps) EXPECT_TRUE(step.certificate.is_bijection());
 }
 
+TEST(BakeSteps, SayWhereTheWholeWasMeasured) {
+  const BakeScene scene;
+  for (const int steps : {1, 3}) {
+    const ElasticChain exact = chain(steps);
+    const BakeSummary whole =
+        bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options).whole;
+    EXPECT_GE(whole.error_random_points, scene.options.error_points) << steps;
+    EXPECT_GT(whole.error_surface_points, 0u) << steps;
+    EXPECT_EQ(whole.error_random_points + whole.error_surface_points, whole.error.count) << steps;
+  }
+}
+
 TEST(BakeSteps, OfOneStepAreItsBake) {
   const BakeScene scene;
   const ElasticChain exact = chain(1);

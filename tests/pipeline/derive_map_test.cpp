@@ -13,6 +13,7 @@
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/make_map.h"
+#include "bespoke/pipeline/summary_json.h"
 #include "support/analytic_map.h"
 
 namespace bespoke {
@@ -62,6 +63,24 @@ TEST(InvertMap, IsAnAssetThatUndoesTheOther) {
   write_asset(scratch / "back.vdb", back.asset);
   EXPECT_EQ(read_asset(scratch / "back.vdb").steps.front().pyramid.voxel_count(),
             back.asset.steps.front().pyramid.voxel_count());
+}
+
+TEST(DerivedMaps, RecordHalfPrecisionAsFitsDo) {
+  const Asset forth = asset_of(Vector3(0.1, 0.2, 0), "a", "b");
+  BakeOptions half = options();
+  half.precision = ValuePrecision::half;
+  const auto recorded = [](const DerivedMap& map) { return Json::parse(map.asset.record.options_json); };
+  EXPECT_EQ(recorded(invert_map(forth, half))["half"], true);
+  EXPECT_EQ(recorded(compose_maps(forth, forth, half, MeetingModels::may_differ))["half"], true);
+  EXPECT_FALSE(recorded(invert_map(forth, options())).contains("half"));
+}
+
+TEST(ComposeMaps, ReachAsFarAsTheFartherOne) {
+  Asset near = asset_of(Vector3(0.1, 0.2, 0), "a", "b"), far = asset_of(Vector3(0, 0.1, 0.1), "b", "c");
+  near.record.lambda = 1;
+  far.record.lambda = 3;
+  for (const auto& [first, second] : {std::pair(&near, &far), std::pair(&far, &near)})
+    EXPECT_EQ(compose_maps(*first, *second, options(), MeetingModels::may_differ).asset.record.lambda, 3);
 }
 
 TEST(InvertMap, RefusesAMapThatIsNotCertified) {

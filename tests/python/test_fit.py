@@ -159,11 +159,21 @@ def test_interrupt_becomes_keyboard_interrupt(pair):
         ({"guides": "some"}, "guides 'some'.*steps"),
         ({"guides": "all", "elastic": "csrbf"}, "guides: .*csrbf"),
         ({"max_stretch": 3, "surface_fit": "laplacian"}, "max_stretch: .*laplacian"),
+        ({"paper": True, "elastic": "csrbf"}, "elastic: .*printed"),
+        ({"anchors": (), "paper": True}, "paper: .*anchors"),
+        ({"anchors": (), "anchor_sigma": 1}, "anchor_sigma: .*anchors"),
+        ({"anchors": (), "add_corners": True}, "add_corners: .*anchors"),
     ],
 )
 def test_refuses_options_with_reasons(pair, options, words):
     with pytest.raises(bespoke.InvalidInput, match=words):
-        bespoke.fit(pair.source, pair.target, pair.anchors, **options)
+        bespoke.fit(pair.source, pair.target, **{"anchors": pair.anchors, **options})
+
+
+def test_refuses_what_belongs_to_a_skipped_fitting(pair):
+    for option in ({"surface_fit": "laplacian"}, {"max_stretch": 3}, {"boundaries": "free"}, {"as_given": True}):
+        with pytest.raises(bespoke.InvalidInput, match=next(iter(option))):
+            bespoke.fit(pair.source, pair.target, pair.anchors, fitted=pair.source, **option)
 
 
 def test_refuses_unusable_input(pair):

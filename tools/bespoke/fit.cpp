@@ -43,23 +43,12 @@ struct FitArguments : MapRequest {
 };
 
 void require_consistent(const FitArguments& arguments) {
-  if (arguments.paper && arguments.anchors.empty() && arguments.fitted.empty())
-    throw CLI::ValidationError("--paper", "has no alignment without anchors; it needs --anchors");
-  if (arguments.add_corners && arguments.anchors.empty())
-    throw CLI::ValidationError("--add-corners", "adds to the pairs of --anchors, which is missing");
-  if (arguments.anchor_sigma && arguments.anchors.empty())
-    throw CLI::ValidationError("--anchor-sigma", "is of the pairs of --anchors, which is missing");
-  const std::pair<const char*, bool> of_surface_fitting[] = {
-      {"--confidence-out", !arguments.confidence_out.empty()},
-      {"--surface-fit", arguments.surface_fit.has_value()},
-      {"--boundaries", arguments.boundaries.has_value()},
-      {"--max-stretch", arguments.max_stretch.has_value()},
-      {"--as-given", arguments.as_given}};
-  for (const auto& [option, is_given] : of_surface_fitting)
-    if (is_given && !arguments.fitted.empty())
-      throw CLI::ValidationError(option, "belongs to the surface fitting, which --fitted skips");
-  if (const std::optional<UnheededOption> unheeded = unheeded_option(arguments))
+  const bool fitted = !arguments.fitted.empty();
+  if (const std::optional<UnheededOption> unheeded =
+          unheeded_option(arguments, {!arguments.anchors.empty(), fitted, arguments.add_corners}))
     throw CLI::ValidationError("--" + unheeded->name, unheeded->reason);
+  if (fitted && !arguments.confidence_out.empty())
+    throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
 }
 
@@ -213,10 +202,9 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   const auto with_default = [](const std::string& text, std::string_view value) {
     return text + " (default: " + std::string(value) + ")";
   };
-  CLI::Option* surface_fit =
-      add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fits,
-                      with_default("How the source is laid onto the target",
-                                   name_of(surface_fits, defaults.fit.surface_fit.method)));
+  add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fits,
+                  with_default("How the source is laid onto the target",
+                               name_of(surface_fits, defaults.fit.surface_fit.method)));
   add_name_option(
       fit, "--boundaries", arguments.boundaries, boundary_rules,
       with_default(
@@ -225,11 +213,12 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
           name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
   fit.add_option("--max-stretch", arguments.max_stretch,
                  with_default("deformation-graph: where a length on the source would grow or shrink by a "
-                              "larger factor, its vertices follow their neighbours instead",
+                              "larger factor beyond its coarse deformation, its vertices follow their "
+                              "neighbours instead",
                               CLI::detail::to_string(defaults.fit.surface_fit.max_stretch)))
       ->check(CLI::Range(1.01, 1e6))
       ->type_name("FACTOR");
-  CLI::Option* elastic = add_name_option(
+  add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
   add_name_option(
@@ -237,21 +226,21 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
       with_default("multiscale, diffeomorphic: maps that take space off the surface along with it as a "
                    "rigid body, so that a loose sleeve turns with its arm; steps are those of chains",
                    name_of(guided_maps, defaults.fit.guides)));
-  CLI::Option* path =
-      add_name_option(fit, "--path", arguments.path, rotation_paths,
-                      "How the motion goes with t; stored in the asset (default: flow for a map of "
-                      "several steps, else geodesic)");
+  add_name_option(fit, "--path", arguments.path, rotation_paths,
+                  "How the motion goes with t; stored in the asset (default: flow for a map of several "
+                  "steps, else geodesic)");
   fit.add_option(
          "--steps", arguments.steps,
          "Steps of the chain that the map is made of (default: 1 for models in about the same pose, else by "
-         "the largest turn of a part; more where fewer would fold or miss vertices)")
+         "the largest turn of a part; more where fewer would fold or miss vertices). One remains one; of "
+         "more, those that fold when baked are divided")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
   fit.add_flag(
-         "--paper", arguments.paper,
-         "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, "
-         "--path euler, --as-given")
-      ->excludes(surface_fit, elastic, path);
+      "--paper", arguments.paper,
+      "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, --path "
+      "euler, --steps 1, --contact-gap 0, --as-given, and pairs met exactly that have neither a sigma nor a "
+      "weight");
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "
                "joined, and a target that is inside out is turned over");

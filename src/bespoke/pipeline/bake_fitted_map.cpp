@@ -17,10 +17,11 @@ constexpr std::size_t most_halved_steps = 16;
 
 /// Bakes a chain of planned steps, the last one first. A step that folds is halved, as are its halves, and
 /// the steps after it are kept. But halves share what their step had to say, and later ones leave those
-/// before them fewer voxels: where there are half as many steps again as were planned, twice as many equal
-/// ones take their place. Of eleven pairs that this concerns a body is whole whose hands had come off, bodies
-/// that raise or lower their arms meet the vertices that halves had missed, in about the same time, a bit
-/// farther off by the bake, and a scan in 301 pieces takes twice as long.
+/// before them fewer voxels: where there are half as many steps again as were planned, equal ones take
+/// their place: the plan's number doubled until they have room. Of eleven pairs that this concerns a body is
+/// whole whose hands had come off, bodies that raise or lower their arms meet the vertices that halves had
+/// missed, in about the same time, a bit farther off by the bake, and a scan in 301 pieces takes twice as
+/// long.
 class BakeOfAPlan {
  public:
   BakeOfAPlan(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,

@@ -19,36 +19,49 @@ constexpr double aim = 0.9;
 // Of the points at which a whole is measured: the record is that of the whole, steps only search.
 constexpr std::size_t share_of_a_step = 10;
 
-constexpr std::uint64_t seed = 31;
+// Of the first measurement; the second, of what the first has decided, has other points.
+constexpr std::uint64_t first_seed = 31;
 
 /// The steps from `first` on, as a chain.
 ElasticChain tail(const ElasticChain& chain, std::size_t first) {
   return ElasticChain({chain.steps().begin() + static_cast<std::ptrdiff_t>(first), chain.steps().end()});
 }
 
-/// Where the error is looked at from step `k` on: in its band, and in its finest cells on the surface.
-Points error_points(const MapStep& step, const TriangleMesh& surface, std::size_t count) {
-  if (step.pyramid.levels.empty()) return Points(3, 0);
+/// Where the error is looked at from a step on.
+struct ErrorPoints {
+  Points band;     ///< anywhere in the step's band
+  Points surface;  ///< in its finest cells on the surface
+};
+
+ErrorPoints error_points(const MapStep& step, const TriangleMesh& surface, std::size_t count,
+                         std::uint64_t seed) {
+  if (step.pyramid.levels.empty()) return {Points(3, 0), Points(3, 0)};
   const PyramidLevel& level = step.pyramid.levels.front();
-  const Points band = random_points({step.pyramid.origin, level.voxel_size}, level.leaves, count, seed);
-  const Points near = points_in_cells(step.pyramid, finest_cells_on(step.pyramid, surface), count, seed);
-  Points all(3, band.cols() + near.cols());
-  all << band, near;
-  return all;
+  return {random_points({step.pyramid.origin, level.voxel_size}, level.leaves, count, seed),
+          points_in_cells(step.pyramid, finest_cells_on(step.pyramid, surface), count, seed)};
 }
 
-/// From every step to the end: points of a later band that no earlier one moves are met there.
-Statistics whole_error(const ElasticChain& exact, const std::vector<MapStep>& steps,
-                       const std::vector<Points>& surfaces, const Faces& faces, std::size_t count,
-                       const Progress& progress) {
-  const ElasticChain baked = baked_chain(steps);
+/// Into the whole's summary. From every step to the end: points of a later band that no earlier one moves are
+/// met there.
+void measure_whole(const ElasticChain& exact, const BakedSteps& baked, const std::vector<Points>& surfaces,
+                   const Faces& faces, const BakeOptions& options, std::uint64_t seed,
+                   const Progress& progress, BakeSummary& whole) {
+  const ElasticChain chain = baked_chain(baked.steps);
+  const std::size_t steps = baked.steps.size();
   std::vector<double> errors;
-  for (std::size_t k = 0; k < steps.size(); ++k) {
-    const Points x = error_points(steps[k], {surfaces[k], faces}, k == 0 ? count : count / steps.size());
-    const std::vector<double> found = displacement_errors(tail(baked, k), tail(exact, k), x, progress);
-    errors.insert(errors.end(), found.begin(), found.end());
+  whole.error_random_points = whole.error_surface_points = 0;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const std::size_t count = k == 0 ? options.error_points : options.error_points / steps;
+    const ErrorPoints points = error_points(baked.steps[k], {surfaces[k], faces}, count, seed);
+    for (const Points* x : {&points.band, &points.surface}) {
+      const std::vector<double> found = displacement_errors(tail(chain, k), tail(exact, k), *x, progress);
+      errors.insert(errors.end(), found.begin(), found.end());
+    }
+    whole.error_random_points += static_cast<std::size_t>(points.band.cols());
+    whole.error_surface_points += static_cast<std::size_t>(points.surface.cols());
   }
-  return summarize(std::move(errors));
+  whole.error = summarize(std::move(errors));
+  whole.tolerance_met = whole.error.max <= options.tolerance;
 }
 
 /// The baked steps after one, looked up as products are: the rounding that this adds is far below a
@@ -171,9 +184,9 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
     }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
     const Stopwatch measure;
-    baked.whole.error = whole_error(exact, baked.steps, surfaces, faces, options.error_points, progress);
+    measure_whole(exact, baked, surfaces, faces, options, again ? first_seed + 1 : first_seed, progress,
+                  baked.whole);
     baked.whole.measure_seconds += measure.seconds();
-    baked.whole.tolerance_met = baked.whole.error.max <= options.tolerance;
     if (baked.whole.tolerance_met || !finer_steps_help(baked, options)) break;
     step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
   }

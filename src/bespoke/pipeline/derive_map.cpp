@@ -111,6 +111,8 @@ std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const El
 void take_measured_error(DerivedMap& derived) {
   if (derived.asset.steps.size() == 1) return;
   derived.bake.error = derived.asset.record.bake_error = derived.deviation;
+  derived.bake.error_random_points = derived.deviation.count;
+  derived.bake.error_surface_points = 0;
   derived.bake.tolerance_met = derived.deviation.max <= derived.asset.record.tolerance;
 }
 
@@ -118,6 +120,7 @@ void take_measured_error(DerivedMap& derived) {
 std::string recorded_options(Json json, const BakeOptions& options) {
   json["tolerance"] = options.tolerance;
   if (options.max_leaves) json["max_voxels"] = *options.max_leaves * leaf_nodes;
+  if (options.precision == ValuePrecision::half) json["half"] = true;
   return json.dump();
 }
 
@@ -178,8 +181,8 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
 
 namespace {
 
-// Both as one step; empty where that would fold, or cost more than it saves: more voxels than both, too much
-// memory, or regions in which the tolerance is given up.
+// Both as one step; empty where that would fold, or cost more than it saves: more than twice the voxels of
+// both, too much memory, or regions in which the tolerance is given up.
 std::optional<DerivedStep> merged_step(const Asset& first, const Asset& second, const BakeOptions& options,
                                        const Progress& progress) {
   const WholeMap b_from_a(first), c_from_b(second);
@@ -249,6 +252,7 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
   asset.path = b_from_a.path;
   asset.record = b_from_a.record;
   asset.record.target = c_from_b.record.target;
+  asset.record.lambda = std::max(b_from_a.record.lambda, c_from_b.record.lambda);
   asset.record.elastic_method = c_from_b.record.elastic_method + " after " + b_from_a.record.elastic_method;
   asset.record.surface_fit_method =
       c_from_b.record.surface_fit_method + " after " + b_from_a.record.surface_fit_method;

@@ -10,30 +10,31 @@
 namespace bespoke {
 namespace {
 
-Json laplacian_json(const SurfaceFitOptions& options) {
+/// What the method of the surface fitting heeds.
+void put_surface_fit(const SurfaceFitOptions& options, Json& json) {
+  json["surface_fit"] = name_of(surface_fits, options.method);
+  json["epsilon"] = options.epsilon;
+  if (!options.mend_models) json["mend_models"] = false;
+  if (options.method == SurfaceFitMethod::deformation_graph) {
+    json["boundaries"] = name_of(boundary_rules, options.boundaries);
+    json["max_stretch"] = options.max_stretch;
+    return;
+  }
+  json["max_iterations"] = options.max_iterations;
   const LaplacianAdditions& additions = options.laplacian;
-  Json json = {
+  Json& laplacian = json["laplacian"];
+  laplacian = {
       {"scaled_stiffness", additions.scaled_stiffness}, {"refuse_boundary", additions.refuse_boundary},
       {"free_unmatched", additions.free_unmatched},     {"hold_anchors", additions.hold_anchors},
       {"stop_at_rest", additions.stop_at_rest},         {"undo_turning_snaps", additions.undo_turning_snaps}};
-  if (options.stiffness) json["stiffness"] = *options.stiffness;
-  return json;
+  if (options.stiffness) laplacian["stiffness"] = *options.stiffness;
 }
 
 std::string recorded_options(const MakeMapOptions& options, const FittedMapping& fit, RotationPath path,
                              bool given_fitted) {
   Json json;
   json["path"] = name_of(rotation_paths, path);
-  if (!given_fitted) {
-    json["surface_fit"] = name_of(surface_fits, options.fit.surface_fit.method);
-    json["boundaries"] = name_of(boundary_rules, options.fit.surface_fit.boundaries);
-    json["max_stretch"] = options.fit.surface_fit.max_stretch;
-    json["max_iterations"] = options.fit.surface_fit.max_iterations;
-    json["epsilon"] = options.fit.surface_fit.epsilon;
-    if (!options.fit.surface_fit.mend_models) json["mend_models"] = false;
-    if (options.fit.surface_fit.method == SurfaceFitMethod::laplacian)
-      json["laplacian"] = laplacian_json(options.fit.surface_fit);
-  }
+  if (!given_fitted) put_surface_fit(options.fit.surface_fit, json);
   json["elastic"] = elastic_method(options.fit.elastic).name;
   json["lambda"] = options.fit.lambda;
   if (elastic_method(options.fit.elastic).takes_guides)
@@ -42,7 +43,8 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["contact_gap"] = options.fit.contact_gap;
   json["tolerance"] = options.bake.tolerance;
-  if (options.bake.max_leaves) json["max_voxels"] = *options.bake.max_leaves * leaf_nodes;
+  if (options.bake.max_leaves && !options.bake.voxel_size)
+    json["max_voxels"] = *options.bake.max_leaves * leaf_nodes;
   if (options.fit.steps) json["steps"] = *options.fit.steps;
   if (options.bake.precision == ValuePrecision::half) json["half"] = true;
   if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;

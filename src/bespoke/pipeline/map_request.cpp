@@ -1,6 +1,7 @@
 #include "bespoke/pipeline/map_request.h"
 
 #include <string>
+#include <utility>
 
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/surface_fit/surface_fit_methods.h"
@@ -30,6 +31,46 @@ void set_lengths(const MapRequest& request, double source_diagonal, MakeMapOptio
   set(request.voxel_size, options.bake.voxel_size);
 }
 
+std::optional<UnheededOption> against_inputs(const MapRequest& request, const RequestInputs& inputs) {
+  if (request.paper && !inputs.anchors && !inputs.fitted)
+    return UnheededOption{"paper", "has no alignment without anchors, which are missing"};
+  if (inputs.add_corners && !inputs.anchors)
+    return UnheededOption{"add-corners", "adds to the pairs of anchors, which are missing"};
+  if (request.anchor_sigma && !inputs.anchors)
+    return UnheededOption{"anchor-sigma", "is of the pairs of anchors, which are missing"};
+  const std::pair<const char*, bool> of_surface_fitting[] = {{"surface-fit", request.surface_fit.has_value()},
+                                                             {"boundaries", request.boundaries.has_value()},
+                                                             {"max-stretch", request.max_stretch.has_value()},
+                                                             {"as-given", request.as_given}};
+  for (const auto& [option, is_given] : of_surface_fitting)
+    if (is_given && inputs.fitted)
+      return UnheededOption{option, "belongs to the surface fitting, which a fitted source skips"};
+  return std::nullopt;
+}
+
+std::optional<UnheededOption> against_paper(const MapRequest& request) {
+  if (!request.paper) return std::nullopt;
+  const std::string reason = "the printed method, which is asked for, has its own";
+  if (request.surface_fit) return UnheededOption{"surface-fit", reason};
+  if (request.elastic) return UnheededOption{"elastic", reason};
+  if (request.path) return UnheededOption{"path", reason};
+  return std::nullopt;
+}
+
+std::optional<UnheededOption> unknown_to_methods(const MapRequest& request) {
+  const FitOptions fit = make_options(request, 1).fit;
+  const ElasticMethodRow& elastic = elastic_method(fit.elastic);
+  if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
+    return UnheededOption{"guides", "the elastic method " + std::string(elastic.name) + " takes none"};
+  if (fit.surface_fit.method == SurfaceFitMethod::deformation_graph) return std::nullopt;
+  const std::string reason = "the surface fitting " +
+                             std::string(name_of(surface_fits, fit.surface_fit.method)) +
+                             " does not know it; deformation-graph does";
+  if (request.boundaries) return UnheededOption{"boundaries", reason};
+  if (request.max_stretch) return UnheededOption{"max-stretch", reason};
+  return std::nullopt;
+}
+
 }  // namespace
 
 MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
@@ -52,18 +93,11 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
   return options;
 }
 
-std::optional<UnheededOption> unheeded_option(const MapRequest& request) {
-  const FitOptions fit = make_options(request, 1).fit;
-  const ElasticMethodRow& elastic = elastic_method(fit.elastic);
-  if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
-    return UnheededOption{"guides", "the elastic method " + std::string(elastic.name) + " takes none"};
-  if (fit.surface_fit.method == SurfaceFitMethod::deformation_graph) return std::nullopt;
-  const std::string reason = "the surface fitting " +
-                             std::string(name_of(surface_fits, fit.surface_fit.method)) +
-                             " does not know it; deformation-graph does";
-  if (request.boundaries) return UnheededOption{"boundaries", reason};
-  if (request.max_stretch) return UnheededOption{"max-stretch", reason};
-  return std::nullopt;
+std::optional<UnheededOption> unheeded_option(const MapRequest& request, const RequestInputs& inputs) {
+  using Found = std::optional<UnheededOption>;
+  if (Found found = against_inputs(request, inputs)) return found;
+  if (Found found = against_paper(request)) return found;
+  return unknown_to_methods(request);
 }
 
 void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal) {

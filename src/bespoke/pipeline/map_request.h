@@ -34,14 +34,22 @@ struct MapRequest {
 
 MakeMapOptions make_options(const MapRequest& request, double source_diagonal);
 
-/// Something asked for that the methods asked for know nothing of.
+/// What comes with a request.
+struct RequestInputs {
+  bool anchors = false;      ///< pairs, curves or patches
+  bool fitted = false;       ///< the source already laid onto the target
+  bool add_corners = false;  ///< corners of bounding boxes are to be added to the anchors
+};
+
+/// An option that cannot be heeded: the methods asked for know nothing of it, or what comes with it says
+/// otherwise.
 struct UnheededOption {
   std::string name;  ///< of `bespoke fit`, without dashes in front
   std::string reason;
 };
 
 /// The first that there is.
-std::optional<UnheededOption> unheeded_option(const MapRequest& request);
+std::optional<UnheededOption> unheeded_option(const MapRequest& request, const RequestInputs& inputs);
 
 /// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
 void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal);

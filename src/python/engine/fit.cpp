@@ -75,12 +75,12 @@ class RequestReader {
   const py::dict& given_;
 };
 
-void require_usable(const MapRequest& request) {
+void require_usable(const MapRequest& request, const RequestInputs& inputs) {
   if (request.max_stretch && !(*request.max_stretch > 1))
     throw InvalidInput("max_stretch " + std::to_string(*request.max_stretch) + " must be greater than 1");
   if (request.steps && (*request.steps < 1 || *request.steps > 100))
     throw InvalidInput("steps " + std::to_string(*request.steps) + " must be between 1 and 100");
-  if (std::optional<UnheededOption> unheeded = unheeded_option(request)) {
+  if (std::optional<UnheededOption> unheeded = unheeded_option(request, inputs)) {
     std::replace(unheeded->name.begin(), unheeded->name.end(), '-', '_');
     throw InvalidInput(unheeded->name + ": " + unheeded->reason);
   }
@@ -100,8 +100,9 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   std::optional<TriangleMesh> fitted;
   if (!fitted_arrays.is_none()) fitted = mesh(fitted_arrays, "fitted");
   const MapRequest request = RequestReader(options).read();
-  require_usable(request);
   Anchors anchors = to_anchors(anchors_text);
+  const bool has_anchors = !anchors.pairs.empty() || !anchors.curves.empty() || !anchors.patches.empty();
+  require_usable(request, {has_anchors, fitted.has_value(), add_corners});
   rate_anchors(anchors, request, diagonal(source.vertices));
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 

@@ -9,6 +9,7 @@
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/bake/leaf_samples.h"
+#include "bespoke/certificate/certificate.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/stopwatch.h"
@@ -132,6 +133,10 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   result.summary.refine_seconds = watch.lap();
   Measurement(map, lattice, leaves, options, progress).fully(result.pyramid, result.summary);
   result.summary.measure_seconds = watch.lap();
+  // Asked for this size, it has no finer leaves to mend a fold by.
+  const Certificate certificate = certify(result.pyramid, map.affine(), 1, progress);
+  result.summary.folded_cells = static_cast<std::size_t>(certificate.folded + certificate.undecided);
+  result.summary.mend_seconds = watch.lap();
   return result;
 }
 

@@ -29,8 +29,8 @@ struct DetailFit {
 /// Small deformations of space, coarse to fine, from a few per cent of the diagonal down to the spacing of
 /// the vertices: the residuals to the closest compatible points (point to plane mostly) are averaged around
 /// thinned centres a fraction of λ apart, interpolated by Wendland's C4 function of radius λ, scaled so that
-/// ‖∇u‖ stays well below one at the vertices, and move all vertices. Exact anchors are centres of every
-/// layer.
+/// ‖∇u‖ stays well below one at the vertices, and move all vertices. Exact anchors are a layer's first
+/// centres, but those nearer to another than the centres are apart.
 DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress);
 
 /// One layer that carries the exact anchors onto their targets and vanishes a short way off.
