@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 #include "bespoke/anchors/anchors.h"
@@ -227,6 +229,33 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   // Nothing of the bake that was given up is told.
   EXPECT_EQ(chain.fit.summary.bake->levels.size(), levels);
   EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
+}
+
+// A composition that goes over its scales again and again is too steep for voxels: to bake it, only to learn
+// that it folds, takes longer than all the steps that take its place.
+TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.16);
+  MakeMapOptions options = default_options(diagonal(source.vertices));
+  std::vector<std::string> stages;
+  Progress progress;
+  progress.report = [&](std::string_view stage, std::size_t, std::size_t) { stages.emplace_back(stage); };
+  const auto elastic_until = [&](std::vector<std::string>::const_iterator end) {
+    return std::count(stages.cbegin(), end, "elastic");
+  };
+
+  const FittedMapping one = fit_mapping_to_fitted(source, fitted, {}, options.fit, progress);
+  ASSERT_EQ(one.elastic->steps().size(), 1u);
+  EXPECT_TRUE(is_foreseen_to_fold(one, 0));
+  EXPECT_THROW(is_foreseen_to_fold(one, 1), std::out_of_range);
+  EXPECT_FALSE(is_foreseen_to_fold(fit_mapping_to_fitted(source, tubes(0.02), {}, options.fit), 0));
+  const auto before = elastic_until(stages.cend());
+
+  stages.clear();
+  options.bake.max_leaves = 1500;
+  const MadeMap made = make_map({source, fitted, {}, &fitted}, options, progress);
+  EXPECT_GT(elastic_until(std::find(stages.cbegin(), stages.cend(), "bake")), before);
+  for (std::size_t k = 0; k < made.asset.steps.size(); ++k)
+    EXPECT_FALSE(is_foreseen_to_fold(made.fit, k)) << k;
 }
 
 // Halves of a step share what it had to say, and the voxels that the steps after them have left.

@@ -1,5 +1,6 @@
 #include "bespoke/elastic/elastic_methods.h"
 
+#include <set>
 #include <string>
 #include <utility>
 
@@ -39,6 +40,12 @@ std::size_t multiscale_layers(const ElasticMap& map) {
   return dynamic_cast<const MultiscaleMap&>(map).layers().size();
 }
 
+std::size_t multiscale_scales(const ElasticMap& map) {
+  std::set<double> lambdas;
+  for (const RbfLayer& layer : dynamic_cast<const MultiscaleMap&>(map).layers()) lambdas.insert(layer.lambda);
+  return lambdas.size();
+}
+
 std::array<ElasticFit, 2> multiscale_halves(const ElasticFit& fit) {
   auto [first, second] =
       halves(dynamic_cast<const MultiscaleMap&>(*fit.map), std::get<MultiscaleSummary>(fit.found));
@@ -70,7 +77,7 @@ constinit const std::array<ElasticMethodRow, 5> elastic_methods{
       true,
       true,
       true,
-      {multiscale_layers, multiscale_halves},
+      {multiscale_layers, multiscale_scales, multiscale_halves},
       stored<MultiscaleMap, read_multiscale>(2)},
      {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, false, {}, stored<PffdMap, read_pffd>(4)},
      {"pffd-smooth",

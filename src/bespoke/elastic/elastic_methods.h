@@ -43,6 +43,9 @@ struct StoredMapType {
 /// How maps that are compositions of others come apart; null for methods whose maps are none.
 struct CompositionOfMaps {
   std::size_t (*parts)(const ElasticMap& map) = nullptr;
+  /// Of how many different sizes the parts of a map are; some are of one size where motion is too steep for
+  /// one of them.
+  std::size_t (*scales)(const ElasticMap& map) = nullptr;
   /// Of a map of two parts or more: the same map as two, one after the other.
   std::array<ElasticFit, 2> (*halves)(const ElasticFit& fit) = nullptr;
 

@@ -15,13 +15,13 @@ constexpr int halvings_on_path = 3, halvings_by_layers = 2;
 // Of a plan; each has cost the bake that folded.
 constexpr std::size_t most_halved_steps = 16;
 
-/// Bakes a chain of planned steps, the last one first. A step that folds is halved, as are its halves, and
-/// the steps after it are kept. But halves share what their step had to say, and later ones leave those
-/// before them fewer voxels: where there are half as many steps again as were planned, equal ones take
-/// their place: the plan's number doubled until they have room. Of eleven pairs that this concerns a body is
-/// whole whose hands had come off, bodies that raise or lower their arms meet the vertices that halves had
-/// missed, in about the same time, a bit farther off by the bake, and a scan in 301 pieces takes twice as
-/// long.
+/// Bakes a chain of planned steps, the last one first. A step that folds, or is foreseen to, is halved, as
+/// are its halves, and the steps after it are kept. But halves share what their step had to say, and later
+/// ones leave those before them fewer voxels: where there are half as many steps again as were planned, equal
+/// ones take their place: the plan's number doubled until they have room. Of eleven pairs that this concerns
+/// a body is whole whose hands had come off, bodies that raise or lower their arms meet the vertices that
+/// halves had missed, in about the same time, a bit farther off by the bake, and a scan in 301 pieces takes
+/// twice as long.
 class BakeOfAPlan {
  public:
   BakeOfAPlan(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,
@@ -41,16 +41,16 @@ class BakeOfAPlan {
   BakedSteps finish() {
     BakedSteps last;
     for (;;) {
+      divide_foreseen(last);
       const std::vector<bool> divisible = divisible_steps();
       BakedSteps baked = bake_steps(*fit_.elastic, fit_.step_sources, source_.faces, bake_, divisible,
                                     std::move(last), progress_);
       if (!is_to_be_divided(baked, divisible)) return baked;
-      last = {};
-      if (plan_anew()) continue;
-      halve(steps() - baked.steps.size());
+      const std::size_t folded = steps() - baked.steps.size();
       baked.steps.erase(baked.steps.begin());
       baked.summaries.erase(baked.summaries.begin());
       last = std::move(baked);
+      divide(folded, last);
     }
   }
 
@@ -74,6 +74,28 @@ class BakeOfAPlan {
     for (std::size_t k = 0; k < steps(); ++k)
       divisible.push_back(halvings_left_[k] > 0 && halved_ < most_halved_steps && is_divisible(fit_, k));
     return divisible;
+  }
+
+  /// The last of the first `count` steps that is foreseen to fold and may be divided.
+  std::optional<std::size_t> foreseen_fold(std::size_t count) const {
+    const std::vector<bool> divisible = divisible_steps();
+    for (std::size_t k = count; k-- > 0;)
+      if (divisible[k] && is_foreseen_to_fold(fit_, k)) return k;
+    return std::nullopt;
+  }
+
+  /// Steps before those that are baked, so that no time is lost in baking them.
+  void divide_foreseen(BakedSteps& baked) {
+    while (const std::optional<std::size_t> step = foreseen_fold(steps() - baked.steps.size()))
+      divide(*step, baked);
+  }
+
+  /// What is baked remains unless all steps are planned anew.
+  void divide(std::size_t step, BakedSteps& baked) {
+    if (plan_anew())
+      baked = {};
+    else
+      halve(step);
   }
 
   /// A single step is halved first: two equal ones are that.

@@ -27,6 +27,11 @@ std::vector<double> anchor_residuals(const FittedMapping& fitted, const Anchors&
 /// std::out_of_range.
 bool is_divisible(const FittedMapping& fitted, std::size_t step);
 
+/// Whether the voxels of a step, by index, are foreseen to fold: its composition has more than two and a half
+/// layers for each scale of the chain, which says how much steeper its motion is than one layer can be.
+/// Throws std::out_of_range.
+bool is_foreseen_to_fold(const FittedMapping& fitted, std::size_t step);
+
 /// A map with a step, by index, halved; the others stay as they are. A step becomes two along the path, each
 /// of all scales and fitted anew; but where they would miss one vertex in twenty, or with `leave_path`, a
 /// composition comes apart into two that are the same map together, as do all steps after that. Options as

@@ -47,7 +47,7 @@ std::string steps_text(const ElasticSummary& summary) {
   if (step_count(summary.motion) > 1) reasons.push_back(motion_text(summary.motion));
   if (summary.divided_where_missed) reasons.emplace_back("fewer miss vertices");
   if (summary.divided_steps > 0)
-    reasons.push_back(std::to_string(summary.divided_steps) + " folded when baked");
+    reasons.push_back(std::to_string(summary.divided_steps) + " folded when baked or were foreseen to");
   std::string line = std::to_string(summary.later_steps.size() + 1) + " steps";
   for (std::size_t i = 0; i < reasons.size(); ++i) line += (i == 0 ? ", since " : " and ") + reasons[i];
   line += "; 1: " + to_string(summary.found);
