@@ -153,7 +153,7 @@ TEST(InvertMap, SpendsFewLeavesNearTheModelFirst) {
   Asset forth = chain_asset();
   const Points x = test::sphere(Vector3::Zero(), 0.8, 3).vertices;
   BakeOptions limited = options();
-  limited.max_leaves = 60;
+  limited.max_leaves = 80;
   const auto error = [&] {
     const DerivedMap back = invert_map(forth, limited);
     return (whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm().mean();

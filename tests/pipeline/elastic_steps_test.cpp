@@ -262,7 +262,7 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
 TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
   const TriangleMesh source = tubes(0), fitted = tubes(0.16);
   MakeMapOptions options = default_options(diagonal(source.vertices));
-  options.bake.max_leaves = 1500;
+  options.bake.max_leaves = 2500;
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options);
   ASSERT_EQ(step_count(made.fit.summary.elastic.motion), 1);
   ASSERT_GT(made.fit.summary.elastic.divided_steps, 1u);

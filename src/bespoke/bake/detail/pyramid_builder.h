@@ -23,7 +23,8 @@ namespace bespoke {
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
 ///
 /// With RefinementOptions::max_leaves refinement stops there: once they might not suffice for a level, what
-/// is left goes to the largest errors of all levels, and the octants that go without are remembered.
+/// is left goes to the largest errors of all levels, and, in turn, to the largest of errors times voxel
+/// sizes; the octants that go without are remembered.
 ///
 /// Copies share the samples.
 class PyramidBuilder {
@@ -93,6 +94,7 @@ class PyramidBuilder {
   OctantRefinement octants_;
   MemoryBudget budget_;
   std::vector<RefusedOctant> refused_;
+  bool next_by_size_ = false;                 // what the next round of add_worst_refused goes by
   std::shared_ptr<const Nearness> nearness_;  // once something was refused, where there is a surface
   std::size_t reserve_;                       // leaves that only folds may have
   std::size_t sampled_points_ = 0;
