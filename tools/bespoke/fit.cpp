@@ -233,7 +233,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
          "--steps", arguments.steps,
          "Steps of the chain that the map is made of (default: 1 for models in about the same pose, else by "
          "the largest turn of a part; more where fewer would fold or miss vertices). One remains one; of "
-         "more, those that fold when baked are divided")
+         "more, those that fold when baked, or are foreseen to, are divided")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
   fit.add_flag(

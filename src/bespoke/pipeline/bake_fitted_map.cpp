@@ -12,7 +12,7 @@ namespace {
 // Of a step and its parts: what folds after those on the path folds however small its motion is.
 constexpr int halvings_on_path = 3, halvings_by_layers = 2;
 
-// Of a plan; each has cost the bake that folded.
+// Of a plan; most have cost a bake that folded.
 constexpr std::size_t most_halved_steps = 16;
 
 /// Bakes a chain of planned steps, the last one first. A step that folds, or is foreseen to, is halved, as

@@ -41,11 +41,13 @@ ErrorPoints error_points(const MapStep& step, const TriangleMesh& surface, std::
           points_in_cells(step.pyramid, finest_cells_on(step.pyramid, surface), count, seed)};
 }
 
-/// Into the whole's summary. From every step to the end: points of a later band that no earlier one moves are
-/// met there.
-void measure_whole(const ElasticChain& exact, const BakedSteps& baked, const std::vector<Points>& surfaces,
+/// Into `baked.whole`. From every step to the end: points of a later band that no earlier one moves are met
+/// there.
+void measure_whole(BakedSteps& baked, const ElasticChain& exact, const std::vector<Points>& surfaces,
                    const Faces& faces, const BakeOptions& options, std::uint64_t seed,
-                   const Progress& progress, BakeSummary& whole) {
+                   const Progress& progress) {
+  const Stopwatch watch;
+  BakeSummary& whole = baked.whole;
   const ElasticChain chain = baked_chain(baked.steps);
   const std::size_t steps = baked.steps.size();
   std::vector<double> errors;
@@ -62,6 +64,7 @@ void measure_whole(const ElasticChain& exact, const BakedSteps& baked, const std
   }
   whole.error = summarize(std::move(errors));
   whole.tolerance_met = whole.error.max <= options.tolerance;
+  whole.measure_seconds += watch.seconds();
 }
 
 /// The baked steps after one, looked up as products are: the rounding that this adds is far below a
@@ -183,10 +186,7 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
       if (is_bijection(even)) baked = std::move(even);
     }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
-    const Stopwatch measure;
-    measure_whole(exact, baked, surfaces, faces, options, again ? first_seed + 1 : first_seed, progress,
-                  baked.whole);
-    baked.whole.measure_seconds += measure.seconds();
+    measure_whole(baked, exact, surfaces, faces, options, again ? first_seed + 1 : first_seed, progress);
     if (baked.whole.tolerance_met || !finer_steps_help(baked, options)) break;
     step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
   }

@@ -83,26 +83,32 @@ void PyramidBuilder::refuse(std::size_t level, const std::vector<FailingOctant>&
     refused_.push_back({level, leaves[n], octants[n].error, weights[n] * octants[n].error});
 }
 
-// What is left goes to the largest errors as they count: in rounds, of those above half of the largest.
-// Rounds take turns: errors as they are, without which a few steep places fold or turn faces over, and errors
-// times the size of a voxel, without which these places take all. Of strong poses' maps, mean errors of
-// vertices by the first alone and in turn: a body that raises its arms 0.258, 0.213 % (its exact map 0.193),
-// another person's 0.412, 0.385 (0.363), four more x 1.000; flipped faces of all 46, 27. Times the area of a
-// voxel's side: 0.211, 0.382, 21 faces, but in d09 a head's detail goes short (surf p95 0.65 instead of
-// 0.44).
+// What is left goes to the worst in rounds.
 bool PyramidBuilder::add_worst_refused() {
   std::erase_if(refused_,
                 [&](const RefusedOctant& octant) { return levels_.has(octant.level, octant.leaf); });
   const std::size_t left = leaves_left(Purpose::tolerance);
   if (refused_.empty() || left == 0) return false;
-  const auto less_urgent = [](const RefusedOctant& a, const RefusedOctant& b) {
-    return a.urgency < b.urgency;
-  };
-  const double largest = std::max_element(refused_.begin(), refused_.end(), less_urgent)->urgency;
+  double largest = 0;
+  for (const RefusedOctant& octant : refused_) largest = std::max(largest, octant.urgency);
   // Rims as fine as the tolerance would cover all that fails.
   rim_tolerance_ = std::max(largest / 2, options_.tolerance);
   for (Looked& looked : looked_) looked.rims_known = false;
+  std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
+  for (const RefusedOctant& octant : worst_refused(std::max<std::size_t>(1, left / 16)))
+    wanted[octant.level].push_back(octant.leaf);
+  for (std::size_t level = 1; level < wanted.size(); ++level) add(level, std::move(wanted[level]));
+  close_rims();
+  return true;
+}
 
+// Those above half of the largest. Rounds take turns: errors as they are, without which a few steep places
+// fold or turn faces over, and errors times the size of a voxel, without which these places take all. Of
+// strong poses' maps, mean errors of vertices by the first alone and in turn: a body that raises its arms
+// 0.258, 0.213 % (its exact map 0.193), another person's 0.412, 0.385 (0.363), four more x 1.000; flipped
+// faces of all 46, 27. Times the area of a voxel's side: 0.211, 0.382, 21 faces, but in d09 a head's detail
+// goes short (surf p95 0.65 instead of 0.44).
+std::vector<RefusedOctant> PyramidBuilder::worst_refused(std::size_t most) {
   const bool by_size = std::exchange(next_by_size_, !next_by_size_);
   const auto rank = [&](const RefusedOctant& octant) {
     return octant.urgency * (by_size ? levels_.lattice(octant.level).voxel_size : 1);
@@ -112,13 +118,10 @@ bool PyramidBuilder::add_worst_refused() {
     return rank_a != rank_b ? rank_a > rank_b : std::tie(a.level, a.leaf) < std::tie(b.level, b.leaf);
   });
   const double least = rank(refused_.front()) / 2;
-  const std::size_t most = std::max<std::size_t>(1, left / 16);
-  std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
+  std::vector<RefusedOctant> worst;
   for (std::size_t n = 0; n < std::min(most, refused_.size()) && rank(refused_[n]) >= least; ++n)
-    wanted[refused_[n].level].push_back(refused_[n].leaf);
-  for (std::size_t level = 1; level < wanted.size(); ++level) add(level, std::move(wanted[level]));
-  close_rims();
-  return true;
+    worst.push_back(refused_[n]);
+  return worst;
 }
 
 std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {

@@ -75,6 +75,7 @@ class PyramidBuilder {
   void refine_level(std::size_t level);
   void refuse(std::size_t level, const std::vector<FailingOctant>& octants);
   bool add_worst_refused();
+  std::vector<RefusedOctant> worst_refused(std::size_t most);
   std::size_t leaves_left(Purpose purpose) const;
   void close_rims();
   std::vector<LeafCoordinates> rims_within_budget(std::size_t level);
@@ -94,7 +95,7 @@ class PyramidBuilder {
   OctantRefinement octants_;
   MemoryBudget budget_;
   std::vector<RefusedOctant> refused_;
-  bool next_by_size_ = false;                 // what the next round of add_worst_refused goes by
+  bool next_by_size_ = false;                 // what worst_refused goes by next
   std::shared_ptr<const Nearness> nearness_;  // once something was refused, where there is a surface
   std::size_t reserve_;                       // leaves that only folds may have
   std::size_t sampled_points_ = 0;
