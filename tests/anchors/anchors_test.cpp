@@ -135,6 +135,8 @@ TEST_F(ReadAnchors, NamesThePairAndTheKeyAtFault) {
   EXPECT_THAT(message_for_pair(R"({"name": "good", "a": [0,0,0], "b": [0,0,0]})"),
               HasSubstr("two pairs are named \"good\""));
   EXPECT_THAT(message_for_pair("[1, 2, 3]"), HasSubstr("pair 1 is array, not an object"));
+  EXPECT_THAT(message_for_pair(R"({"a": [0, -1e40, 0], "b": [0, 0, 0]})"),
+              HasSubstr("\"a\"[1] is not finite in single precision"));
 }
 
 TEST_F(ReadAnchors, RejectsWhatIsNotAListOfPairs) {
@@ -154,6 +156,7 @@ TEST_F(ReadAnchors, NamesTheCsvLineAtFault) {
               AllOf(HasSubstr("a.csv: line 2"), HasSubstr("bz is \"x\"")));
   EXPECT_THAT(message_for("a.csv", "n,nan,2,3,4,5,6\n"), AllOf(HasSubstr("line 1"), HasSubstr("ax")));
   EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,inf\n"), HasSubstr("not a finite number"));
+  EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5e200,6\n"), HasSubstr("line 1: by is not finite in single"));
   EXPECT_THAT(message_for("a.csv", "n,1,2,3,4,5,6,-1\n"), HasSubstr("weight is -1"));
   EXPECT_THAT(message_for("a.csv", "\n\nn,1,2,3,4,5\n"), AllOf(HasSubstr("line 3"), HasSubstr("6 columns")));
   EXPECT_THAT(message_for("a.csv", "name,x,y,z,bx,by,bz\n"), HasSubstr("line 1: ax is \"x\""));

@@ -91,6 +91,8 @@ AnchorPair csv_pair(const std::vector<std::string>& fields, const std::vector<st
     const auto column = static_cast<std::size_t>(axis);
     pair.a[axis] = csv_number(fields[1 + column], csv_columns[1 + column], where);
     pair.b[axis] = csv_number(fields[4 + column], csv_columns[4 + column], where);
+    require_coordinate(pair.a[axis], where + ": " + csv_columns[1 + column]);
+    require_coordinate(pair.b[axis], where + ": " + csv_columns[4 + column]);
   }
   for (std::size_t k = csv_columns.size(); k < fields.size(); ++k) {
     const std::string& column = accuracy_columns[k - csv_columns.size()];

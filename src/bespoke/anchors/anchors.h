@@ -65,8 +65,8 @@ struct Anchors {
 /// {"faces": [i, …]} (any of the lists may be missing) or, by the ending .csv, rows
 /// name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header row, which may also name sigma alone or
 /// first. Throws FileError, or FormatError naming the file and the line or the pair and what is wrong (not
-/// finite, weight ≤ 0, sigma < 0, both of them, missing key, two pairs or two patches of one name, a patch
-/// with one side that excludes nothing).
+/// finite in single precision, weight ≤ 0, sigma < 0, both of them, missing key, two pairs or two patches of
+/// one name, a patch with one side that excludes nothing).
 Anchors read_anchors(const std::filesystem::path& path);
 
 /// The same of a text in JSON, which messages call `name`. anchors_json (anchor_files.h) writes such texts.

@@ -28,9 +28,11 @@ Vector3 json_point(const ParsedJson& pair, const char* key, const std::string& w
   if (!found->is_array() || found->size() != 3)
     throw FormatError(where + ": \"" + key + "\" must be an array of three numbers");
   Vector3 point;
-  for (int axis = 0; axis < 3; ++axis)
-    point[axis] = json_number((*found)[static_cast<std::size_t>(axis)],
-                              where + ": \"" + key + "\"[" + std::to_string(axis) + "]");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string at = where + ": \"" + key + "\"[" + std::to_string(axis) + "]";
+    point[axis] = json_number((*found)[static_cast<std::size_t>(axis)], at);
+    require_coordinate(point[axis], at);
+  }
   return point;
 }
 
@@ -199,6 +201,11 @@ const ParsedJson& json_list(const ParsedJson& document, const char* key, const s
 }
 
 }  // namespace
+
+void require_coordinate(double number, const std::string& where) {
+  if (!(std::abs(number) <= static_cast<double>(std::numeric_limits<float>::max())))
+    throw FormatError(where + " is not finite in single precision");
+}
 
 void require_printable(const std::string& name, const std::string& where) {
   constexpr std::size_t longest = 200;

@@ -17,6 +17,10 @@ Anchors parse_anchor_json(const std::string& text, const std::string& file);
 /// Throws FormatError, which begins with `where`, as the next one.
 void require_printable(const std::string& name, const std::string& where);
 
+/// Models' coordinates are finite in single precision, and products of anchors' beyond are not finite at all.
+/// Throws FormatError, which begins with `where`.
+void require_coordinate(double number, const std::string& where);
+
 /// For pairs and patches; `kind` is their plural.
 template <class Named>
 void require_distinct_names(const std::vector<Named>& all, const std::string& kind, const std::string& file) {
