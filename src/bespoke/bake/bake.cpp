@@ -52,10 +52,13 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
   if (options.voxel_size && !(*options.voxel_size > 0 && std::isfinite(*options.voxel_size)))
     throw InvalidInput("voxel size " + std::to_string(*options.voxel_size) + " is not positive and finite");
   Bake result;
-  if (!is_empty(map.support()))
+  if (is_empty(map.support()))
+    result.certificate = certify(result.pyramid, map.affine(), 1, progress);
+  else
     result = options.voxel_size ? bake_uniformly(map, *options.voxel_size, options, progress)
                                 : bake_adaptively(map, options, progress);
   BakeSummary& summary = result.summary;
+  summary.folded_cells = result.certificate.folded + result.certificate.undecided;
   for (const PyramidLevel& level : result.pyramid.levels)
     summary.levels.push_back({level.voxel_size, level.leaves.size(), level.leaves.size() * leaf_nodes});
   summary.tolerance_met = summary.error.max <= options.tolerance;

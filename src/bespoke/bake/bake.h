@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/certificate/certificate.h"
 #include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/mesh/triangle_mesh.h"
@@ -75,6 +76,7 @@ std::string to_string(const BakeSummary& summary);
 
 struct Bake {
   Pyramid pyramid;
+  Certificate certificate;  ///< of the pyramid, at t = 1
   BakeSummary summary;
 };
 

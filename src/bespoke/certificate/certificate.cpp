@@ -53,9 +53,13 @@ std::string to_string(const Certificate& certificate) {
 
 Certificate certify(const Pyramid& pyramid, const AffineMap& affine, double t, const Progress& progress) {
   Certificate certificate = certify_listing_all(pyramid, affine, t, progress);
+  keep_first_places(certificate);
+  return certificate;
+}
+
+void keep_first_places(Certificate& certificate) {
   if (certificate.places.size() > largest_number_of_places)
     certificate.places.resize(largest_number_of_places);
-  return certificate;
 }
 
 Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine, double t,

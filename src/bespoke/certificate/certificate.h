@@ -45,4 +45,7 @@ Certificate certify(const Pyramid& pyramid, const AffineMap& affine, double t = 
 Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine, double t = 1,
                                 const Progress& progress = {});
 
+/// Leaves the first 1000 places.
+void keep_first_places(Certificate& certificate);
+
 }  // namespace bespoke

@@ -105,8 +105,8 @@ BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfac
       step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
     Bake step = bake_step(map, {surfaces[k], faces}, after, step_options, progress);
     used += step.pyramid.leaf_count();
-    Certificate certificate = certify(step.pyramid, map.affine(), 1, progress);
-    baked.steps.insert(baked.steps.begin(), {map.affine(), std::move(step.pyramid), std::move(certificate)});
+    baked.steps.insert(baked.steps.begin(),
+                       {map.affine(), std::move(step.pyramid), std::move(step.certificate)});
     baked.summaries.insert(baked.summaries.begin(), std::move(step.summary));
     if (is_to_be_divided(baked, divisible)) break;
     if (k > 0) put_first(baked.steps.front(), after);

@@ -55,9 +55,7 @@ struct DerivedStep {
 
 DerivedStep bake_step(const ElasticMap& exact, const BakeOptions& options, const Progress& progress) {
   Bake baked = bake(exact, options, progress);
-  MapStep step{exact.affine(), std::move(baked.pyramid), {}};
-  step.certificate = certify(step.pyramid, step.affine, 1, progress);
-  return {std::move(step), std::move(baked.summary)};
+  return {{exact.affine(), std::move(baked.pyramid), std::move(baked.certificate)}, std::move(baked.summary)};
 }
 
 void take_steps(DerivedMap& derived, std::vector<DerivedStep> steps, double tolerance) {

@@ -29,7 +29,7 @@ struct SimilaritySettings {
   double outlier_medians = 2;  ///< median residuals: there a residual's weight falls to one half. Not varied.
   double outlier_floor = 1e-12;  ///< of the largest distance: keeps the weights finite on an exact copy.
   std::size_t max_samples =
-      16000;  ///< vertices asked at most: bounds the time; seven unknowns need few. Not varied.
+      4000;  ///< vertices asked at most: bounds the time; seven unknowns need few. Not varied.
 };
 
 /// How far each vertex speaks in a fit of planes (informative_areas.h). Taken for x 0.996 / 0.991.
@@ -199,8 +199,13 @@ struct NodeFitSettings {
   /// of 8,000: x 0.992, but 22 flipped faces where there were 12. The fine level once had 16,000 and 6,000
   /// samples; half as many were taken for their time. 10 and 20 instead of 15 coarse iterations:
   /// x 1.009 / 1.015 and 1.000 / 0.993, on bodies in two poses x 1.017 / 1.035 and 0.993 / 0.980.
+  /// Nine fine iterations, against six, on the nine shared cases that are not copies: x 0.996 / 0.993, on 17
+  /// further pairs (poses, hands, other persons, scans) x 0.996 / 0.993; on the nine with 0.3 % and 1 % of
+  /// noise in the anchors x 0.997 / 0.998 and 1.003 / 1.006, with five anchors x 0.995 / 1.002 and 22 flipped
+  /// faces, not 54; for a twentieth of a fit's time. Eight: x 0.998 / 0.996 and 0.997 / 0.993. Half of the
+  /// coarse samples then: x 0.997 / 0.994 and 0.998 / 0.998, with 1 % of noise x 1.007 / 1.013.
   std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
-                                     NodeLevel{2500, 6, 8000, 5000}};
+                                     NodeLevel{2500, 9, 8000, 5000}};
   /// Of the first level where no anchor leads the surfaces, which slide into place more slowly. 15, 20, 25,
   /// 30, 40 on a hand (d04): 0.710, 0.655, 0.630, 0.612, 0.584 %; on bodies, heads and a curled hand within
   /// 4 %. But a smooth shape without features drifts on: more than 25 move it along itself.
@@ -252,7 +257,10 @@ struct DetailSettings {
       0.06;            ///< λ of the first scale, diagonals: some two spacings of the fine nodes. Not varied.
   double ratio = 0.6;  ///< of λ from scale to scale. Not varied.
   int scales = 6;  ///< the last λ is 0.5 % of the diagonal: the vertex spacing of some 13,000. Not varied.
-  int steps_per_scale = 2;  ///< pairs are searched anew in each. Not varied.
+  /// Pairs are searched anew in each. 1, of eight scales from the same first to the same last λ: x 0.999 /
+  /// 1.003 and 0.999 / 1.002 on the cases and pairs of NodeFitSettings::levels, four flipped faces more on a
+  /// head; 3: x 1.002 / 0.999 and 1.004 / 0.999.
+  int steps_per_scale = 2;
   double centers_per_radius =
       3;  ///< λ over the spacing of centres: well conditioned with Wendland's C4. Not varied.
   double min_cosine = 0.3;  ///< as NodeFitSettings::min_cosine

@@ -42,12 +42,13 @@ class AdaptiveBake {
     search();
     measure();
     meet_tolerance();
-    const std::vector<FoldedCell> folds = mend();
+    mend();
     summary().evaluated_points = builder_->evaluated_points();
     summary().peak_bytes = builder_->byte_count();
     summary().relaxed = builder_->relaxed();
     builder_.reset();
-    repair(folds);
+    repair();
+    keep_first_places(result_.certificate);
     return std::move(result_);
   }
 
@@ -83,28 +84,25 @@ class AdaptiveBake {
     return refined;
   }
 
-  // Returns what still folds.
-  std::vector<FoldedCell> mend() {
-    std::vector<FoldedCell> folds = refine_folds();
+  void mend() {
+    refine_folds();
     if (builder_->free_reserve()) {
       refine();
       measure();
-      folds = refine_folds();
+      refine_folds();
     }
-    for (int turn = 0; turn < turns && meet_tolerance(); ++turn) folds = refine_folds();
-    return folds;
+    for (int turn = 0; turn < turns && meet_tolerance(); ++turn) refine_folds();
   }
 
-  std::vector<FoldedCell> refine_folds() {
+  void refine_folds() {
     const std::size_t leaves = result_.pyramid.leaf_count();
-    std::vector<FoldedCell> folds = bespoke::refine_folds(map_, builder_, result_, progress_);
+    bespoke::refine_folds(map_, builder_, result_, progress_);
     summary().mend_seconds += watch_.lap();
     if (result_.pyramid.leaf_count() != leaves) measure();
-    return folds;
   }
 
-  void repair(const std::vector<FoldedCell>& folds) {
-    repair_all_or_none(map_, folds, result_, progress_);
+  void repair() {
+    repair_all_or_none(map_, result_, progress_);
     summary().mend_seconds += watch_.lap();
     if (summary().repaired_cells > 0) measure();
   }

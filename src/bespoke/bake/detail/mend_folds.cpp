@@ -47,37 +47,37 @@ Points needless_folds(const ElasticMap& map, const Pyramid& pyramid, const std::
 
 }  // namespace
 
-std::vector<FoldedCell> refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder,
-                                     Bake& bake, const Progress& progress) {
-  std::vector<FoldedCell> folds = certify_listing_all(bake.pyramid, map.affine(), 1, progress).places;
-  for (int round = 0; round < rounds_of_refinement && folds.size() <= most_mendable_folds; ++round) {
-    const Points needless = needless_folds(map, bake.pyramid, folds);
+void refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder, Bake& bake,
+                  const Progress& progress) {
+  bake.certificate = certify_listing_all(bake.pyramid, map.affine(), 1, progress);
+  for (int round = 0; round < rounds_of_refinement; ++round) {
+    const std::size_t folds = bake.certificate.places.size();
+    if (folds > most_mendable_folds) break;
+    const Points needless = needless_folds(map, bake.pyramid, bake.certificate.places);
     if (needless.cols() == 0) break;
     auto refined = std::make_unique<PyramidBuilder>(*builder);
     if (refined->refine_at(needless, PyramidBuilder::Purpose::folds) == 0) break;
     refined->refine();
     Pyramid pyramid = refined->pyramid();
-    std::vector<FoldedCell> left = certify_listing_all(pyramid, map.affine(), 1, progress).places;
-    if (left.size() >= folds.size()) break;
-    bake.summary.refined_folds += folds.size() - left.size();
+    Certificate certificate = certify_listing_all(pyramid, map.affine(), 1, progress);
+    if (certificate.places.size() >= folds) break;
+    bake.summary.refined_folds += folds - certificate.places.size();
     bake.pyramid = std::move(pyramid);
+    bake.certificate = std::move(certificate);
     builder = std::move(refined);
-    folds = std::move(left);
   }
-  return folds;
 }
 
-void repair_all_or_none(const ElasticMap& map, const std::vector<FoldedCell>& folds, Bake& bake,
-                        const Progress& progress) {
-  bake.summary.folded_cells = folds.size();
+void repair_all_or_none(const ElasticMap& map, Bake& bake, const Progress& progress) {
+  const std::vector<FoldedCell>& folds = bake.certificate.places;
   if (folds.empty() || folds.size() > most_mendable_folds) return;
   Pyramid repaired = bake.pyramid;
   const RepairSummary summary = repair_folds(repaired, map.affine(), folds, progress);
   if (summary.folded > 0) return;
-  bake.summary.folded_cells = 0;
   bake.summary.repaired_cells = folds.size();
   bake.summary.repair_cost = summary.largest_change;
   bake.pyramid = std::move(repaired);
+  bake.certificate = certify(bake.pyramid, map.affine(), 1, progress);
 }
 
 }  // namespace bespoke

@@ -134,8 +134,7 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   Measurement(map, lattice, leaves, options, progress).fully(result.pyramid, result.summary);
   result.summary.measure_seconds = watch.lap();
   // Asked for this size, it has no finer leaves to mend a fold by.
-  const Certificate certificate = certify(result.pyramid, map.affine(), 1, progress);
-  result.summary.folded_cells = static_cast<std::size_t>(certificate.folded + certificate.undecided);
+  result.certificate = certify(result.pyramid, map.affine(), 1, progress);
   result.summary.mend_seconds = watch.lap();
   return result;
 }

@@ -201,24 +201,28 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
                   const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
                   const Progress& progress) {
   const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
-  const PosingByAnchors posing({scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal},
-                               settings.pose);
-  const double degrees = posing.rotation_spread() * 180 / std::numbers::pi;
-  summary.anchor_turn_degrees = degrees;
-  summary.posed_by_anchors = are_out_of_reach(scene, anchors, settings);
+  std::optional<PosingByAnchors> posing;
+  const auto degrees_by_anchors = [&] {
+    posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal},
+                   settings.pose);
+    summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
+    return summary.anchor_turn_degrees;
+  };
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
                         scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas,
                         scene.patches, is_posed},
                        settings.nodes, progress);
   };
-  if (!summary.posed_by_anchors) {
+  if (are_out_of_reach(scene, anchors, settings)) {
+    degrees_by_anchors();
+  } else {
     NodeFitting straight = fitting(scene.surface, anchors, false);
-    const double rigidity = straight.fit_coarse();
-    summary.posed_by_anchors = degrees > settings.pose.least_rigid_turn && rigidity > 1;
-    if (!summary.posed_by_anchors) return straight.fit_fine();
+    if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.least_rigid_turn))
+      return straight.fit_fine();
   }
-  const AnchorPose pose = posing.bent();
+  summary.posed_by_anchors = true;
+  const AnchorPose pose = posing->bent();
   const TriangleMesh bent{pose.vertices, scene.surface.faces};
   NodeFitting posed = fitting(bent, pose.anchor_sources, true);
   posed.fit_coarse();
