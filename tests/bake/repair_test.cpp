@@ -84,5 +84,35 @@ TEST(BakeWithFolds, IsRepairedAtACost) {
   EXPECT_TRUE(certify(folded.pyramid, {}).is_bijection());
 }
 
+void expect_certificate_of_the_pyramid(const Bake& baked, const AffineMap& affine) {
+  const Certificate found = baked.certificate, expected = certify(baked.pyramid, affine);
+  EXPECT_EQ(found.certified, expected.certified);
+  EXPECT_EQ(found.folded, expected.folded);
+  EXPECT_EQ(found.undecided, expected.undecided);
+  EXPECT_EQ(found.least_determinant, expected.least_determinant);
+  EXPECT_EQ(found.affine_determinant, expected.affine_determinant);
+  EXPECT_EQ(found.places.size(), expected.places.size());
+  EXPECT_EQ(baked.summary.folded_cells, expected.folded + expected.undecided);
+}
+
+// Amplitudes as above: without a fold, with one that is repaired, and with more than can be; then without
+// finer leaves, and without a support.
+TEST(BakeWithFolds, IsCertifiedAsItIsReturned) {
+  BakeOptions options;
+  options.tolerance = 1e-2;
+  options.error_points = 2000;
+  for (const double amplitude : {0.5, 0.6, 3.0}) {
+    SCOPED_TRACE(amplitude);
+    const AnalyticMap map({{Vector3::Zero(), 1.0, Vector3(amplitude, 0, 0)}});
+    expect_certificate_of_the_pyramid(bake(map, options), {});
+    BakeOptions uniform = options;
+    uniform.voxel_size = 0.05;
+    expect_certificate_of_the_pyramid(bake(map, uniform), {});
+  }
+  AffineMap affine;
+  affine.linear *= 2;
+  expect_certificate_of_the_pyramid(bake(AnalyticMap({}, affine), options), affine);
+}
+
 }  // namespace
 }  // namespace bespoke
