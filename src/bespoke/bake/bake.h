@@ -76,7 +76,7 @@ std::string to_string(const BakeSummary& summary);
 
 struct Bake {
   Pyramid pyramid;
-  Certificate certificate;  ///< of the pyramid, at t = 1
+  Certificate certificate;  ///< of the pyramid, at t = 1; its seconds are among mend_seconds
   BakeSummary summary;
 };
 
