@@ -29,6 +29,13 @@ std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
   return line;
 }
 
+std::string to_string(const CounterpartSummary& summary) {
+  return std::to_string(summary.elsewhere) + " of " + std::to_string(summary.found) +
+         " places far from all anchors lay elsewhere than distances along the surfaces put them; " +
+         (summary.taken ? "laid by these too"
+                        : "but laid by these too the source explains the target no better");
+}
+
 namespace {
 
 std::string to_string(const ElasticFindings& found) {
@@ -109,6 +116,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});
   lines.push_back({"rigid", to_string(summary.rigid)});
   if (summary.coarse) lines.push_back({"coarse", to_string(*summary.coarse, anchors)});
+  if (summary.counterparts) lines.push_back({"counterparts", to_string(*summary.counterparts)});
   lines.push_back({"surface-fit", summary.surface ? std::string(entry_of(summary.surface_method).name) +
                                                         ": " + to_string(*summary.surface)
                                                   : "given: the fitted mesh as it is"});

@@ -34,6 +34,14 @@ struct CoarseSummary {
   double seconds = 0;
 };
 
+/// Places far from all anchors, by distances along the surfaces (geodesic_counterparts.h).
+struct CounterpartSummary {
+  std::size_t found = 0;
+  std::size_t elsewhere = 0;  ///< of them, where the source came to lie elsewhere by the anchors alone
+  bool taken = false;         ///< the source laid by them too explains the target better
+  double seconds = 0;
+};
+
 struct ElasticSummary {
   ElasticMethod method = ElasticMethod::diffeomorphic;
   ElasticFindings found;                     ///< what the method says itself (of a chain's first step)
@@ -82,8 +90,9 @@ struct FitSummary {
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
-  std::optional<CoarseSummary> coarse;       ///< empty when the fitted source was given, or no anchors
-  std::optional<SurfaceFitSummary> surface;  ///< empty when the fitted source was given
+  std::optional<CoarseSummary> coarse;             ///< empty when the fitted source was given, or no anchors
+  std::optional<CounterpartSummary> counterparts;  ///< empty where anchors alone lay the source rightly
+  std::optional<SurfaceFitSummary> surface;        ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
   std::optional<BareArea>
       bare;  ///< farther than 1 % of the target's diagonal; empty when the fitted source was given
@@ -99,19 +108,20 @@ struct FitSummary {
 std::string to_string(const SeamSummary& summary);
 std::string to_string(const RigidSummary& summary);
 std::string to_string(const CoarseSummary& summary, const Anchors& anchors);
+std::string to_string(const CounterpartSummary& summary);
 std::string to_string(const ElasticSummary& summary);
 std::string to_string(const std::vector<CurveSummary>& curves);
 std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "surface-fit", "bare",
-                     ///< "contact", "elastic", "curves", "patches", "bake"
+  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "counterparts",
+                     ///< "surface-fit", "bare", "contact", "elastic", "curves", "patches", "bake"
   std::string line;
 };
 
 /// In their order; "cloud" for a target that was one, "seams" for models that have some, "alignment" without
-/// anchors only, "accuracy" and "bare" only where they found something.
+/// anchors only, "accuracy", "counterparts" and "bare" only where they found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

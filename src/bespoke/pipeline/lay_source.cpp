@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/alignment/placement.h"
 #include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/error.h"
@@ -32,13 +33,15 @@ Pairs pairs_of(const Anchors& anchors) {
   return {source_points(anchors), target_points(anchors), spline_weights(anchors), sigmas(anchors)};
 }
 
-/// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame.
-Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, const Anchors& anchors,
-                     CoarseSummary& summary) {
+/// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame, the first `count` of
+/// which somebody gave.
+Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, Eigen::Index count,
+                     const Anchors& anchors, CoarseSummary& summary) {
   const Stopwatch watch;
   const GlobalRbf coarse(pairs.sources, pairs.targets, pairs.weights);
   Points warped = coarse(source.vertices);
-  summary.residuals = summarize(distances(coarse(pairs.sources), pairs.targets));
+  summary.residuals =
+      summarize(distances(coarse(pairs.sources.leftCols(count)), pairs.targets.leftCols(count)));
   summary.contradicting = contradicting_anchors(anchors);
   summary.seconds = watch.seconds();
   return warped;
@@ -53,26 +56,31 @@ struct LayInput {
   const FitOptions& options;
 };
 
-/// Γ and H'_a by anchors, those of curves included.
+/// Γ by anchors, those of curves included, and H'_a by these and by what is known of places far from them.
 void lay_by_rated(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
-                  const Progress& progress) {
+                  const Progress& progress, const std::vector<AnchorPair>& counterparts = {}) {
   FitSummary& summary = result.summary;
   const auto& [source, target, patches, given, options] = input;
-  Pairs pairs = pairs_of(rated.anchors);
+  const auto count = static_cast<Eigen::Index>(rated.anchors.pairs.size());
+  Anchors all = rated.anchors;
+  all.pairs.insert(all.pairs.end(), counterparts.begin(), counterparts.end());
+  Pairs pairs = pairs_of(all);
 
   // IV.A: Γ. From here on everything is in the source frame.
   const Stopwatch rigid_watch;
   progress.step("rigid", 0, 0);
-  result.target_from_source = align_rigidly(pairs.sources, pairs.targets, pairs.weights);
+  result.target_from_source =
+      align_rigidly(pairs.sources.leftCols(count), pairs.targets.leftCols(count), pairs.weights.head(count));
   const RigidTransform source_from_target = inverse(result.target_from_source);
   pairs.targets = (source_from_target * pairs.targets).eval();
   const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
   summary.rigid = {false, rotation_angle(result.target_from_source),
-                   summarize(distances(pairs.sources, pairs.targets)), rigid_watch.seconds()};
+                   summarize(distances(pairs.sources.leftCols(count), pairs.targets.leftCols(count))),
+                   rigid_watch.seconds()};
 
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
-  const Points warped = warp_coarsely(source, pairs, given, summary.coarse.emplace());
+  const Points warped = warp_coarsely(source, pairs, count, given, summary.coarse.emplace());
   if (const std::string off = off_target(rated.accuracy, target); !off.empty()) throw InvalidInput(off);
 
   // IV.C: H'_a.
@@ -154,6 +162,49 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   return without(rated, not_taken_back(disowned, take_back));
 }
 
+/// Where distances along the surfaces put places far from all pairs, with the accuracy of that.
+std::vector<AnchorPair> remote_counterparts(const LayInput& input, const Anchors& anchors,
+                                            const Progress& progress) {
+  // Of the target's diagonal. 0.5 and 2 % on the pairs of CounterpartOptions: errors x 1.15 and 1.10 when
+  // always taken.
+  constexpr double sigma = 0.01;
+  const GeodesicCounterparts found =
+      geodesic_counterparts(without_excluded(input.source, input.patches.source).mesh,
+                            without_excluded(input.target, input.patches.target).mesh, source_points(anchors),
+                            target_points(anchors), {}, progress);
+  std::vector<AnchorPair> pairs(static_cast<std::size_t>(found.sources.cols()));
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    pairs[k].a = found.sources.col(static_cast<Eigen::Index>(k));
+    pairs[k].b = found.targets.col(static_cast<Eigen::Index>(k));
+    pairs[k].sigma = sigma * diagonal(input.target.vertices);
+  }
+  return pairs;
+}
+
+/// Where some parts of the source are far from all pairs, and came to lie elsewhere than distances along the
+/// surfaces put them: lays the source by these too, and takes that if it explains the target better.
+void lay_by_counterparts(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
+                         const Progress& progress) {
+  constexpr double far_off = 3;  // standard deviations
+  const Stopwatch watch;
+  const std::vector<AnchorPair> pairs = remote_counterparts(input, rated.anchors, progress);
+  Points places(3, std::ssize(pairs));
+  for (std::size_t k = 0; k < pairs.size(); ++k) places.col(static_cast<Eigen::Index>(k)) = pairs[k].a;
+  if (!pairs.empty()) places = laid_with_source(result, input.source, places);
+  CounterpartSummary found{pairs.size()};
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if ((places.col(static_cast<Eigen::Index>(k)) - pairs[k].b).norm() > far_off * *pairs[k].sigma)
+      ++found.elsewhere;
+  if (found.elsewhere < 2) return;  // one alone may be mistaken
+
+  FittedMapping trial = result;
+  lay_by_rated(trial, input, rated, progress, pairs);
+  found.taken = misfit(trial, input) < misfit(result, input);
+  if (found.taken) result = std::move(trial);
+  found.seconds = watch.seconds();
+  result.summary.counterparts = found;
+}
+
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
 /// anchors as the fit took them.
 Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Anchors& anchors,
@@ -166,6 +217,7 @@ Anchors lay_by_anchors(FittedMapping& result, const LayInput& input, const Ancho
     const AnchorJudge judge(input.source, input.target, input.given, rated);
     const std::vector<std::size_t> doubted = judge.doubted(laid_vertices(result), audit);
     if (!doubted.empty()) rated = lay_by_undoubted(result, input, rated, judge, audit, doubted, progress);
+    lay_by_counterparts(result, input, rated, progress);
   }
   result.summary.coarse->audit = std::move(audit);
   result.summary.accuracy = std::move(rated.accuracy);

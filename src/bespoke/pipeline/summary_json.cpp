@@ -254,6 +254,13 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);
   add("rigid", to_json(summary.rigid), summary.rigid.seconds);
   if (summary.coarse) add("coarse", to_json(*summary.coarse, anchors), summary.coarse->seconds);
+  // Only where there is any: the records of all other fits stay as they were.
+  if (summary.counterparts)
+    add("counterparts",
+        {{"found", summary.counterparts->found},
+         {"elsewhere", summary.counterparts->elsewhere},
+         {"taken", summary.counterparts->taken}},
+        summary.counterparts->seconds);
   if (summary.surface)
     add("surface-fit", to_json(*summary.surface, summary.surface_method), summary.surface->seconds);
   else

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <queue>
 #include <utility>
 
 #include "bespoke/mesh/disjoint_sets.h"
-#include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/mesh/surface_paths.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rbf/point_grid.h"
 
@@ -16,45 +15,6 @@ namespace bespoke {
 namespace {
 
 using Near = std::pair<double, int>;  // distance, node: sorts by distance, then by index
-
-/// Shortest ways along the edges, from one vertex up to a limit; the arrays are reused.
-class EdgeDistances {
- public:
-  explicit EdgeDistances(const TriangleMesh& mesh)
-      : mesh_(mesh),
-        adjacency_(vertex_adjacency(mesh)),
-        distance_(static_cast<std::size_t>(mesh.vertices.cols()), infinity) {}
-
-  template <class Visit>
-  void visit_within(int start, double limit, const Visit& visit) {
-    for (const int vertex : touched_) distance_[vertex] = infinity;
-    touched_.assign(1, start);
-    distance_[start] = 0;
-    queue_.emplace(0.0, start);
-    while (!queue_.empty()) {
-      const auto [distance, vertex] = queue_.top();
-      queue_.pop();
-      if (distance > distance_[vertex]) continue;
-      visit(vertex, distance);
-      for (int k = adjacency_.start[vertex]; k < adjacency_.start[vertex + 1]; ++k) {
-        const int next = adjacency_.neighbours[k];
-        const double way = distance + (mesh_.vertices.col(vertex) - mesh_.vertices.col(next)).norm();
-        if (!(way < limit && way < distance_[next])) continue;
-        if (distance_[next] == infinity) touched_.push_back(next);
-        distance_[next] = way;
-        queue_.emplace(way, next);
-      }
-    }
-  }
-
- private:
-  static constexpr double infinity = std::numeric_limits<double>::infinity();
-  const TriangleMesh& mesh_;
-  VertexAdjacency adjacency_;
-  std::vector<double> distance_;
-  std::vector<int> touched_;
-  std::priority_queue<Near, std::vector<Near>, std::greater<>> queue_;
-};
 
 /// 1 for the vertices of components large enough to carry nodes of their own.
 std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing, double least_carried_area) {
@@ -123,13 +83,15 @@ Sampling sample(const TriangleMesh& mesh, double spacing, const NodeSettings& se
   if (std::find(carries.begin(), carries.end(), 1) == carries.end()) {
     sampling.node_vertices = thin_points(mesh.vertices, spacing);
   } else {
-    EdgeDistances distances(mesh);
+    const SurfaceGraph edges = edge_graph(mesh);
+    ShortestPaths paths(edges);
     std::vector<char> covered(count, 0);
     for (const int start : scattered_order(count)) {
       if (!carries[start] || covered[start]) continue;
       const int node = static_cast<int>(sampling.node_vertices.size());
       sampling.node_vertices.push_back(start);
-      distances.visit_within(start, reach, [&](int vertex, double distance) {
+      const PathStart from_node{start};
+      paths.visit_within({&from_node, 1}, reach, [&](int vertex, double distance) {
         if (distance < spacing) covered[vertex] = 1;
         sampling.near[vertex].emplace_back(distance, node);
       });

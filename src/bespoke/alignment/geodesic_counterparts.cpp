@@ -1,0 +1,227 @@
+#include "bespoke/alignment/geodesic_counterparts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bespoke/error.h"
+#include "bespoke/median.h"
+#include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/mesh/surface_paths.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Longer edges than the spacing of so many vertices are halved, 2 % of a body's height: counterparts are
+/// vertices.
+constexpr double vertices_per_area = 4000;
+
+/// A surface, and distances along it from some of its points to all of its vertices.
+class MeasuredSurface {
+ public:
+  explicit MeasuredSurface(const TriangleMesh& mesh)
+      : mesh_(refine_long_edges(mesh, std::sqrt(vertex_areas(mesh).sum() / vertices_per_area)).mesh),
+        graph_(edge_and_crossing_graph(mesh_)) {}
+
+  std::vector<SurfacePoint> feet(const Points& points) const {
+    const ClosestPointTree tree(mesh_);
+    std::vector<SurfacePoint> all;
+    for (const auto& point : points.colwise()) all.push_back(*tree.closest(point));
+    return all;
+  }
+
+  /// n: of every vertex from the nearest of the points.
+  Eigen::VectorXd distances(const std::vector<SurfacePoint>& points) const {
+    std::vector<PathStart> starts;
+    for (const SurfacePoint& point : points)
+      for (const int vertex : mesh_.faces.col(point.face))
+        starts.push_back({vertex, (place(vertex) - point.point).norm()});
+    return path_lengths(graph_, starts);
+  }
+
+  void measure_from(const std::vector<SurfacePoint>& points) {
+    feet_ = points;
+    from_.resize(points.size());
+    parallel_for(from_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = begin; k < end; ++k) from_[k] = distances({points[k]});
+    });
+  }
+  void measure_from(int vertex) { from_.push_back(distances(vertex)); }
+  void measure_from(int vertex, std::size_t instead_of) { from_[instead_of] = distances(vertex); }
+
+  Eigen::Index vertices() const { return mesh_.vertices.cols(); }
+  Vector3 place(int vertex) const { return mesh_.vertices.col(vertex); }
+  double diagonal() const { return bespoke::diagonal(mesh_.vertices); }
+  /// n: of every vertex from one of the points measured from.
+  const Eigen::VectorXd& from(std::size_t point) const { return from_[point]; }
+  /// Between two of the points, not vertices, measured from.
+  double between(std::size_t i, std::size_t j) const {
+    double least = infinity;
+    for (const int vertex : mesh_.faces.col(feet_[j].face))
+      least = std::min(least, from_[i][vertex] + (place(vertex) - feet_[j].point).norm());
+    return least;
+  }
+
+ private:
+  Eigen::VectorXd distances(int vertex) const {
+    const PathStart start{vertex};
+    return path_lengths(graph_, {&start, 1});
+  }
+
+  TriangleMesh mesh_;
+  SurfaceGraph graph_;
+  std::vector<SurfacePoint> feet_;
+  std::vector<Eigen::VectorXd> from_;
+};
+
+/// Columns of at most `count` points, each the farthest from those before it.
+std::vector<Eigen::Index> spread_columns(const Points& points, int count) {
+  std::vector<Eigen::Index> chosen;
+  Eigen::VectorXd nearest = Eigen::VectorXd::Constant(points.cols(), infinity);
+  Eigen::Index next = 0;
+  while (std::ssize(chosen) < count && nearest.maxCoeff(&next) > 0) {
+    chosen.push_back(next);
+    nearest = nearest.cwiseMin((points.colwise() - points.col(next)).colwise().norm().transpose());
+  }
+  return chosen;
+}
+
+/// The vertex farthest from what `distances` are from, and how far it is; infinite ones do not count.
+std::pair<int, double> farthest(const Eigen::VectorXd& distances) {
+  std::pair<int, double> found{0, 0};
+  for (Eigen::Index i = 0; i < distances.size(); ++i)
+    if (std::isfinite(distances[i]) && distances[i] > found.second)
+      found = {static_cast<int>(i), distances[i]};
+  return found;
+}
+
+/// The places of the source so far, each with its counterpart and behind the pairs.
+class CounterpartSearch {
+ public:
+  CounterpartSearch(MeasuredSurface source, MeasuredSurface target, std::size_t pairs,
+                    const CounterpartOptions& options)
+      : source_(std::move(source)), target_(std::move(target)), pairs_(pairs), options_(options) {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < pairs_; ++i) {
+      const auto [vertex, reach] = farthest(source_.from(i));
+      largest_ = std::max(largest_, reach);
+      for (std::size_t j = i + 1; j < pairs_; ++j) {
+        const double ratio = target_.between(i, j) / source_.between(i, j);
+        if (std::isfinite(ratio) && ratio > 0) ratios.push_back(ratio);
+      }
+    }
+    if (!ratios.empty()) ratio_ = median(std::move(ratios));
+  }
+
+  /// Returns n: how far every vertex of the source is from the place.
+  const Eigen::VectorXd& add(int source_vertex) {
+    Found found{source_vertex};
+    look_for(found, places_.size());
+    source_.measure_from(found.source);
+    target_.measure_from(found.target);
+    places_.push_back(found);
+    return source_.from(pairs_ + places_.size() - 1);
+  }
+
+  /// Looks for every counterpart again, by all the others.
+  void sweep() {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const int before = places_[k].target;
+      look_for(places_[k], k);
+      if (places_[k].target != before) target_.measure_from(places_[k].target, pairs_ + k);
+    }
+  }
+
+  GeodesicCounterparts credible() const {
+    GeodesicCounterparts result{Points(3, 0), Points(3, 0)};
+    for (const Found& found : places_) {
+      if (!(found.misfit <= options_.most_misfit)) continue;
+      for (Points* points : {&result.sources, &result.targets})
+        points->conservativeResize(3, points->cols() + 1);
+      result.sources.rightCols(1) = source_.place(found.source);
+      result.targets.rightCols(1) = target_.place(found.target);
+    }
+    return result;
+  }
+
+ private:
+  struct Found {
+    int source = 0, target = 0;  // vertices
+    double misfit = infinity;
+  };
+
+  /// The counterpart of the place by all pairs and places but number `self` of these.
+  void look_for(Found& place, std::size_t self) const {
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(target_.vertices());
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(target_.vertices());
+    double nearest = infinity, all_weights = 0;
+    for (std::size_t i = 0; i < pairs_ + places_.size(); ++i) {
+      const double asked = ratio_ * source_.from(i)[place.source];
+      if (i == pairs_ + self || !std::isfinite(asked)) continue;
+      const double weight = std::pow(asked + options_.softening * ratio_ * largest_, -2);
+      for (Eigen::Index q = 0; q < squares.size(); ++q) {
+        const double there = target_.from(i)[q];
+        if (!std::isfinite(there)) continue;
+        squares[q] += weight * (there - asked) * (there - asked);
+        weights[q] += weight;
+      }
+      nearest = std::min(nearest, asked);
+      all_weights += weight;
+    }
+    // Another component than most of the pairs' says nothing.
+    double least = infinity;
+    for (Eigen::Index q = 0; q < squares.size(); ++q) {
+      if (!(weights[q] > all_weights / 2) || !(squares[q] / weights[q] < least)) continue;
+      least = squares[q] / weights[q];
+      place.target = static_cast<int>(q);
+    }
+    place.misfit = std::sqrt(least) / nearest;
+  }
+
+  MeasuredSurface source_, target_;
+  std::size_t pairs_;
+  CounterpartOptions options_;
+  double ratio_ = 1;    // of distances along the target to those along the source
+  double largest_ = 0;  // along the source, mesh units
+  std::vector<Found> places_;
+};
+
+}  // namespace
+
+GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const TriangleMesh& target,
+                                           const Points& sources, const Points& targets,
+                                           const CounterpartOptions& options, const Progress& progress) {
+  if (sources.cols() != targets.cols())
+    throw InvalidInput(std::to_string(sources.cols()) + " points of the source and " +
+                       std::to_string(targets.cols()) + " of the target are no pairs");
+  if (sources.cols() == 0) return {Points(3, 0), Points(3, 0)};
+  MeasuredSurface from_source(source);
+  const double unit = from_source.diagonal();
+  Eigen::VectorXd nearest = from_source.distances(from_source.feet(sources));
+  if (farthest(nearest).second < options.remote * unit) return {Points(3, 0), Points(3, 0)};
+
+  const std::vector<Eigen::Index> pairs = spread_columns(sources, options.most_pairs);
+  MeasuredSurface from_target(target);
+  from_source.measure_from(from_source.feet(sources(Eigen::all, pairs)));
+  from_target.measure_from(from_target.feet(targets(Eigen::all, pairs)));
+  CounterpartSearch search(std::move(from_source), std::move(from_target), pairs.size(), options);
+  for (int k = 0; k < options.most; ++k) {
+    progress.check();
+    const auto [place, distance] = farthest(nearest);
+    if (distance < options.spacing * unit) break;
+    nearest = nearest.cwiseMin(search.add(place));
+  }
+  for (int k = 0; k < options.sweeps; ++k) {
+    progress.check();
+    search.sweep();
+  }
+  return search.credible();
+}
+
+}  // namespace bespoke
