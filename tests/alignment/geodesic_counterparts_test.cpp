@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bespoke/error.h"
 #include "support/shapes.h"
@@ -94,6 +96,31 @@ TEST(GeodesicCounterparts, DoNotLeaveTheComponentOfThePairs) {
   ASSERT_GT(found.sources.cols(), 0);
   EXPECT_EQ(found.sources.row(2).cwiseAbs().maxCoeff(), 0);
   EXPECT_EQ(found.targets.row(2).cwiseAbs().maxCoeff(), 0);
+}
+
+/// Both sides of a slit lie at the same places, and are far from each other along the sheet.
+TEST(GeodesicCounterparts, DoNotTouchPairsAcrossASlit) {
+  TriangleMesh slit = sheet();
+  const auto whole = static_cast<int>(slit.vertices.cols());
+  std::vector<int> copy(static_cast<std::size_t>(whole));
+  for (int i = 0; i < whole; ++i) {
+    copy[static_cast<std::size_t>(i)] = i;
+    if (std::abs(slit.vertices(1, i) - 0.5) > 1e-9 || slit.vertices(0, i) < 1) continue;
+    copy[static_cast<std::size_t>(i)] = static_cast<int>(slit.vertices.cols());
+    slit.vertices.conservativeResize(3, slit.vertices.cols() + 1);
+    slit.vertices.rightCols(1) = slit.vertices.col(i);
+  }
+  for (auto&& face : slit.faces.colwise()) {
+    const Vector3 middle = slit.vertices(Eigen::all, face).rowwise().mean();
+    if (middle[1] > 0.5)
+      for (int& vertex : face) vertex = copy[static_cast<std::size_t>(vertex)];
+  }
+  Points pairs = sheet_pairs();
+  pairs.col(3) << 3.7, 0.5, 0;
+  const GeodesicCounterparts found = geodesic_counterparts(slit, slit, pairs, pairs);
+  ASSERT_GT(found.sources.cols(), 0);
+  for (const auto& x : found.sources.colwise())
+    EXPECT_GT((pairs.colwise() - x).colwise().norm().minCoeff(), 0.01 * diagonal(slit.vertices));
 }
 
 TEST(GeodesicCounterparts, AreNoneWithoutPairs) {

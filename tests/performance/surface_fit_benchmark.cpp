@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/quality/bare_area.h"
 #include "bespoke/quality/surface_strain.h"
@@ -71,6 +72,29 @@ void bare(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(bare_area(target, laid, 0.035));
 }
 BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk over
+/// the source that every fit takes.
+void counterparts(benchmark::State& state, Eigen::Index pairs) {
+  const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
+  const TriangleMesh target = bumpy_sphere(static_cast<int>(state.range(0)));
+  const Points from = source.vertices.leftCols(pairs), to = target.vertices.leftCols(pairs);
+  CounterpartOptions options;
+  if (pairs == 36) options.remote = 2;
+  for (auto _ : state) benchmark::DoNotOptimize(geodesic_counterparts(source, target, from, to, options));
+}
+BENCHMARK_CAPTURE(counterparts, five, 5)
+    ->Arg(5)
+    ->Arg(6)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK_CAPTURE(counterparts, none_far, 36)
+    ->Arg(5)
+    ->Arg(6)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace bespoke

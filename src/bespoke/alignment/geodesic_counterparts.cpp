@@ -129,6 +129,9 @@ class CounterpartSearch {
     return source_.from(pairs_ + places_.size() - 1);
   }
 
+  int size() const { return static_cast<int>(places_.size()); }
+  Vector3 place(int source_vertex) const { return source_.place(source_vertex); }
+
   /// Looks for every counterpart again, by all the others.
   void sweep() {
     for (std::size_t k = 0; k < places_.size(); ++k) {
@@ -211,11 +214,19 @@ GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const Tri
   from_source.measure_from(from_source.feet(sources(Eigen::all, pairs)));
   from_target.measure_from(from_target.feet(targets(Eigen::all, pairs)));
   CounterpartSearch search(std::move(from_source), std::move(from_target), pairs.size(), options);
-  for (int k = 0; k < options.most; ++k) {
+  Points taken = sources;
+  while (search.size() < options.most) {
     progress.check();
     const auto [place, distance] = farthest(nearest);
     if (distance < options.spacing * unit) break;
+    const Vector3 x = search.place(place);
+    if ((taken.colwise() - x).colwise().norm().minCoeff() < options.touching * unit) {
+      nearest[place] = 0;
+      continue;
+    }
     nearest = nearest.cwiseMin(search.add(place));
+    taken.conservativeResize(3, taken.cols() + 1);
+    taken.rightCols(1) = x;
   }
   for (int k = 0; k < options.sweeps; ++k) {
     progress.check();

@@ -15,6 +15,9 @@ struct CounterpartOptions {
   /// Of the source's diagonal: so near to a pair or to each other the places may be at last. 0.18, 0.15,
   /// 0.12, 0.08: 0.41, 0.39, 0.37, 0.39 %.
   double spacing = 0.1;
+  /// Of the source's diagonal: so near to a pair or a place in space none is taken, however far it is along
+  /// the surface. Across a seam or where parts touch, a warp of space cannot tell them apart. Not varied.
+  double touching = 0.01;
   int most = 30;   ///< places
   int sweeps = 2;  ///< in which every counterpart is looked for again by all the others. 3 and 4: the same.
   /// Of the largest distance: added to a distance, so that pairs at hand do not decide alone. 0.05: 0.37 %.
