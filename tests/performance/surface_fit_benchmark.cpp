@@ -73,8 +73,8 @@ void bare(benchmark::State& state) {
 }
 BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
-/// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk over
-/// the source that every fit takes.
+/// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk
+/// over the source that every fit takes.
 void counterparts(benchmark::State& state, Eigen::Index pairs) {
   const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
   const TriangleMesh target = bumpy_sphere(static_cast<int>(state.range(0)));
