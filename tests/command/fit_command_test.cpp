@@ -13,6 +13,7 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/mesh_io.h"
 #include "command/fit_command.h"
+#include "support/bent_tube.h"
 #include "support/shapes.h"
 
 namespace bespoke::test {
@@ -434,6 +435,34 @@ TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesBareUnlessAPatchExcludesIt) 
   fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, Not(HasSubstr("bare")));
+}
+
+TEST_F(FitCommand, WarnsWhereDistancesAlongTheSurfacesToldPartsFarFromAllAnchors) {
+  const TriangleMesh straight = shapes::tube();
+  TriangleMesh target = straight;
+  for (auto&& x : target.vertices.colwise()) x = shapes::bent(x, 110);
+  write_triangle_mesh(pair_.file("source.obj"), straight);
+  write_triangle_mesh(pair_.file("target.obj"), target);
+  const auto fit_by = [&](std::initializer_list<int> rings) {
+    json anchors;
+    for (const int ring : rings)
+      for (const int side : {0, 4, 8}) {
+        const int vertex = ring * shapes::tube_sides + side;
+        const Vector3 a = straight.vertices.col(vertex), b = target.vertices.col(vertex);
+        anchors["pairs"].push_back({{"a", {a[0], a[1], a[2]}}, {"b", {b[0], b[1], b[2]}}});
+      }
+    write_text(pair_.file("anchors.json"), anchors.dump());
+    return pair_.fit("map.vdb", {"--elastic", "pffd-smooth", "--voxel-size", "20%"});
+  };
+  const ProgramResult few = fit_by({0, 15, 30});
+  EXPECT_EQ(few.exit_code, 0) << few.err;
+  EXPECT_THAT(few.out, HasSubstr("\ncounterparts "));
+  EXPECT_THAT(few.err,
+              HasSubstr(" places far from all anchors lay elsewhere than distances along the surfaces put "
+                        "them; laid by these too; pairs on those parts"));
+  const ProgramResult enough = fit_by({0, 15, 30, 50, 65, 80});
+  EXPECT_EQ(enough.exit_code, 0) << enough.err;
+  EXPECT_THAT(enough.out + enough.err, Not(HasSubstr("counterparts")));
 }
 
 TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {

@@ -63,6 +63,13 @@ void warn_of_uncovered_source(const RunContext& context, double diagonal, const 
                ", or more from the target; is it the right target, all of it, and are the anchors its own?");
 }
 
+/// Such parts are known less well than by anchors.
+void warn_of_inferred_parts(const RunContext& context, const CounterpartSummary& counterparts) {
+  if (counterparts.taken)
+    context.warn(to_string(counterparts) +
+                 "; pairs on those parts make the map surer (bespoke anchors suggest says where)");
+}
+
 void warn_of_bare_target(const RunContext& context, const BareArea& bare) {
   if (bare.is_notable())
     context.warn(to_string(bare) +
@@ -95,6 +102,7 @@ void warn_of_misses(const RunContext& context, const TriangleMesh& source, const
   const FitSummary& summary = made.fit.summary;
   const double size = diagonal(source.vertices);
   if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
+  if (summary.counterparts) warn_of_inferred_parts(context, *summary.counterparts);
   if (summary.bare) warn_of_bare_target(context, *summary.bare);
   warn_of_missed_vertices(context, size, summary.elastic.unmet);
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
