@@ -133,6 +133,9 @@ TEST_F(CarryObj, NamesTheLineOfWhatIsWrong) {
   EXPECT_THAT(complaint("a.obj", good + "f 1 2 4\n"), HasSubstr(":5: a face names vertex 4 of 3"));
   EXPECT_THAT(complaint("a.obj", good + "f 1 2 -4\nv 1 1 1\n"), HasSubstr(":5: a face names vertex -4 of 3"));
   EXPECT_THAT(complaint("a.obj", good + "f 1//1 2//1 3//1\n"), HasSubstr(":5: a face names normal 1 of 0"));
+  // 16 GB, were the number taken for that of a normal.
+  EXPECT_THAT(complaint("a.obj", good + "f 1//4294967000 2//1 3//1\n"),
+              HasSubstr(":5: a face names normal 4294967000 of 0"));
   EXPECT_THAT(complaint("a.obj", good + "f 1 2\n"), HasSubstr(":5: a face of 2 corners"));
   EXPECT_THAT(complaint("a.obj", good + "l 1\n"), HasSubstr(":5: a line of 1 corners"));
   for (const char* corner : {"x", "0", "3/", "3//", "/3", "3/1/", "3/1/1/1", "//", "3.0"})

@@ -91,7 +91,7 @@ struct FitSummary {
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
   std::optional<CoarseSummary> coarse;             ///< empty when the fitted source was given, or no anchors
-  std::optional<CounterpartSummary> counterparts;  ///< empty where anchors alone lay the source rightly
+  std::optional<CounterpartSummary> counterparts;  ///< empty where nothing spoke against the anchors alone
   std::optional<SurfaceFitSummary> surface;        ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
   std::optional<BareArea>

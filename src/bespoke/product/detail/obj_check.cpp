@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/obj_statements.h"
@@ -121,8 +122,12 @@ void sort_unique(Uses& uses) {
 /// Gathers the uses of normals, most of which repeat earlier ones.
 class UseTable {
  public:
+  /// A number that no file of so many bytes can have a normal for takes no memory: it is refused at the end.
+  explicit UseTable(std::uint64_t bytes) : most_normals_(bytes / std::string_view("vn 0 0 0").size()) {}
+
   void add(const Uses& uses, ObjContent& content) {
     for (const auto& [normal, position] : uses) {
+      if (normal >= most_normals_) continue;
       if (normal >= content.first_use.size()) content.first_use.resize(normal + 1, ObjContent::unused);
       std::uint32_t& first = content.first_use[normal];
       if (first == ObjContent::unused)
@@ -136,6 +141,7 @@ class UseTable {
   }
 
  private:
+  std::uint64_t most_normals_;
   std::size_t unique_ = 0;
 };
 
@@ -154,7 +160,7 @@ void finish_uses(ObjContent& content) {
 
 ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
   ObjContent content;
-  UseTable uses;
+  UseTable uses(file.size());
   Counts largest{};
   Counts limits;
   limits.fill(ObjContent::unused - 1);
