@@ -34,20 +34,5 @@ TEST(TwoWayPoints, AreApartByWhatTheWaysDifferIn) {
   EXPECT_LT((points.apart - chords).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(SpreadVertices, AreFarFromOneAnotherAndInFaces) {
-  TriangleMesh mesh = shapes::icosphere(3);
-  mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 1);
-  mesh.vertices.rightCols<1>() = Vector3(9, 9, 9);  // in no face
-  const std::vector<int> chosen = spread_vertices(mesh, 12);
-  ASSERT_EQ(chosen.size(), 12u);
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    EXPECT_LT(chosen[i], mesh.vertices.cols() - 1);
-    for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GT((mesh.vertices.col(chosen[i]) - mesh.vertices.col(chosen[j])).norm(), 0.7);
-    }
-  }
-  EXPECT_EQ(spread_vertices(mesh, 100'000).size(), static_cast<std::size_t>(mesh.vertices.cols() - 1));
-}
-
 }  // namespace
 }  // namespace bespoke

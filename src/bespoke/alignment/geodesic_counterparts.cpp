@@ -11,6 +11,7 @@
 #include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/mesh/spread_points.h"
 #include "bespoke/mesh/surface_paths.h"
 #include "bespoke/parallel.h"
 
@@ -79,18 +80,6 @@ class MeasuredSurface {
   std::vector<SurfacePoint> feet_;
   std::vector<Eigen::VectorXd> from_;
 };
-
-/// Columns of at most `count` points, each the farthest from those before it.
-std::vector<Eigen::Index> spread_columns(const Points& points, int count) {
-  std::vector<Eigen::Index> chosen;
-  Eigen::VectorXd nearest = Eigen::VectorXd::Constant(points.cols(), infinity);
-  Eigen::Index next = 0;
-  while (std::ssize(chosen) < count && nearest.maxCoeff(&next) > 0) {
-    chosen.push_back(next);
-    nearest = nearest.cwiseMin((points.colwise() - points.col(next)).colwise().norm().transpose());
-  }
-  return chosen;
-}
 
 /// The vertex farthest from what `distances` are from, and how far it is; infinite ones do not count.
 std::pair<int, double> farthest(const Eigen::VectorXd& distances) {
@@ -206,12 +195,15 @@ GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const Tri
   if (sources.cols() == 0) return {Points(3, 0), Points(3, 0)};
   MeasuredSurface from_source(source);
   const double unit = from_source.diagonal();
-  Eigen::VectorXd nearest = from_source.distances(from_source.feet(sources));
+  const std::vector<SurfacePoint> feet = from_source.feet(sources);
+  Eigen::VectorXd nearest = from_source.distances(feet);
   if (farthest(nearest).second < options.remote * unit) return {Points(3, 0), Points(3, 0)};
 
-  const std::vector<Eigen::Index> pairs = spread_columns(sources, options.most_pairs);
+  const std::vector<int> pairs = spread_points(sources, options.most_pairs);
+  std::vector<SurfacePoint> spread_feet;
+  for (const int pair : pairs) spread_feet.push_back(feet[static_cast<std::size_t>(pair)]);
   MeasuredSurface from_target(target);
-  from_source.measure_from(from_source.feet(sources(Eigen::all, pairs)));
+  from_source.measure_from(spread_feet);
   from_target.measure_from(from_target.feet(targets(Eigen::all, pairs)));
   CounterpartSearch search(std::move(from_source), std::move(from_target), pairs.size(), options);
   Points taken = sources;

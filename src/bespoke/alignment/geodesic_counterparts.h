@@ -22,7 +22,7 @@ struct CounterpartOptions {
   int sweeps = 2;  ///< in which every counterpart is looked for again by all the others. 3 and 4: the same.
   /// Of the largest distance: added to a distance, so that pairs at hand do not decide alone. 0.05: 0.37 %.
   double softening = 0.02;
-  int most_pairs = 16;  ///< measured from, those farthest apart: each is two walks over a surface
+  std::size_t most_pairs = 16;  ///< measured from, those farthest apart: each is two walks over a surface
   /// Counterparts with a larger misfit are left out: 0.03 to 0.25 on poses and on other persons, 0.25 to 0.9
   /// on scans that end where the source goes on.
   double most_misfit = 0.25;

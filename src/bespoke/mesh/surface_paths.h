@@ -24,7 +24,7 @@ SurfaceGraph edge_graph(const TriangleMesh& mesh);
 
 /// Along the edges, and straight across two faces that share an edge with no other one, between the corners
 /// opposite to it, where that line crosses the edge. Paths over a square grid are longer than on the plane by
-/// at most 5.5 %; over its edges alone by up to 41 %.
+/// at most 1 / cos 22.5° − 1 = 8.2 %, since they go eight ways; over its edges alone by up to 41 %.
 SurfaceGraph edge_and_crossing_graph(const TriangleMesh& mesh);
 
 /// Where paths begin.

@@ -11,6 +11,7 @@
 #include "bespoke/error.h"
 #include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/spread_points.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/two_way_points.h"
 

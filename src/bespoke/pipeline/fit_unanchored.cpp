@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/spread_points.h"
 #include "bespoke/pipeline/two_way_points.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/statistics.h"

@@ -164,58 +164,56 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   return without(rated, not_taken_back(disowned, take_back));
 }
 
-/// Where distances along the surfaces put places far from all pairs, with the accuracy of that.
-std::vector<AnchorPair> remote_counterparts(const LayInput& input, const Anchors& anchors,
-                                            const Progress& progress) {
-  // Of the target's diagonal. 0.5 and 2 % on the pairs of CounterpartOptions: errors x 1.15 and 1.10 when
-  // always taken.
-  constexpr double sigma = 0.01;
-  const GeodesicCounterparts found =
-      geodesic_counterparts(without_excluded(input.source, input.patches.source).mesh,
-                            without_excluded(input.target, input.patches.target).mesh, source_points(anchors),
-                            target_points(anchors), {}, progress);
-  std::vector<AnchorPair> pairs(static_cast<std::size_t>(found.sources.cols()));
+GeodesicCounterparts remote_counterparts(const LayInput& input, const Anchors& anchors,
+                                         const Progress& progress) {
+  return geodesic_counterparts(without_excluded(input.source, input.patches.source).mesh,
+                               without_excluded(input.target, input.patches.target).mesh,
+                               source_points(anchors), target_points(anchors), {}, progress);
+}
+
+std::vector<AnchorPair> pairs_of(const GeodesicCounterparts& counterparts, double sigma) {
+  std::vector<AnchorPair> pairs(static_cast<std::size_t>(counterparts.sources.cols()));
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    pairs[k].a = found.sources.col(static_cast<Eigen::Index>(k));
-    pairs[k].b = found.targets.col(static_cast<Eigen::Index>(k));
-    pairs[k].sigma = sigma * diagonal(input.target.vertices);
+    pairs[k].a = counterparts.sources.col(static_cast<Eigen::Index>(k));
+    pairs[k].b = counterparts.targets.col(static_cast<Eigen::Index>(k));
+    pairs[k].sigma = sigma;
   }
   return pairs;
 }
 
 /// Whether the source as laid may be wrong somewhere: what it did not find is bare, what was drawn to the
-/// wrong place is distorted. Right ones of models in one pose are distorted by 0.03 to 0.13 (hands of two
-/// people 0.16) and cover more than 0.995, of 26 pairs with five anchors; those that had lost a limb by 0.18
-/// to 0.3.
+/// wrong place is distorted. With five anchors, of the pairs of CounterpartOptions, those that had lost a
+/// limb were distorted by 0.18 to 0.3; right ones in one pose by 0.03 to 0.16, and covered 0.995 and more,
+/// but for scans with debris (0.91, 0.98).
 bool is_in_doubt(const PlacementFigures& laid) { return laid.distortion > 0.15 || laid.covered < 0.99; }
 
 /// Where some parts of the source are far from all pairs, and came to lie elsewhere than distances along the
 /// surfaces put them: lays the source by these too, and takes that if it explains the target clearly better.
 void lay_by_counterparts(FittedMapping& result, const LayInput& input, const RatedAnchors& rated,
                          const Progress& progress) {
+  // Of the target's diagonal. 0.5 and 2 % on the pairs of CounterpartOptions: errors x 1.15 and 1.10 when
+  // always taken.
+  constexpr double accuracy = 0.01;
   constexpr double far_off = 3;  // standard deviations
   // Of the misfits. On the pairs of CounterpartOptions, of which 5, 8, 12, 16 anchors were kept: below 0.99
   // no error grew; from 0.99 to 1 it changed by x 0.92 to 1.10.
   constexpr double clearly_better = 0.99;
   const Stopwatch watch;
-  const std::vector<AnchorPair> pairs = remote_counterparts(input, rated.anchors, progress);
-  Points places(3, std::ssize(pairs));
-  for (std::size_t k = 0; k < pairs.size(); ++k) places.col(static_cast<Eigen::Index>(k)) = pairs[k].a;
-  if (!pairs.empty()) places = laid_with_source(result, input.source, places);
-  CounterpartSummary found{pairs.size()};
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    if ((places.col(static_cast<Eigen::Index>(k)) - pairs[k].b).norm() > far_off * *pairs[k].sigma)
-      ++found.elsewhere;
-  if (found.elsewhere < 2) return;  // one alone may be mistaken
+  const GeodesicCounterparts counterparts = remote_counterparts(input, rated.anchors, progress);
+  if (counterparts.sources.cols() == 0) return;
+  const double sigma = accuracy * diagonal(input.target.vertices);
+  const Points places = laid_with_source(result, input.source, counterparts.sources);
+  const auto elsewhere = ((places - counterparts.targets).colwise().norm().array() > far_off * sigma).count();
+  if (elsewhere < 2) return;  // one alone may be mistaken
   const PlacementFigures by_anchors = placement(result, input);
   if (!is_in_doubt(by_anchors)) return;
 
   FittedMapping trial = result;
-  lay_by_rated(trial, input, rated, progress, pairs);
-  found.taken = misfit(trial, input) < clearly_better * by_anchors.misfit();
-  if (found.taken) result = std::move(trial);
-  found.seconds = watch.seconds();
-  result.summary.counterparts = found;
+  lay_by_rated(trial, input, rated, progress, pairs_of(counterparts, sigma));
+  const bool taken = misfit(trial, input) < clearly_better * by_anchors.misfit();
+  if (taken) result = std::move(trial);
+  result.summary.counterparts = {static_cast<std::size_t>(counterparts.sources.cols()),
+                                 static_cast<std::size_t>(elsewhere), taken, watch.seconds()};
 }
 
 /// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the

@@ -1,26 +1,9 @@
 #include "bespoke/pipeline/two_way_points.h"
 
-#include <limits>
-
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
-
-std::vector<int> spread_vertices(const TriangleMesh& mesh, std::size_t count) {
-  const Eigen::VectorXd areas = vertex_areas(mesh);
-  Eigen::VectorXd nearest =
-      (areas.array() > 0)
-          .select(std::numeric_limits<double>::infinity(), Eigen::VectorXd::Zero(areas.size()));
-  std::vector<int> chosen;
-  Eigen::Index next = 0;
-  while (chosen.size() < count && nearest.maxCoeff(&next) > 0) {
-    chosen.push_back(static_cast<int>(next));
-    nearest = nearest.cwiseMin(
-        (mesh.vertices.colwise() - mesh.vertices.col(next)).colwise().squaredNorm().transpose());
-  }
-  return chosen;
-}
 
 TwoWayPoints two_way_points(const TriangleMesh& source, const Points& laid, const TriangleMesh& target,
                             const Points& target_laid, const std::vector<int>& vertices) {

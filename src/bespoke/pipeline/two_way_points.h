@@ -19,7 +19,4 @@ struct TwoWayPoints {
 TwoWayPoints two_way_points(const TriangleMesh& source, const Points& laid, const TriangleMesh& target,
                             const Points& target_laid, const std::vector<int>& vertices);
 
-/// At most `count` vertices in faces, each the farthest from those before it.
-std::vector<int> spread_vertices(const TriangleMesh& mesh, std::size_t count);
-
 }  // namespace bespoke
