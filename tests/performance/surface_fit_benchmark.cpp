@@ -75,23 +75,17 @@ BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCP
 
 /// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk
 /// over the source that every fit takes.
-void counterparts(benchmark::State& state, Eigen::Index pairs) {
-  const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
-  const TriangleMesh target = bumpy_sphere(static_cast<int>(state.range(0)));
+void counterparts(benchmark::State& state) {
+  const auto levels = static_cast<int>(state.range(0));
+  const Eigen::Index pairs = state.range(1);
+  const TriangleMesh source = shapes::icosphere(levels), target = bumpy_sphere(levels);
   const Points from = source.vertices.leftCols(pairs), to = target.vertices.leftCols(pairs);
   CounterpartOptions options;
   if (pairs == 36) options.remote = 2;
   for (auto _ : state) benchmark::DoNotOptimize(geodesic_counterparts(source, target, from, to, options));
 }
-BENCHMARK_CAPTURE(counterparts, five, 5)
-    ->Arg(5)
-    ->Arg(6)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
-BENCHMARK_CAPTURE(counterparts, none_far, 36)
-    ->Arg(5)
-    ->Arg(6)
+BENCHMARK(counterparts)
+    ->ArgsProduct({{5, 6}, {5, 36}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
