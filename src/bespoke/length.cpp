@@ -5,6 +5,12 @@
 
 namespace bespoke {
 
+double octave_of(double size_ratio) {
+  constexpr double reached = 0.125;  // octaves: sizes are told by anchors or areas, never to the bit
+  const double octaves = std::log2(size_ratio);
+  return std::isfinite(octaves) ? std::exp2(std::trunc(octaves + std::copysign(reached, octaves))) : 1;
+}
+
 std::optional<Length> parse_length(std::string_view text, LengthRange range) {
   Length length;
   const char* end = text.data() + text.size();

@@ -82,7 +82,7 @@ TEST_F(FitRefusals, RefusesWhatIsNotALength) {
                      "'" + text + "' is not a positive length");
 }
 
-TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnits) {
+TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnitsUnlessAnySizeIsAsked) {
   TriangleMesh target = read_triangle_mesh(pair_.file("target.obj"));
   target.vertices *= 100;
   write_triangle_mesh(pair_.file("target.obj"), target);
@@ -91,6 +91,7 @@ TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnits) {
     for (json& coordinate : pair["b"]) coordinate = 100 * coordinate.get<double>();
   write_text(pair_.file("anchors.json"), anchors.dump());
   expect_refusal(pair_.fit("map.vdb"), 2, "times as large as the source by their anchors");
+  EXPECT_EQ(pair_.fit("map.vdb", {"--any-size", "--require-certified"}).exit_code, 0);
 }
 
 TEST_F(FitRefusals, RefusesAFittedSourceOfOtherConnectivity) {

@@ -22,12 +22,24 @@ TEST(RegionalMotion, OfALimbIsItsTurn) {
   }
 }
 
-TEST(RegionalMotion, OfASimilarityIsItsTurnAndScale) {
+// A whole that grows needs no steps for it: an affine part does that exactly.
+TEST(RegionalMotion, OfASimilarityIsItsTurn) {
   const TriangleMesh source = shapes::icosphere(3);
   const Matrix3 turn = Eigen::AngleAxisd(0.7, Vector3::UnitX()).toRotationMatrix();
   const RegionalMotion motion = regional_motion(source, 0.25 * turn * source.vertices);
   EXPECT_NEAR(motion.turn, 0.7, 1e-9);
-  EXPECT_NEAR(motion.stretch, 4, 1e-9);
+  EXPECT_NEAR(motion.stretch, 1, 1e-9);
+}
+
+TEST(RegionalMotion, StretchesAgainstTheWhole) {
+  const TriangleMesh source = shapes::icosphere(3);
+  Points fitted = source.vertices;
+  for (auto x : fitted.colwise())
+    if (x[2] > 0) x[2] *= 3;
+  const double stretch = regional_motion(source, fitted).stretch;
+  EXPECT_GT(stretch, 1.2);
+  EXPECT_LT(stretch, 3);
+  EXPECT_NEAR(regional_motion(source, 8 * fitted).stretch, stretch, 1e-9);
 }
 
 TEST(RegionalMotion, DoesNotBelieveOneBadFace) {

@@ -190,11 +190,11 @@ TEST(ComposeMaps, JoinsStepsRatherThanGiveUpTheTolerance) {
 }
 
 TEST(DerivedBake, HasTheLeavesOfAFittedMapUnlessAToleranceIsNamed) {
-  const BakeOptions unnamed = derived_bake({}, 20, 0.5, ValuePrecision::half);
+  const BakeOptions unnamed = derived_bake({}, {20, 0.5}, ValuePrecision::half);
   EXPECT_EQ(unnamed.tolerance, 0.5);
   EXPECT_EQ(unnamed.max_leaves, default_options(1).bake.max_leaves);
   EXPECT_EQ(unnamed.precision, ValuePrecision::half);
-  const BakeOptions named = derived_bake(Length{1, true}, 20, 0.5, ValuePrecision::single);
+  const BakeOptions named = derived_bake(Length{1, true}, {20, 0.5}, ValuePrecision::single);
   EXPECT_DOUBLE_EQ(named.tolerance, 0.2);
   EXPECT_FALSE(named.max_leaves);
 }

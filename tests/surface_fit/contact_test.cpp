@@ -72,6 +72,21 @@ TEST(HoldApart, LeavesTheTwoSidesOfAThinPart) {
   EXPECT_EQ(hold_apart(source, flat.vertices, contact_options).summary.touching, 0u);
 }
 
+// However large the fitted surface: what is near on the source is told by a source as large.
+TEST(HoldApart, GrowsWithTheFittedSurface) {
+  const TriangleMesh near = two_balls(2.01), far = two_balls(4);
+  const Points touching = two_balls(1.9).vertices;
+  const ContactFit fit = hold_apart(far, touching, contact_options);
+  ASSERT_FALSE(fit.summary.released.empty());
+  for (const double size : {0.125, 8.0}) {
+    const ContactOptions options{.gap = size * contact_options.gap, .reach = size * contact_options.reach};
+    EXPECT_EQ(hold_apart(near, size * near.vertices, options).summary.touching, 0u);
+    const ContactFit scaled = hold_apart(far, size * touching, options);
+    EXPECT_EQ(scaled.summary.touching, fit.summary.touching);
+    EXPECT_NEAR((scaled.vertices / size - fit.vertices).cwiseAbs().maxCoeff(), 0, 1e-9);
+  }
+}
+
 TEST(HoldApart, DoesNothingWithoutAGap) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
   EXPECT_EQ(hold_apart(source, fitted.vertices, {.gap = 0}).vertices, fitted.vertices);

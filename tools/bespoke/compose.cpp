@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -31,8 +30,7 @@ void run(const ComposeArguments& arguments, const RunContext& context) {
   require_map_ending(options.output);
   const Asset first = read_asset(arguments.first, {.untrusted = options.untrusted});
   const Asset second = read_asset(arguments.second, {.untrusted = options.untrusted});
-  const BakeOptions bake =
-      options.bake(first.record.source, std::max(first.record.tolerance, second.record.tolerance));
+  const BakeOptions bake = options.bake(tolerance_of_composed(first, second));
   const MeetingModels meeting =
       arguments.any_models ? MeetingModels::may_differ : MeetingModels::must_be_the_same;
   write_derived_map(options, context, compose_maps(first, second, bake, meeting, context.progress),
@@ -51,7 +49,8 @@ void add_compose_command(CLI::App& app, const TakePlan& take) {
   add_derived_map_options(
       *compose, arguments->options,
       "Largest difference between the joined map and the two, mesh units or % of a's "
-      "bounding-box diagonal (default: the larger one of AB and BC, within 4.4 M voxels)");
+      "bounding-box diagonal (default: the larger one of AB and BC, within 4.4 M voxels), doubled or halved "
+      "as often as c is twice or half as large");
   compose->footer(
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"

@@ -23,9 +23,8 @@ void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& deriv
 
 }  // namespace
 
-BakeOptions DerivedMapOptions::bake(const ModelRecord& model, double otherwise) const {
-  return derived_bake(tolerance, model.box.diagonal().norm(), otherwise,
-                      half ? ValuePrecision::half : ValuePrecision::single);
+BakeOptions DerivedMapOptions::bake(const DerivedTolerance& lengths) const {
+  return derived_bake(tolerance, lengths, half ? ValuePrecision::half : ValuePrecision::single);
 }
 
 void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,

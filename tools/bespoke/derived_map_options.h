@@ -17,8 +17,8 @@ struct DerivedMapOptions {
   bool untrusted = false;
   RunOptions run;
 
-  /// The tolerance as given, in percent of the diagonal of `model`, or `otherwise`, mesh units.
-  BakeOptions bake(const ModelRecord& model, double otherwise) const;
+  /// The tolerance as given, or by default.
+  BakeOptions bake(const DerivedTolerance& lengths) const;
 };
 
 void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,

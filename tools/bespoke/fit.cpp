@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "bespoke/anchors/size_ratio.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
@@ -166,12 +167,13 @@ void run(const FitArguments& arguments, const RunContext& context) {
         "models in similar pose are aligned by their surfaces");
   require_usable_patches(arguments, anchors, source, target);
   warn_of_input(context, source, target, anchors);
-  rate_anchors(anchors, arguments, diagonal(source.vertices));
+  const double size = diagonal(source.vertices), octave = octave_of(size_ratio(anchors, source, target));
+  rate_anchors(anchors, arguments, size, octave);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
                            target_model.cloud ? &*target_model.cloud : nullptr};
-  const MakeMapOptions options = make_options(arguments, diagonal(source.vertices));
+  const MakeMapOptions options = make_options(arguments, size, octave);
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
     throw SolverError("the map is not certified as a bijection: " + to_string(whole_certificate(made.asset)));
@@ -244,6 +246,10 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "
                "joined, and a target that is inside out is turned over");
+  fit.add_flag(
+      "--any-size", arguments.any_size,
+      "Take models that differ by more than eight times in size, which are refused else as if in two "
+      "units: the map then goes from one unit to the other");
   fit.add_flag("--add-corners", arguments.add_corners,
                "Add the eight corners of the bounding boxes of the two models, aligned, as anchor pairs");
 }
@@ -253,13 +259,16 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
     return text +
            ", mesh units or % of the source's bounding-box diagonal (default: " + percentage(fraction) + ")";
   };
+  const auto on_target = [&](const std::string& text, double fraction) {
+    return defaulted(text, fraction) + ", doubled or halved as often as the target is twice or half as large";
+  };
   add_length_option(
       fit, "--lambda", arguments.lambda,
       defaulted("Effective distance: how far from the source the elastic part reaches", default_lambda));
   add_length_option(fit, "--tolerance", arguments.tolerance,
-                    defaulted("Largest difference between the baked and the exact map", default_tolerance));
+                    on_target("Largest difference between the baked and the exact map", default_tolerance));
   add_length_option(fit, "--fit-tolerance", arguments.fit_tolerance,
-                    defaulted("The multiscale and diffeomorphic maps refine where the fit is missed by more",
+                    on_target("The multiscale and diffeomorphic maps refine where the fit is missed by more",
                               default_fit_tolerance));
   add_length_option(
       fit, "--anchor-sigma", arguments.anchor_sigma,
@@ -269,7 +278,7 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
       LengthRange::not_negative);
   add_length_option(
       fit, "--contact-gap", arguments.contact_gap,
-      defaulted("Where the target touches itself, the parts are held this far apart; 0 leaves them",
+      on_target("Where the target touches itself, the parts are held this far apart; 0 leaves them",
                 default_contact_gap),
       LengthRange::not_negative);
   add_length_option(

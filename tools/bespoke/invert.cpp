@@ -25,7 +25,7 @@ void run(const InvertArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   require_map_ending(options.output);
   const Asset asset = read_asset(arguments.map, {.untrusted = options.untrusted});
-  const BakeOptions bake = options.bake(asset.record.target, asset.record.tolerance);
+  const BakeOptions bake = options.bake(tolerance_of_inverse(asset));
   write_derived_map(options, context, invert_map(asset, bake, context.progress), "round trip");
 }
 
@@ -38,7 +38,8 @@ void add_invert_command(CLI::App& app, const TakePlan& take) {
   invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
   add_derived_map_options(*invert, arguments->options,
                           "Largest difference between the baked and the exact inverse, mesh units or % of "
-                          "the target's bounding-box diagonal (default: that of MAP, within 4.4 M voxels)");
+                          "the target's bounding-box diagonal (default: that of MAP, within 4.4 M voxels), "
+                          "doubled or halved as often as the source is twice or half as large");
   invert->footer(
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"

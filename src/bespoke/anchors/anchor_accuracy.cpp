@@ -5,13 +5,15 @@
 #include <cstdio>
 #include <numeric>
 
+#include "bespoke/anchors/size_ratio.h"
+#include "bespoke/length.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/statistics.h"
 
 namespace bespoke {
 namespace {
 
-constexpr double resolution = 1e-3;          // of the source's diagonal: the least σ that is estimated
+constexpr double resolution = 1e-3;          // of the source's diagonal, as large as the target: the least σ
 constexpr double inlier_sigmas = 3;          // farther ones do not shape the estimate: 0.3 % of normal errors
 constexpr double slipped_sigmas = 4;         // 1 in 16,000 of normal errors
 constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
@@ -71,7 +73,7 @@ RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, co
     return !(is_unrated(anchors.pairs[pair.first]) && is_unrated(anchors.pairs[pair.second]));
   });
   const double source_diagonal = diagonal(source.vertices);
-  const double least = resolution * source_diagonal;
+  const double least = resolution * octave_of(size_ratio(anchors, source, target)) * source_diagonal;
   const std::vector<SlippedAnchor> off = offsets(anchors, source, target, near_surface * source_diagonal);
   if (!off.empty()) {
     const double deviation = robust_deviation(off);

@@ -37,7 +37,9 @@ inline constexpr std::array guided_maps{Named<GuidedMaps>{"none", GuidedMaps::no
                                         Named<GuidedMaps>{"all", GuidedMaps::all}};
 
 struct ElasticOptions {
-  double lambda = 0;  ///< effective distance, > 0, mesh units
+  double lambda = 0;  ///< effective distance around the source, > 0, mesh units
+  /// How many times as large it is around the fitted source, > 0: there the layers of a composition act.
+  double growth = 1;
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes

@@ -27,11 +27,15 @@ ElasticFit csrbf(const ElasticInput& input, const ElasticOptions& options, const
 template <bool composed>
 ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, const Progress& progress) {
   MultiscaleOptions multiscale;
-  multiscale.lambda = options.lambda;
+  const double growth = composed ? options.growth : 1;
+  multiscale.lambda = growth * options.lambda;
   multiscale.tolerance = options.fit_tolerance;
   multiscale.composed = composed;
   multiscale.affine_part = options.affine_part;
-  if (options.guided) multiscale.guides = space_guides(input.source, input.fitted, options.lambda);
+  if (options.guided) {
+    multiscale.guides = space_guides(input.source, input.fitted, options.lambda);
+    multiscale.guides.offset *= growth;
+  }
   MultiscaleFit fit = fit_multiscale(input.sources, input.targets, multiscale, progress);
   return {std::move(fit.map), std::move(fit.summary)};
 }

@@ -18,14 +18,17 @@ class ExactMapReader;
 class ExactMapWriter;
 
 struct MultiscaleOptions {
-  double lambda = 0;     ///< coarsest support radius: the effective distance, > 0, mesh units
+  /// Coarsest support radius, > 0, mesh units: the effective distance where the layers act, which is around
+  /// the targets where they are composed.
+  double lambda = 0;
   double tolerance = 0;  ///< refine where |E(vᵢ) − v'ᵢ| exceeds it, > 0, mesh units
   bool composed = true;  ///< diffeomorphic: layers are composed and each is bounded by ‖∇u_k‖ < 1 everywhere;
                          ///< otherwise summed
   int max_levels = 12;
   AffinePart affine_part = AffinePart::least_squares;
-  /// Met as well, within 5 % of their offset and by layers whose λ_k is no smaller than it: finer ones are
-  /// the surface's alone. They change neither the affine part nor what the summary says.
+  /// Met as well (their offset is measured where lambda is), within 5 % of their offset and by layers whose
+  /// λ_k is no smaller than it: finer ones are the surface's alone. They change neither the affine part nor
+  /// what the summary says.
   SpaceGuides guides = {};
 };
 

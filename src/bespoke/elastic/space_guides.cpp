@@ -1,6 +1,5 @@
 #include "bespoke/elastic/space_guides.h"
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,7 +32,7 @@ class Guiding {
   Guiding(const TriangleMesh& source, const Points& fitted)
       : source_(source),
         fitted_(fitted),
-        scale_(std::sqrt(vertex_areas({fitted, source.faces}).sum() / vertex_areas(source).sum())),
+        scale_(growth(source, fitted)),
         normals_(vertex_normals(source)),
         areas_(vertex_areas(source)),
         ring_(vertex_adjacency(source)),

@@ -31,12 +31,13 @@ constexpr double least_stretch = 0.1;
 
 RegionalMotion regional_motion(const TriangleMesh& source, const Points& fitted) {
   const FaceGradients gradients = face_gradients(source, fitted);
+  const double whole = growth(source, fitted);
   RegionalMotion motion;
   for_each_region(
       source, gradients.areas, [&](Eigen::Index face) { return gradients.of(face); },
       [&](const Matrix3& mean) {
         motion.turn = std::max(motion.turn, Eigen::AngleAxisd(nearest_rotation(mean).rotation).angle());
-        const Vector3 factors = Eigen::JacobiSVD<Matrix3>(mean).singularValues();
+        const Vector3 factors = Eigen::JacobiSVD<Matrix3>(mean / whole).singularValues();
         motion.stretch = std::max({motion.stretch, factors[0], 1 / std::max(factors[2], least_stretch)});
       });
   return motion;

@@ -4,10 +4,11 @@
 
 namespace bespoke {
 
-/// How far a deformation turns and stretches whole parts of a surface.
+/// How far a deformation turns whole parts of a surface, and stretches them against the whole.
 struct RegionalMotion {
   double turn = 0;     ///< largest rotation of a region, radians
-  double stretch = 1;  ///< largest factor, or one over it, by which a region is stretched, ≥ 1
+  double stretch = 1;  ///< largest factor, or one over it, by which a region is stretched
+                       ///< more than the surface as a whole (growth, triangle_mesh.h), ≥ 1
 };
 
 /// By the gradients of the faces alone: area-weighted means over balls of 5 % of the source's bounding-box

@@ -1,8 +1,10 @@
 #include "bespoke/mapping/affine_map.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 #include "bespoke/error.h"
+#include "bespoke/length.h"
 
 namespace bespoke {
 
@@ -16,6 +18,8 @@ AffineMap inverse(const AffineMap& map) {
     throw InvalidInput("the affine part of the map is singular: it has no inverse");
   return {linear, -(linear * map.offset)};
 }
+
+double octave_of(const AffineMap& map) { return octave_of(std::cbrt(std::abs(map.linear.determinant()))); }
 
 AffineMap as_affine(const RigidTransform& transform) { return {transform.rotation, transform.translation}; }
 

@@ -11,6 +11,9 @@ AffineMap compose(const AffineMap& outer, const AffineMap& inner);
 /// Throws InvalidInput for a singular map.
 AffineMap inverse(const AffineMap& map);
 
+/// How many times as large it makes models, in octaves (length.h): what sizes before and after it compare by.
+double octave_of(const AffineMap& map);
+
 AffineMap as_affine(const RigidTransform& transform);
 
 }  // namespace bespoke

@@ -183,6 +183,11 @@ Eigen::VectorXd vertex_areas(const TriangleMesh& mesh) {
   return areas;
 }
 
+double growth(const TriangleMesh& mesh, const Points& moved) {
+  const double before = vertex_areas(mesh).sum(), after = vertex_areas({moved, mesh.faces}).sum();
+  return before > 0 && after > 0 ? std::sqrt(after / before) : 1;
+}
+
 std::string content_hash(const TriangleMesh& mesh) {
   static_assert(sizeof(int) == 4);
   const std::int64_t counts[2] = {mesh.vertices.cols(), mesh.faces.cols()};

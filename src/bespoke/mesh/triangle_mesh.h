@@ -55,6 +55,10 @@ Points vertex_normals(const TriangleMesh& mesh);
 /// n: a third of the area of the faces around each vertex, mesh units squared.
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
 
+/// How many times as large the surface is with its vertices at `moved` (3×n): the square root of the factor
+/// of its whole area, which no pose changes. 1 for a surface without area, before or after.
+double growth(const TriangleMesh& mesh, const Points& moved);
+
 /// SHA-256 of the vertices, rounded to floats but hashed as doubles, and of the faces' indices, lower-case
 /// hex: names a model in an asset, whatever its file was called, in whichever format, with however many
 /// digits.

@@ -1,6 +1,7 @@
 #include "bespoke/pipeline/derive_map.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -122,6 +123,11 @@ std::string recorded_options(Json json, const BakeOptions& options) {
   return json.dump();
 }
 
+// How many times as large a map makes a model.
+double size_ratio(const Asset& asset) {
+  return std::cbrt(baked_chain(asset.steps).affine().linear.determinant());
+}
+
 void record_stages(DerivedMap& derived, const char* name) {
   Json stage = {{"name", "bake"}};
   stage.update(to_json(derived.bake));
@@ -131,10 +137,21 @@ void record_stages(DerivedMap& derived, const char* name) {
 
 }  // namespace
 
-BakeOptions derived_bake(const std::optional<Length>& tolerance, double diagonal, double otherwise,
+DerivedTolerance tolerance_of_inverse(const Asset& b_from_a) {
+  const double octave = octave_of(1 / size_ratio(b_from_a));
+  return {octave * b_from_a.record.target.box.diagonal().norm(), octave * b_from_a.record.tolerance};
+}
+
+DerivedTolerance tolerance_of_composed(const Asset& b_from_a, const Asset& c_from_b) {
+  const double first = size_ratio(b_from_a), second = size_ratio(c_from_b);
+  return {octave_of(first * second) * b_from_a.record.source.box.diagonal().norm(),
+          std::max(octave_of(second) * b_from_a.record.tolerance, c_from_b.record.tolerance)};
+}
+
+BakeOptions derived_bake(const std::optional<Length>& tolerance, const DerivedTolerance& lengths,
                          ValuePrecision precision) {
   BakeOptions options;
-  options.tolerance = tolerance ? tolerance->in_mesh_units(diagonal) : otherwise;
+  options.tolerance = tolerance ? tolerance->in_mesh_units(lengths.diagonal) : lengths.otherwise;
   // Who names a tolerance wants that one.
   if (!tolerance) options.max_leaves = default_max_leaves;
   options.precision = precision;

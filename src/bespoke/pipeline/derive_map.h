@@ -17,9 +17,19 @@ struct DerivedMap {
   Statistics deviation;
 };
 
-/// How a derived map is baked: to the tolerance that its user names, a share of `diagonal` or mesh units;
-/// where none is named to `otherwise` (mesh units), and with no more leaves than a fitted map has by default.
-BakeOptions derived_bake(const std::optional<Length>& tolerance, double diagonal, double otherwise,
+/// What the tolerance of a derived map is by default, and in percent of what, mesh units. Both are measured
+/// where the map ends, on a model that may be of another size than those that the lengths were of
+/// (octave_of, length.h; sizes by the maps' affine parts).
+struct DerivedTolerance {
+  double diagonal = 0;
+  double otherwise = 0;
+};
+DerivedTolerance tolerance_of_inverse(const Asset& b_from_a);
+DerivedTolerance tolerance_of_composed(const Asset& b_from_a, const Asset& c_from_b);
+
+/// How a derived map is baked: to the tolerance that its user names; where none is named, to that by default
+/// and with no more leaves than a fitted map has.
+BakeOptions derived_bake(const std::optional<Length>& tolerance, const DerivedTolerance& lengths,
                          ValuePrecision precision);
 
 /// b→a of an asset a→b. BakeOptions::max_leaves is for all steps together. Throws InvalidInput unless the

@@ -1,10 +1,12 @@
 #include "bespoke/pipeline/elastic_steps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/length.h"
 #include "bespoke/mesh/facing_outward.h"
 
 namespace bespoke {
@@ -16,6 +18,12 @@ Points with_loose(const Points& vertices, const Points& pairs, std::size_t loose
   Points all(3, vertices.cols() + count);
   all << vertices, pairs.rightCols(count);
   return all;
+}
+
+/// About a middle, which stays.
+Points grown(const Points& points, const Vector3& middle, double factor) {
+  if (factor == 1) return points;
+  return (factor * (points.colwise() - middle)).colwise() + middle;
 }
 
 /// Fits one step after the other, from where the points have come to.
@@ -41,15 +49,21 @@ class StepFitter {
   /// Where a map would take vertices and loose points, one after the other.
   Points moved_by(const ElasticMap& map) const { return map(with_loose(vertices_, places_, loose_)); }
 
-  /// next: vertices and loose points.
-  void fit_to(const Points& next) {
+  /// Along the plan, from one time to another, to where the path is then or to `next`: vertices and loose
+  /// points.
+  void fit_to(const StepPlan& plan, double from, double to) { fit_to(plan, from, to, plan.surface(to)); }
+  void fit_to(const StepPlan& plan, double from, double to, const Points& next) {
     const auto loose = static_cast<Eigen::Index>(loose_);
     const Points fitted = next.leftCols(vertices_.cols());
     const TriangleMesh here{vertices_, source_.faces};
     Points targets = places_;
     targets.leftCols(places_.cols() - loose) = elastic_pairs(source_, fitted).targets;
     targets.rightCols(loose) = next.rightCols(loose);
-    ElasticFit fit = method_.fit({here, fitted, places_, targets}, options_, progress_);
+    ElasticOptions options = options_;
+    options.lambda *= plan.size(from);
+    options.growth = plan.size(to) / plan.size(from);
+    options.fit_tolerance *= plan.size(to) / plan.size(1);
+    ElasticFit fit = method_.fit({here, fitted, places_, targets}, options, progress_);
     steps_.sources.push_back(vertices_);
     steps_.found.push_back(std::move(fit.found));
     move_by(*fit.map);
@@ -82,13 +96,19 @@ void require_unmirrored(const TriangleMesh& source, const Points& fitted) {
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps) {
   require_unmirrored(source, fitted);
   StepPlan plan;
+  plan.times = equal_times(steps);
+  plan.octave = octave_of(growth(source, fitted));
+  plan.middle = fitted.rowwise().mean();
   const std::size_t loose = pairs.anchors_off_surface;
   plan.path = std::make_shared<const SurfacePath>(
       TriangleMesh{with_loose(source.vertices, pairs.sources, loose), source.faces},
-      with_loose(fitted, pairs.targets, loose));
-  plan.times = equal_times(steps);
+      grown(with_loose(fitted, pairs.targets, loose), plan.middle, 1 / plan.octave));
   return plan;
 }
+
+double StepPlan::size(double t) const { return std::pow(octave, t); }
+
+Points StepPlan::surface(double t) const { return grown(path->at(t), middle, size(t)); }
 
 std::vector<double> equal_times(int steps) {
   std::vector<double> times;
@@ -109,7 +129,7 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   StepFitter fitter(source, pairs, method, options, progress);
   for (std::size_t k = 0; k < plan.steps(); ++k) {
     progress.step("elastic", k, plan.steps());
-    fitter.fit_to(plan.path->at(plan.times[k + 1]));
+    fitter.fit_to(plan, plan.times[k], plan.times[k + 1]);
   }
   return std::move(fitter).steps();
 }
@@ -120,9 +140,9 @@ ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, c
   StepFitter fitter(source, pairs, method, options, progress);
   for (std::size_t k = 0; k < step; ++k) fitter.move_by(*chain.steps()[k]);
   const bool last = step + 1 == chain.steps().size();
-  const Points end = last ? plan.path->at(1) : fitter.moved_by(*chain.steps()[step]);
-  fitter.fit_to(plan.path->at(plan.times[step + 1]));
-  fitter.fit_to(end);
+  const Points end = last ? plan.surface(1) : fitter.moved_by(*chain.steps()[step]);
+  fitter.fit_to(plan, plan.times[step], plan.times[step + 1]);
+  fitter.fit_to(plan, plan.times[step + 1], plan.times[step + 2], end);
   return std::move(fitter).steps();
 }
 

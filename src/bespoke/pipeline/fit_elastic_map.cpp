@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/length.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/stopwatch.h"
 
@@ -55,7 +56,7 @@ void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anc
 /// Of a map that is all there is, or of the steps of a chain.
 ElasticOptions elastic_options(const FitOptions& options, bool of_steps) {
   const bool guided = options.guides == GuidedMaps::all || (of_steps && options.guides == GuidedMaps::steps);
-  return {options.lambda, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
+  return {options.lambda, 1, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
 }
 
 void take_steps(FittedMapping& result, ElasticSteps steps) {
@@ -79,9 +80,11 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
     take_steps(result, fit_elastic_steps(source, result.pairs, *result.plan, options.elastic,
                                          elastic_options(options, true), progress));
   } else {
+    ElasticOptions whole = elastic_options(options, false);
+    whole.growth = octave_of(growth(source, result.fitted_vertices));
     ElasticFit fit = elastic_method(options.elastic)
                          .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
-                              elastic_options(options, false), progress);
+                              whole, progress);
     take_steps(result, {{std::move(fit.map)}, {std::move(fit.found)}, {source.vertices}});
   }
   judge(result, source, anchors, options);

@@ -9,9 +9,9 @@
 #include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/patch_borders.h"
+#include "bespoke/anchors/size_ratio.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
-#include "bespoke/median.h"
 #include "bespoke/mesh/seams.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/fit_elastic_map.h"
@@ -38,22 +38,13 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
 /// centimetre a tenth of a decimetre.
 constexpr double largest_size_ratio = 8;
 
-/// Twice the median distance from the middle: a few places far astray do not decide it.
-double typical_size(const Points& places) {
-  Vector3 middle;
-  for (int axis = 0; axis < 3; ++axis)
-    middle[axis] = median({places.row(axis).begin(), places.row(axis).end()});
-  const Eigen::VectorXd off = (places.colwise() - middle).colwise().norm();
-  return 2 * median({off.begin(), off.end()});
-}
-
-/// a, b: the models' sizes, by what they were measured.
-void require_one_unit(double a, double b, const std::string& what) {
-  if (std::max(a, b) <= largest_size_ratio * std::min(a, b)) return;
-  if (!(a > 0 && b > 0)) return;  // what is wrong with these is told where they are used
-  throw InvalidInput("the target is " + in_digits(b / a, 3) + " times as large as the source by " + what +
+/// ratio: of the models' sizes, by what they were measured.
+void require_one_unit(double ratio, const std::string& what) {
+  if (!(ratio > 0 && std::isfinite(ratio))) return;  // what is wrong with these is told where they are used
+  if (ratio <= largest_size_ratio && 1 / ratio <= largest_size_ratio) return;
+  throw InvalidInput("the target is " + in_digits(ratio, 3) + " times as large as the source by " + what +
                      ", as if they were in two units; bring one of them, and its anchors, to the unit of the "
-                     "other");
+                     "other, or ask for any size (--any-size), and the map goes from one unit to the other");
 }
 
 void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted) {
@@ -86,11 +77,7 @@ void require_models(const TriangleMesh& source, const TriangleMesh& target, cons
                     const FitOptions& options) {
   require_usable(source, anchors, options);
   require_valid(target, "target");
-  if (anchors.pairs.size() > 2)
-    require_one_unit(typical_size(source_points(anchors)), typical_size(target_points(anchors)),
-                     "their anchors");
-  else
-    require_one_unit(diagonal(source.vertices), diagonal(target.vertices), "their bounding boxes");
+  if (!options.any_size) require_one_unit(size_ratio(anchors, source, target), measured_by(anchors));
   if (const std::string mistake = exchanged_sides(anchors, source, target); !mistake.empty())
     throw InvalidInput(mistake);
 }
@@ -181,7 +168,8 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
   require_usable(source, anchors, options);
   require_valid(fitted, "fitted source");
   require_same_connectivity(source, fitted);
-  require_one_unit(diagonal(source.vertices), diagonal(fitted.vertices), "their vertices");
+  if (!options.any_size)
+    require_one_unit(diagonal(fitted.vertices) / diagonal(source.vertices), "their vertices");
   if (!anchors.curves.empty())
     throw InvalidInput("curves lead the surface fitting, but the fitted source is given; leave them out");
   if (!anchors.patches.empty())

@@ -23,6 +23,8 @@ struct FitOptions {
   /// ≥ 0, mesh units; 0 leaves them.
   double contact_gap = 0;
   std::optional<int> steps;  ///< of the chain, > 0; by the largest turn and stretch of a part when empty
+  /// Whether models may differ by more than eight times in size: else they are refused, as if in two units.
+  bool any_size = false;
 };
 
 /// Everything the fit found; Ψ = Γ∘E.

@@ -93,12 +93,13 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
 
 }  // namespace
 
-MakeMapOptions default_options(double source_diagonal) {
+MakeMapOptions default_options(double source_diagonal, double octave) {
+  const double on_target = octave * source_diagonal;
   MakeMapOptions options;
   options.fit.lambda = default_lambda * source_diagonal;
-  options.fit.fit_tolerance = default_fit_tolerance * source_diagonal;
-  options.fit.contact_gap = default_contact_gap * source_diagonal;
-  options.bake.tolerance = default_tolerance * source_diagonal;
+  options.fit.fit_tolerance = default_fit_tolerance * on_target;
+  options.fit.contact_gap = default_contact_gap * on_target;
+  options.bake.tolerance = default_tolerance * on_target;
   options.bake.max_leaves = default_max_leaves;
   return options;
 }

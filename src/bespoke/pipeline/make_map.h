@@ -23,8 +23,10 @@ struct MakeMapOptions {
   bool keep_exact = false;           ///< store the exact E as well (Asset::exact_map)
 };
 
-/// Options whose lengths are the default fractions above of `source_diagonal` (mesh units).
-MakeMapOptions default_options(double source_diagonal);
+/// Options whose lengths are the default fractions above of `source_diagonal` (mesh units), but for lambda
+/// `octave` times as much: they are measured on the target, which is about so many times as large
+/// (octave_of, length.h).
+MakeMapOptions default_options(double source_diagonal, double octave = 1);
 
 struct MakeMapInput {
   const TriangleMesh& source;

@@ -20,15 +20,16 @@ void use_printed_method(MakeMapOptions& options) {
   options.fit.contact_gap = 0;
 }
 
-void set_lengths(const MapRequest& request, double source_diagonal, MakeMapOptions& options) {
-  const auto set = [&](const std::optional<Length>& length, auto& value) {
-    if (length) value = length->in_mesh_units(source_diagonal);
+void set_lengths(const MapRequest& request, double source_diagonal, double octave, MakeMapOptions& options) {
+  const auto set = [](const std::optional<Length>& length, double diagonal, auto& value) {
+    if (length) value = length->in_mesh_units(diagonal);
   };
-  set(request.lambda, options.fit.lambda);
-  set(request.fit_tolerance, options.fit.fit_tolerance);
-  set(request.contact_gap, options.fit.contact_gap);
-  set(request.tolerance, options.bake.tolerance);
-  set(request.voxel_size, options.bake.voxel_size);
+  const double on_target = octave * source_diagonal;
+  set(request.lambda, source_diagonal, options.fit.lambda);
+  set(request.voxel_size, source_diagonal, options.bake.voxel_size);
+  set(request.fit_tolerance, on_target, options.fit.fit_tolerance);
+  set(request.contact_gap, on_target, options.fit.contact_gap);
+  set(request.tolerance, on_target, options.bake.tolerance);
 }
 
 std::optional<UnheededOption> against_inputs(const MapRequest& request, const RequestInputs& inputs) {
@@ -73,18 +74,19 @@ std::optional<UnheededOption> unknown_to_methods(const MapRequest& request) {
 
 }  // namespace
 
-MakeMapOptions make_options(const MapRequest& request, double source_diagonal) {
-  MakeMapOptions options = default_options(source_diagonal);
+MakeMapOptions make_options(const MapRequest& request, double source_diagonal, double octave) {
+  MakeMapOptions options = default_options(source_diagonal, octave);
   if (request.paper) use_printed_method(options);
   if (request.surface_fit) options.fit.surface_fit.method = *request.surface_fit;
   if (request.as_given) options.fit.surface_fit.mend_models = false;
+  options.fit.any_size = request.any_size;
   if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
   if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
   if (request.elastic) options.fit.elastic = *request.elastic;
   if (request.guides) options.fit.guides = *request.guides;
   if (request.path) options.path = *request.path;
   if (request.steps) options.fit.steps = *request.steps;
-  set_lengths(request, source_diagonal, options);
+  set_lengths(request, source_diagonal, octave, options);
   // Who names a tolerance wants that one.
   if (request.tolerance || request.strict) options.bake.max_leaves.reset();
   if (request.max_memory) options.fit.max_memory = options.bake.max_memory = *request.max_memory;
@@ -100,9 +102,10 @@ std::optional<UnheededOption> unheeded_option(const MapRequest& request, const R
   return unknown_to_methods(request);
 }
 
-void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal) {
+void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal, double octave) {
   if (!request.anchor_sigma && !request.paper) return;
-  const double sigma = request.anchor_sigma ? request.anchor_sigma->in_mesh_units(source_diagonal) : 0;
+  const double sigma =
+      request.anchor_sigma ? request.anchor_sigma->in_mesh_units(octave * source_diagonal) : 0;
   for (AnchorPair& pair : anchors.pairs)
     if (is_unrated(pair)) pair.sigma = sigma;
 }

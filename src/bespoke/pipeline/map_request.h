@@ -9,7 +9,8 @@
 namespace bespoke {
 
 /// What somebody asks of a map, by the names of `bespoke fit`; what is empty or false is left to the
-/// defaults. Lengths in percent are of the source's bounding-box diagonal.
+/// defaults. Lengths in percent are of the source's bounding-box diagonal: lambda and the voxel size, which
+/// are measured around the source, of that itself, all others of an octave of it (default_options).
 struct MapRequest {
   std::optional<SurfaceFitMethod> surface_fit;
   std::optional<BoundaryRule> boundaries;
@@ -29,10 +30,12 @@ struct MapRequest {
   bool half = false;
   bool strict = false;    ///< the tolerance is met everywhere, whatever it takes
   bool as_given = false;  ///< models are not mended (SurfaceFitOptions)
+  bool any_size = false;  ///< models may be in two units (FitOptions)
   bool paper = false;     ///< the printed method; needs anchors
 };
 
-MakeMapOptions make_options(const MapRequest& request, double source_diagonal);
+/// octave: see default_options.
+MakeMapOptions make_options(const MapRequest& request, double source_diagonal, double octave = 1);
 
 /// What comes with a request.
 struct RequestInputs {
@@ -52,6 +55,6 @@ struct UnheededOption {
 std::optional<UnheededOption> unheeded_option(const MapRequest& request, const RequestInputs& inputs);
 
 /// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
-void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal);
+void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal, double octave = 1);
 
 }  // namespace bespoke

@@ -33,9 +33,11 @@ struct Contact {
 
 class ContactSearch {
  public:
-  ContactSearch(const TriangleMesh& source, const ContactOptions& options)
+  /// fitted_size: how many times as large the fitted surface is.
+  ContactSearch(const TriangleMesh& source, double fitted_size, const ContactOptions& options)
       : source_(source),
         options_(options),
+        fitted_size_(fitted_size),
         source_vertex_normals_(vertex_normals(source)),
         source_face_normals_(face_normals(source)) {}
 
@@ -77,15 +79,17 @@ class ContactSearch {
     return Contact{vertex, *foot, there, (1 + overshoot) * wanted - distance, std::max(0.0, -distance)};
   }
 
-  Vector3 on_source(const SurfacePoint& foot) const { return carried(foot, source_.faces, source_.vertices); }
-
+  /// On a source as large as the fitted surface.
+  Vector3 apart_on_source(int vertex, const SurfacePoint& foot) const {
+    return fitted_size_ * (source_.vertices.col(vertex) - carried(foot, source_.faces, source_.vertices));
+  }
   double source_distance(int vertex, const SurfacePoint& foot) const {
-    return (source_.vertices.col(vertex) - on_source(foot)).norm();
+    return apart_on_source(vertex, foot).norm();
   }
 
   /// Two sides of one thin part: near each other on the source, each behind the other.
   bool back_to_back(int vertex, const SurfacePoint& foot) const {
-    const Vector3 apart = source_.vertices.col(vertex) - on_source(foot);
+    const Vector3 apart = apart_on_source(vertex, foot);
     return apart.norm() < options_.reach / options_.compression &&
            apart.dot(source_face_normals_.col(foot.face)) < 0 &&
            apart.dot(source_vertex_normals_.col(vertex)) > 0;
@@ -93,6 +97,7 @@ class ContactSearch {
 
   const TriangleMesh& source_;
   const ContactOptions& options_;
+  double fitted_size_;
   Points source_vertex_normals_, source_face_normals_;
 };
 
@@ -182,7 +187,7 @@ ContactFit hold_apart(const TriangleMesh& source, const Points& fitted, const Co
   ContactFit fit{fitted, {}};
   if (options.gap == 0) return fit;
   ContactSummary& summary = fit.summary;
-  const ContactSearch search(source, options);
+  const ContactSearch search(source, growth(source, fitted), options);
   TriangleMesh surface{fitted, source.faces};
   std::vector<Contact> contacts = search(surface);
   summary.touching = summary.left = contacts.size();

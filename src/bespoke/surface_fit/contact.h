@@ -13,7 +13,8 @@ namespace bespoke {
 /// without folds can follow: the space between them would have no volume left.
 struct ContactOptions {
   double gap = 0;  ///< least distance to hold such parts apart, ≥ 0, mesh units; 0 leaves all as it is
-  /// Parts nearer than this fraction of their distance on the source count as in contact. A quarter leaves
+  /// Parts nearer than this fraction of their distance on the source, were it as large as they are (growth,
+  /// triangle_mesh.h), count as in contact. A quarter leaves
   /// lips and eyelids alone, which are as near on the source; not varied.
   double compression = 0.25;
   double reach = 0;         ///< deepest penetration that is looked for, ≥ gap, mesh units

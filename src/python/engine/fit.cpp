@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/anchors/size_ratio.h"
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/map_request.h"
@@ -49,6 +50,7 @@ class RequestReader {
     request.half = flag("half");
     request.strict = flag("strict");
     request.as_given = flag("as_given");
+    request.any_size = flag("any_size");
     request.paper = flag("paper");
     return request;
   }
@@ -103,14 +105,15 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   Anchors anchors = to_anchors(anchors_text);
   const bool has_anchors = !anchors.pairs.empty() || !anchors.curves.empty() || !anchors.patches.empty();
   require_usable(request, {has_anchors, fitted.has_value(), add_corners});
-  rate_anchors(anchors, request, diagonal(source.vertices));
+  const double size = diagonal(source.vertices), octave = octave_of(size_ratio(anchors, source, target));
+  rate_anchors(anchors, request, size, octave);
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const Stopwatch watch;
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
                            target_cloud ? &*target_cloud : nullptr};
   MadeMap made = released(callback, [&](const Progress& progress) {
-    return make_map(input, make_options(request, diagonal(source.vertices)), progress);
+    return make_map(input, make_options(request, size, octave), progress);
   });
   const std::string report = fit_report(input, made, watch.seconds());
   const Points laid = made.fit.target_from_source * made.fit.fitted_vertices;

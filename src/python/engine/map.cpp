@@ -82,10 +82,8 @@ ValuePrecision precision(bool half) { return half ? ValuePrecision::half : Value
 
 std::shared_ptr<LoadedAsset> inverted(const LoadedAsset& map, const py::object& tolerance, bool half,
                                       const py::object& callback) {
-  const AssetRecord& record = map.asset().record;
   const BakeOptions options =
-      derived_bake(to_length(tolerance, "tolerance"), record.target.box.diagonal().norm(), record.tolerance,
-                   precision(half));
+      derived_bake(to_length(tolerance, "tolerance"), tolerance_of_inverse(map.asset()), precision(half));
   return released(callback, [&](const Progress& progress) {
     return std::make_shared<LoadedAsset>(invert_map(map.asset(), options, progress).asset);
   });
@@ -94,9 +92,9 @@ std::shared_ptr<LoadedAsset> inverted(const LoadedAsset& map, const py::object& 
 std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsset& second,
                                       const py::object& tolerance, bool half, bool any_models,
                                       const py::object& callback) {
-  const AssetRecord &a = first.asset().record, &b = second.asset().record;
-  const BakeOptions options = derived_bake(to_length(tolerance, "tolerance"), a.source.box.diagonal().norm(),
-                                           std::max(a.tolerance, b.tolerance), precision(half));
+  const BakeOptions options =
+      derived_bake(to_length(tolerance, "tolerance"), tolerance_of_composed(first.asset(), second.asset()),
+                   precision(half));
   const MeetingModels meeting = any_models ? MeetingModels::may_differ : MeetingModels::must_be_the_same;
   return released(callback, [&](const Progress& progress) {
     return std::make_shared<LoadedAsset>(

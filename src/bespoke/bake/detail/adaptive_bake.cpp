@@ -7,6 +7,7 @@
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/detail/mend_folds.h"
 #include "bespoke/bake/detail/pyramid_builder.h"
+#include "bespoke/mapping/affine_map.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -33,7 +34,8 @@ class AdaptiveBake {
         builder_(std::make_unique<PyramidBuilder>(
             map,
             RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves,
-                              options.surface, options.then},
+                              options.surface, options.then, octave_of(map.affine()),
+                              options.then ? octave_of(options.then->affine()) : 1},
             progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bespoke/bake/detail/octant_test.h"
+#include "bespoke/mapping/affine_map.h"
 
 namespace bespoke {
 namespace {
@@ -89,14 +90,15 @@ std::vector<LeafForecast::Sample> LeafForecast::draw_octants(const std::vector<S
 
 LeafForecast::LeafForecast(const ElasticMap& map, const Lattice& coarsest,
                            const std::vector<LeafCoordinates>& band, double tolerance,
-                           const Progress& progress) {
+                           const Progress& progress)
+    : growth_(octave_of(map.affine())) {
   std::mt19937_64 engine(forecast_seed);
   std::vector<Sample> refined;
   for (const LeafCoordinates& leaf : band)
     refined.push_back({leaf, 1, std::numeric_limits<double>::infinity(), coarsest.voxel_size});
   samples_ = refined;
   Lattice fine{coarsest.origin, coarsest.voxel_size / 2};
-  for (; !refined.empty() && fine.voxel_size >= least_voxel_of_tolerance * tolerance; fine.voxel_size /= 2) {
+  for (; !refined.empty() && fine.voxel_size >= least_voxel(tolerance); fine.voxel_size /= 2) {
     progress.check();
     std::vector<Sample> octants = draw_octants(refined, engine);
     const std::vector<double> errors = errors_of(map, fine, octants);
@@ -114,7 +116,7 @@ double LeafForecast::leaves(double tolerance) const {
   for (const Sample& sample : samples_) {
     if (std::isinf(sample.tolerance))
       band += sample.weight;
-    else if (sample.tolerance > tolerance && sample.voxel_size >= least_voxel_of_tolerance * tolerance)
+    else if (sample.tolerance > tolerance && sample.voxel_size >= least_voxel(tolerance))
       deeper += sample.weight;
   }
   return band + share_of_rims * deeper;

@@ -44,6 +44,9 @@ class LeafForecast {
   std::vector<double> errors_of(const ElasticMap& map, const Lattice& fine,
                                 const std::vector<Sample>& octants);
 
+  double least_voxel(double tolerance) const { return least_voxel_of_tolerance * tolerance / growth_; }
+
+  double growth_;  // of the map: tolerances are of its values, voxels of its places
   std::vector<Sample> samples_;
   std::size_t evaluated_points_ = 0;
 };

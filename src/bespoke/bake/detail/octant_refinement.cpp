@@ -5,6 +5,7 @@
 
 #include "bespoke/bake/band.h"
 #include "bespoke/bake/detail/octant_test.h"
+#include "bespoke/mapping/affine_map.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -120,7 +121,8 @@ LeafTable OctantRefinement::unresolved_leaves(const SampledLevels& levels, std::
   Support unresolved;
   unresolved.frame = support_.frame;
   for (const BallCloud& cloud : support_.clouds)
-    if (cloud.radius < resolving_voxels_per_radius * lattice.voxel_size) unresolved.clouds.push_back(cloud);
+    if (cloud.radius < resolving_voxels_per_radius * octave_of(support_.frame) * lattice.voxel_size)
+      unresolved.clouds.push_back(cloud);
   return LeafTable(band_leaves(unresolved, lattice));
 }
 

@@ -10,6 +10,7 @@
 #include "bespoke/bake/detail/rims.h"
 #include "bespoke/bake/detail/stored_pyramid.h"
 #include "bespoke/bake/leaf_samples.h"
+#include "bespoke/mapping/affine_map.h"
 
 namespace bespoke {
 namespace {
@@ -19,11 +20,12 @@ constexpr double coarsest_voxels_per_radius = 4;
 // One of so many leaves is kept for folds.
 constexpr std::size_t share_for_folds = 10;
 
+// Before its frame.
 double largest_radius(const Support& support) {
   double radius = 0;
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0) radius = std::max(radius, cloud.radius);
-  return radius;
+  return radius / octave_of(support.frame);
 }
 
 Lattice coarsest_lattice(const Support& support) {
@@ -36,7 +38,7 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
                                const Progress& progress)
     : map_(map),
       options_(options),
-      rim_tolerance_(options.tolerance),
+      rim_tolerance_(options.tolerance_of_values()),
       progress_(progress),
       coarsest_(coarsest_lattice(map.support())),
       band_(band_leaves(map.support(), coarsest_)),
@@ -92,7 +94,7 @@ bool PyramidBuilder::add_worst_refused() {
   double largest = 0;
   for (const RefusedOctant& octant : refused_) largest = std::max(largest, octant.urgency);
   // Rims as fine as the tolerance would cover all that fails.
-  rim_tolerance_ = std::max(largest / 2, options_.tolerance);
+  rim_tolerance_ = std::max(largest / 2, options_.tolerance) / options_.growth_after;
   for (Looked& looked : looked_) looked.rims_known = false;
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
   for (const RefusedOctant& octant : worst_refused(std::max<std::size_t>(1, left / 16)))
@@ -151,11 +153,11 @@ void PyramidBuilder::close_rims() {
 
 // Rims that fold are closed in any case.
 std::vector<LeafCoordinates> PyramidBuilder::rims_within_budget(std::size_t level) {
-  std::vector<LeafCoordinates> leaves = rim_neighbours(levels_, level, rim_tolerance_);
+  std::vector<LeafCoordinates> leaves = rim_neighbours(levels_, level, rim_tolerance_, options_.growth);
   while (leaves.size() > leaves_left(Purpose::folds) &&
-         rim_tolerance_ < rim_gradient * levels_.lattice(level).voxel_size) {
+         rim_tolerance_ < rim_gradient * options_.growth * levels_.lattice(level).voxel_size) {
     rim_tolerance_ *= 2;
-    leaves = rim_neighbours(levels_, level, rim_tolerance_);
+    leaves = rim_neighbours(levels_, level, rim_tolerance_, options_.growth);
   }
   return leaves;
 }
@@ -191,7 +193,7 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
 }
 
 bool PyramidBuilder::is_finest(std::size_t level) const {
-  return levels_.lattice(level + 1).voxel_size < least_voxel_of_tolerance * options_.tolerance;
+  return levels_.lattice(level + 1).voxel_size < least_voxel_of_tolerance * options_.tolerance_of_places();
 }
 
 std::size_t PyramidBuilder::refine_at(const Points& x, Purpose purpose) {
@@ -226,7 +228,7 @@ std::vector<PyramidBuilder::WantedLeaf> PyramidBuilder::leaves_wanted_at(const V
 }
 
 Pyramid PyramidBuilder::pyramid() const {
-  return stored_pyramid(levels_, options_.tolerance, options_.precision);
+  return stored_pyramid(levels_, options_.tolerance_of_values(), options_.precision);
 }
 
 std::size_t PyramidBuilder::evaluated_points() const {

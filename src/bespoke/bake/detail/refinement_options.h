@@ -16,6 +16,13 @@ struct RefinementOptions {
   std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
   const TriangleMesh* surface = nullptr;  ///< BakeOptions::surface
   const ElasticMap* then = nullptr;       ///< BakeOptions::then
+  double growth = 1;                      ///< octave_of the map's affine part: sizes grow by it
+  double growth_after = 1;                ///< octave_of that of `then`
+
+  /// The tolerance where the map ends, to hold values of u against.
+  double tolerance_of_values() const { return tolerance / growth_after; }
+  /// Where it begins, to hold voxels against.
+  double tolerance_of_places() const { return tolerance_of_values() / growth; }
 };
 
 }  // namespace bespoke

@@ -42,9 +42,9 @@ std::vector<LeafCoordinates> neighbours_beside(const SampledLevels& levels, std:
 
 }  // namespace
 
-std::vector<LeafCoordinates> rim_neighbours(const SampledLevels& levels, std::size_t level,
-                                            double tolerance) {
-  const double limit = std::min(tolerance, rim_gradient * levels[level].lattice.voxel_size);
+std::vector<LeafCoordinates> rim_neighbours(const SampledLevels& levels, std::size_t level, double tolerance,
+                                            double growth) {
+  const double limit = std::min(tolerance, rim_gradient * growth * levels[level].lattice.voxel_size);
   std::vector<std::vector<LeafCoordinates>> found(levels[level].leaves.size());
   parallel_for(found.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf)

@@ -12,6 +12,7 @@
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/mapping/affine_map.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -33,12 +34,13 @@ constexpr std::size_t error_probes = 4096;
 // The largest of a few thousand probes falls short of the largest of all cells.
 constexpr double probe_margin = 1.5;
 
+// Before its frame.
 double smallest_radius(const Support& support) {
   double radius = 0;
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0 && cloud.radius > 0)
       radius = radius > 0 ? std::min(radius, cloud.radius) : cloud.radius;
-  return radius;
+  return radius / octave_of(support.frame);
 }
 
 // Too fine a lattice must be refused before its leaves are counted one by one: once a coarser one with the

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include "bespoke/length.h"
+#include "bespoke/pipeline/derive_map.h"
+#include "bespoke/pipeline/make_map.h"
+#include "flow/bent_tube.h"
+#include "support/arithmetic.h"
+#include "support/shapes.h"
+
+namespace bespoke {
+namespace {
+
+using test::degree;
+
+/// The map onto a target that is so many times as large, with default options.
+MadeMap made_at(double size, const TriangleMesh& source, Points target) {
+  target *= size;
+  const TriangleMesh fitted{std::move(target), source.faces};
+  MakeMapOptions options = default_options(diagonal(source.vertices), octave_of(size));
+  options.fit.any_size = true;
+  return make_map({source, fitted, {}, &fitted}, options);
+}
+
+Points images(const Asset& asset, const Points& x) {
+  return asset.target_from_source * baked_chain(asset.steps)(x);
+}
+
+/// Largest distance between what the large map makes of points and what the other makes of them, so many
+/// times as large; in units of the other's target.
+double largest_difference(const Asset& large, const Asset& other, double size, const Points& x) {
+  return (images(large, x) / size - images(other, x)).colwise().norm().maxCoeff();
+}
+
+/// Inside of the source's bounding box and around it.
+Points points_around(const TriangleMesh& source) {
+  Points x(3, 3 * source.vertices.cols());
+  x << source.vertices, 0.8 * source.vertices, 1.2 * source.vertices;
+  return x;
+}
+
+TriangleMesh ball() { return shapes::icosphere(3); }
+
+Points stretched(const Points& x) {
+  Points result = x;
+  for (auto point : result.colwise())
+    point = Vector3(1.2 * point[0], point[1] + 0.2 * point[0] * point[0], 0.9 * point[2]);
+  return result;
+}
+
+TEST(ModelSizes, ScaleTheMap) {
+  const TriangleMesh source = ball();
+  const MadeMap same = made_at(1, source, stretched(source.vertices));
+  for (const double size : {1.0 / 1024, 0.5, 4.0, 1024.0}) {
+    const MadeMap scaled = made_at(size, source, stretched(source.vertices));
+    EXPECT_EQ(voxel_count(scaled.asset), voxel_count(same.asset)) << size;
+    EXPECT_LT(largest_difference(scaled.asset, same.asset, size, points_around(source)), 1e-6) << size;
+    EXPECT_DOUBLE_EQ(scaled.asset.record.tolerance, size * same.asset.record.tolerance);
+  }
+}
+
+TEST(ModelSizes, ChangeNeitherTheStepsNorTheCostOfAChain) {
+  const TriangleMesh source = test::tube();
+  const Points bent = test::bent(source.vertices, 130 * degree);
+  const MadeMap same = made_at(1, source, bent);
+  ASSERT_GT(same.asset.steps.size(), 1u);
+  for (const double size : {0.25, 4.0}) {
+    const MadeMap scaled = made_at(size, source, bent);
+    EXPECT_EQ(scaled.asset.steps.size(), same.asset.steps.size()) << size;
+    EXPECT_LT(voxel_count(scaled.asset), 2 * voxel_count(same.asset)) << size;
+    for (const MapStep& step : scaled.asset.steps) EXPECT_TRUE(step.certificate.is_bijection()) << size;
+    EXPECT_LT(largest_difference(scaled.asset, same.asset, size, source.vertices),
+              2 * same.asset.record.tolerance)
+        << size;
+  }
+}
+
+TEST(ModelSizes, AreGoneInTheInverse) {
+  const TriangleMesh source = ball();
+  for (const double size : {0.25, 4.0}) {
+    const MadeMap made = made_at(size, source, stretched(source.vertices));
+    const DerivedTolerance back = tolerance_of_inverse(made.asset);
+    const double there = default_tolerance * diagonal(source.vertices);
+    EXPECT_DOUBLE_EQ(back.otherwise, there);
+    EXPECT_NEAR(back.diagonal / diagonal(source.vertices), 1, 0.2);
+    const Asset inverse = invert_map(made.asset, derived_bake({}, back, ValuePrecision::single)).asset;
+    EXPECT_EQ(inverse.record.tolerance, there);
+    const DerivedTolerance around = tolerance_of_composed(made.asset, inverse);
+    EXPECT_DOUBLE_EQ(around.otherwise, there);
+    EXPECT_DOUBLE_EQ(around.diagonal, diagonal(source.vertices));
+  }
+}
+
+}  // namespace
+}  // namespace bespoke
