@@ -71,6 +71,11 @@ TEST(ModelSizes, ChangeNeitherTheStepsNorTheCostOfAChain) {
     EXPECT_LT(largest_difference(scaled.asset, same.asset, size, source.vertices),
               2 * same.asset.record.tolerance)
         << size;
+    const DerivedTolerance back = tolerance_of_inverse(scaled.asset);
+    EXPECT_DOUBLE_EQ(back.otherwise, same.asset.record.tolerance) << size;
+    const DerivedMap inverse = invert_map(scaled.asset, derived_bake({}, back, ValuePrecision::single));
+    EXPECT_TRUE(whole_certificate(inverse.asset).is_bijection()) << size;
+    EXPECT_LT(inverse.deviation.p99, back.otherwise) << size;
   }
 }
 

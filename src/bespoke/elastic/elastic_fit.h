@@ -38,14 +38,14 @@ inline constexpr std::array guided_maps{Named<GuidedMaps>{"none", GuidedMaps::no
 
 struct ElasticOptions {
   double lambda = 0;  ///< effective distance around the source, > 0, mesh units
-  /// How many times as large it is around the fitted source, > 0: there the layers of a composition act.
-  double growth = 1;
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   /// csrbf and p-FFD have an affine part by construction and take no other.
   AffinePart affine_part = AffinePart::least_squares;
   bool guided = false;  ///< the multiscale methods meet guides in space too
+  /// How many times as large lambda is around the fitted source, > 0: there the layers of a composition act.
+  double growth = 1;
 };
 
 /// A number, or a list of them, that a method found, under the name that reports and assets give it.

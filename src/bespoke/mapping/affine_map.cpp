@@ -19,7 +19,9 @@ AffineMap inverse(const AffineMap& map) {
   return {linear, -(linear * map.offset)};
 }
 
-double octave_of(const AffineMap& map) { return octave_of(std::cbrt(std::abs(map.linear.determinant()))); }
+double size_ratio(const AffineMap& map) { return std::cbrt(std::abs(map.linear.determinant())); }
+
+double octave_of(const AffineMap& map) { return octave_of(size_ratio(map)); }
 
 AffineMap as_affine(const RigidTransform& transform) { return {transform.rotation, transform.translation}; }
 

@@ -11,7 +11,10 @@ AffineMap compose(const AffineMap& outer, const AffineMap& inner);
 /// Throws InvalidInput for a singular map.
 AffineMap inverse(const AffineMap& map);
 
-/// How many times as large it makes models, in octaves (length.h): what sizes before and after it compare by.
+/// How many times as large it makes models: the cube root of |det|.
+double size_ratio(const AffineMap& map);
+
+/// The same in octaves (length.h): what sizes before and after the map are compared by.
 double octave_of(const AffineMap& map);
 
 AffineMap as_affine(const RigidTransform& transform);

@@ -113,6 +113,7 @@ std::vector<SuggestedAnchor> suggest_anchors(const TriangleMesh& source, const T
     throw InvalidInput("a tolerance of " + std::to_string(options.tolerance) + "; it must be above 0");
   FitOptions fitting;
   fitting.lambda = diagonal(source.vertices);
+  fitting.any_size = true;  // the fit says what size the models may have
   const FittedMapping there = fit_source_surface(source, target, anchors, fitting, progress);
   const FittedMapping back = fit_source_surface(target, source, turned_round(anchors), fitting, progress);
   const Uncertainty found = find_uncertainty(source, target, there, back);

@@ -1,7 +1,6 @@
 #include "bespoke/pipeline/derive_map.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/mapping/affine_map.h"
 #include "bespoke/mapping/composed_map.h"
 #include "bespoke/pipeline/bake_steps.h"
 #include "bespoke/pipeline/make_map.h"
@@ -85,17 +85,21 @@ TriangleMesh previewed_source(const Asset& asset, const Map& map) {
   return surface;
 }
 
-// Of several steps each is baked to its share of the tolerance, since errors add up, and those that need less
-// than their share of the leaves leave it to those after them. surface: where the model is before the first.
+// Of several steps each is baked to its share of the tolerance, since errors add up and grow with what comes
+// after, and those that need less than their share of the leaves leave it to those after them. surface: where
+// the model is before the first.
 std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const ElasticMap>>& exact,
                                       TriangleMesh surface, const BakeOptions& options,
                                       const Progress& progress) {
   std::vector<DerivedStep> steps;
   BakeOptions share = options;
   share.surface = usable(surface);
-  share.tolerance /= static_cast<double>(exact.size());
+  double growth_after = 1;
+  for (const auto& map : exact) growth_after *= size_ratio(map->affine());
   std::size_t used = 0;
   for (const auto& map : exact) {
+    growth_after /= size_ratio(map->affine());
+    share.tolerance = options.tolerance / (octave_of(growth_after) * static_cast<double>(exact.size()));
     if (options.max_leaves)
       share.max_leaves =
           (*options.max_leaves - std::min(*options.max_leaves, used)) / (exact.size() - steps.size());
@@ -123,11 +127,6 @@ std::string recorded_options(Json json, const BakeOptions& options) {
   return json.dump();
 }
 
-// How many times as large a map makes a model.
-double size_ratio(const Asset& asset) {
-  return std::cbrt(baked_chain(asset.steps).affine().linear.determinant());
-}
-
 void record_stages(DerivedMap& derived, const char* name) {
   Json stage = {{"name", "bake"}};
   stage.update(to_json(derived.bake));
@@ -138,12 +137,13 @@ void record_stages(DerivedMap& derived, const char* name) {
 }  // namespace
 
 DerivedTolerance tolerance_of_inverse(const Asset& b_from_a) {
-  const double octave = octave_of(1 / size_ratio(b_from_a));
+  const double octave = octave_of(1 / size_ratio(baked_chain(b_from_a.steps).affine()));
   return {octave * b_from_a.record.target.box.diagonal().norm(), octave * b_from_a.record.tolerance};
 }
 
 DerivedTolerance tolerance_of_composed(const Asset& b_from_a, const Asset& c_from_b) {
-  const double first = size_ratio(b_from_a), second = size_ratio(c_from_b);
+  const double first = size_ratio(baked_chain(b_from_a.steps).affine());
+  const double second = size_ratio(baked_chain(c_from_b.steps).affine());
   return {octave_of(first * second) * b_from_a.record.source.box.diagonal().norm(),
           std::max(octave_of(second) * b_from_a.record.tolerance, c_from_b.record.tolerance)};
 }

@@ -56,7 +56,7 @@ void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anc
 /// Of a map that is all there is, or of the steps of a chain.
 ElasticOptions elastic_options(const FitOptions& options, bool of_steps) {
   const bool guided = options.guides == GuidedMaps::all || (of_steps && options.guides == GuidedMaps::steps);
-  return {options.lambda, 1, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
+  return {options.lambda, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
 }
 
 void take_steps(FittedMapping& result, ElasticSteps steps) {
