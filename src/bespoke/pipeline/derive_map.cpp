@@ -85,6 +85,12 @@ TriangleMesh previewed_source(const Asset& asset, const Map& map) {
   return surface;
 }
 
+// How many times as large a map makes its source.
+double source_growth(const Asset& asset) {
+  const TriangleMesh surface = source_surface(asset);
+  return growth(surface, WholeMap(asset)(surface.vertices));
+}
+
 // Of several steps each is baked to its share of the tolerance, since errors add up and grow with what comes
 // after, and those that need less than their share of the leaves leave it to those after them. surface: where
 // the model is before the first.
@@ -137,13 +143,12 @@ void record_stages(DerivedMap& derived, const char* name) {
 }  // namespace
 
 DerivedTolerance tolerance_of_inverse(const Asset& b_from_a) {
-  const double octave = octave_of(1 / size_ratio(baked_chain(b_from_a.steps).affine()));
+  const double octave = octave_of(1 / source_growth(b_from_a));
   return {octave * b_from_a.record.target.box.diagonal().norm(), octave * b_from_a.record.tolerance};
 }
 
 DerivedTolerance tolerance_of_composed(const Asset& b_from_a, const Asset& c_from_b) {
-  const double first = size_ratio(baked_chain(b_from_a.steps).affine());
-  const double second = size_ratio(baked_chain(c_from_b.steps).affine());
+  const double first = source_growth(b_from_a), second = source_growth(c_from_b);
   return {octave_of(first * second) * b_from_a.record.source.box.diagonal().norm(),
           std::max(octave_of(second) * b_from_a.record.tolerance, c_from_b.record.tolerance)};
 }

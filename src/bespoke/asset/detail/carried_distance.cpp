@@ -6,6 +6,7 @@
 #include "bespoke/error.h"
 #include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"
+#include "bespoke/length.h"
 
 namespace bespoke {
 namespace {
@@ -82,6 +83,7 @@ StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
   grid.metadata["bespoke:meaning"] = std::string(
       "unsigned distance to the source model, carried from the other model's, minus one voxel: a shell");
   const ScalarSampler sample(distance);
+  const double growth = octave_of(grid.voxel_size / distance.voxel_size);
   const Lattice lattice{grid.origin, grid.voxel_size};
   const Eigen::Vector3i last = ((box.sizes() / grid.voxel_size).array() / leaf_edge).floor().cast<int>() + 1;
   const int row = last.z() + 2;
@@ -91,7 +93,8 @@ StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
       for (int k = 0; k < row; ++k) {
         std::array<float, leaf_nodes> distances;
         for (int node = 0; node < leaf_nodes; ++node)
-          distances[static_cast<std::size_t>(node)] = sample(back.col(k * leaf_nodes + node)) - voxel;
+          distances[static_cast<std::size_t>(node)] =
+              static_cast<float>(growth * sample(back.col(k * leaf_nodes + node))) - voxel;
         add_leaf({i, j, k - 1}, distances, grid);
       }
     }
