@@ -33,6 +33,21 @@ def test_fit_is_that_of_the_command(pair, command, tmp_path):
     assert fit.map.info.unit == "cm"
 
 
+def test_goes_from_one_unit_to_another_where_any_size_is_asked(pair):
+    metres = bespoke.fit(pair.source, pair.target, pair.anchors).map
+    target = bespoke.Mesh(1024 * pair.target.vertices, pair.target.faces)
+    anchors = [
+        bespoke.Anchor(anchor.a, tuple(1024 * x for x in anchor.b), anchor.name, anchor.sigma) for anchor in pair.anchors
+    ]
+    with pytest.raises(bespoke.InvalidInput, match="two units"):
+        bespoke.fit(pair.source, target, anchors)
+    millimetres = bespoke.fit(pair.source, target, anchors, any_size=True).map
+    # Either map is its fit within the fit's and the bake's tolerance: 0.01 and 0.025 % of the diagonal.
+    vertices = pair.source.vertices
+    most = 2 * 0.00035 * np.linalg.norm(np.ptp(vertices, axis=0))
+    np.testing.assert_allclose(millimetres(vertices) / 1024, metres(vertices), rtol=0, atol=most)
+
+
 def lines_and_parts(pair):
     """A waist that goes half way up on the target, and a few faces that have no counterpart."""
     angles = np.linspace(0, 2 * np.pi, 60, endpoint=False)
