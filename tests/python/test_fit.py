@@ -37,7 +37,7 @@ def test_goes_from_one_unit_to_another_where_any_size_is_asked(pair):
     metres = bespoke.fit(pair.source, pair.target, pair.anchors).map
     target = bespoke.Mesh(1024 * pair.target.vertices, pair.target.faces)
     anchors = [
-        bespoke.Anchor(anchor.a, tuple(1024 * x for x in anchor.b), anchor.name, anchor.sigma) for anchor in pair.anchors
+        bespoke.Anchor(pick.a, tuple(1024 * x for x in pick.b), pick.name, pick.sigma) for pick in pair.anchors
     ]
     with pytest.raises(bespoke.InvalidInput, match="two units"):
         bespoke.fit(pair.source, target, anchors)
