@@ -13,11 +13,13 @@ namespace {
 using test::degree;
 
 /// The map onto a target that is so many times as large, with default options.
-MadeMap made_at(double size, const TriangleMesh& source, Points target) {
+MadeMap made_at(double size, const TriangleMesh& source, Points target,
+                ElasticMethod method = ElasticMethod::diffeomorphic) {
   target *= size;
   const TriangleMesh fitted{std::move(target), source.faces};
   MakeMapOptions options = default_options(diagonal(source.vertices), octave_of(size));
   options.fit.any_size = true;
+  options.fit.elastic = method;
   return make_map({source, fitted, {}, &fitted}, options);
 }
 
@@ -53,12 +55,39 @@ Points stretched(const Points& x) {
 
 TEST(ModelSizes, ScaleTheMap) {
   const TriangleMesh source = ball();
-  const MadeMap same = made_at(1, source, stretched(source.vertices));
-  for (const double size : {1.0 / 1024, 0.5, 4.0, 1024.0}) {
-    const MadeMap scaled = made_at(size, source, stretched(source.vertices));
-    EXPECT_EQ(voxel_count(scaled.asset), voxel_count(same.asset)) << size;
-    EXPECT_LT(largest_difference(scaled.asset, same.asset, size, points_around(source)), 1e-6) << size;
-    EXPECT_DOUBLE_EQ(scaled.asset.record.tolerance, size * same.asset.record.tolerance);
+  const Points target = stretched(source.vertices);
+  for (const ElasticMethod method : {ElasticMethod::diffeomorphic, ElasticMethod::multiscale}) {
+    const MadeMap same = made_at(1, source, target, method);
+    ASSERT_GT(voxel_count(same.asset), 0u);
+    for (const double size : {1.0 / 1024, 0.5, 4.0, 1024.0}) {
+      const MadeMap scaled = made_at(size, source, target, method);
+      EXPECT_EQ(voxel_count(scaled.asset), voxel_count(same.asset)) << size;
+      EXPECT_LT(largest_difference(scaled.asset, same.asset, size, points_around(source)), 1e-6) << size;
+      EXPECT_DOUBLE_EQ(scaled.asset.record.tolerance, size * same.asset.record.tolerance);
+    }
+  }
+}
+
+TEST(ModelSizes, LeaveTheIterationsOfTheLaplacianFit) {
+  const TriangleMesh source = ball();
+  const auto laid_at = [&](double size, bool as_printed) {
+    const TriangleMesh target{size * stretched(source.vertices), source.faces};
+    Anchors anchors;
+    for (int vertex = 0; vertex < 12; ++vertex)
+      anchors.pairs.push_back({"", source.vertices.col(vertex), target.vertices.col(vertex)});
+    FitOptions options = default_options(diagonal(source.vertices), octave_of(size)).fit;
+    options.any_size = true;
+    options.surface_fit.method = SurfaceFitMethod::laplacian;
+    if (as_printed) options.surface_fit.laplacian = no_additions;
+    return fit_source_surface(source, target, anchors, options);
+  };
+  for (const bool as_printed : {true, false}) {
+    const FittedMapping same = laid_at(1, as_printed);
+    for (const double size : {1.0 / 1024, 4.0, 1024.0}) {
+      const FittedMapping scaled = laid_at(size, as_printed);
+      EXPECT_GT(same.summary.surface->iterations, 0);
+      EXPECT_EQ(scaled.summary.surface->iterations, same.summary.surface->iterations) << size;
+    }
   }
 }
 
@@ -80,6 +109,25 @@ TEST(ModelSizes, ChangeNeitherTheStepsNorTheCostOfAChain) {
     const DerivedMap inverse = inverted(scaled);
     EXPECT_TRUE(whole_certificate(inverse.asset).is_bijection()) << size;
     EXPECT_LT(inverse.deviation.p95, 2 * inverse_of_same.deviation.p95) << size;
+  }
+}
+
+// What lies off the source lies off a larger target by as much more.
+TEST(ModelSizes, TakeAnchorsOffTheSurfaceAlong) {
+  const TriangleMesh source = ball();
+  for (const double size : {1.0 / 1024, 1.0, 4.0, 1024.0}) {
+    const TriangleMesh target{size * source.vertices, source.faces};
+    Anchors anchors;
+    for (int vertex = 0; vertex < 12; ++vertex) {
+      const Vector3 a = 1.03 * source.vertices.col(vertex);
+      anchors.pairs.push_back({"", a, size * a});
+    }
+    MakeMapOptions options = default_options(diagonal(source.vertices), octave_of(size));
+    options.fit.any_size = true;
+    const FittedMapping fit = fit_mapping(source, target, anchors, options.fit);
+    EXPECT_EQ(fit.summary.elastic.anchors_off_surface, anchors.pairs.size()) << size;
+    for (const double sigma : fit.anchor_sigma) EXPECT_EQ(sigma, 0) << size;
+    for (const double residual : fit.anchor_residual) EXPECT_LT(residual, options.fit.fit_tolerance) << size;
   }
 }
 

@@ -21,9 +21,11 @@ constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
 // heads, hands, a foot) come to a σ of 8 to 16 %.
 constexpr double of_chance = 0.08;
 
-/// How far each unrated pair of the surface lies off the target beyond what it lies off the source.
+/// How far each unrated pair of the surface lies off the target beyond what it lies off the source, were that
+/// `octave` times as large.
 std::vector<SlippedAnchor> offsets(const Anchors& anchors, const TriangleMesh& source,
-                                   const TriangleMesh& target, double reach) {
+                                   const TriangleMesh& target, double octave) {
+  const double reach = near_surface * diagonal(source.vertices);
   const ClosestPointTree source_surface(source), target_surface(target);
   std::vector<SlippedAnchor> all;
   for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
@@ -32,7 +34,7 @@ std::vector<SlippedAnchor> offsets(const Anchors& anchors, const TriangleMesh& s
     const auto on_source = source_surface.closest(pair.a, {.max_distance = reach});
     if (!on_source) continue;
     const double distance = std::sqrt(target_surface.closest(pair.b)->squared_distance);
-    all.push_back({i, std::abs(distance - std::sqrt(on_source->squared_distance))});
+    all.push_back({i, std::abs(distance - octave * std::sqrt(on_source->squared_distance))});
   }
   return all;
 }
@@ -72,9 +74,9 @@ RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, co
   std::erase_if(accuracy.swapped, [&](const SwappedAnchors& pair) {
     return !(is_unrated(anchors.pairs[pair.first]) && is_unrated(anchors.pairs[pair.second]));
   });
-  const double source_diagonal = diagonal(source.vertices);
-  const double least = resolution * octave_of(size_ratio(anchors, source, target)) * source_diagonal;
-  const std::vector<SlippedAnchor> off = offsets(anchors, source, target, near_surface * source_diagonal);
+  const double octave = octave_of(size_ratio(anchors, source, target));
+  const double least = resolution * octave * diagonal(source.vertices);
+  const std::vector<SlippedAnchor> off = offsets(anchors, source, target, octave);
   if (!off.empty()) {
     const double deviation = robust_deviation(off);
     accuracy.estimated = off.size();

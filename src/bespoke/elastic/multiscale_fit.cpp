@@ -6,6 +6,7 @@
 
 #include "bespoke/elastic/multiscale.h"
 #include "bespoke/error.h"
+#include "bespoke/mapping/affine_map.h"
 #include "bespoke/rbf/gradient_bound.h"
 #include "bespoke/rbf/layer_solver.h"
 #include "bespoke/rbf/layer_stack.h"
@@ -113,12 +114,13 @@ class Fitter {
         options_(options),
         progress_(progress),
         affine_(upright_affine(sources, targets, options.affine_part)),
+        growth_(options.composed ? 1 : octave_of(affine_)),
         images_(affine_ * sources_) {}
 
   MultiscaleFit run() {
     double lambda = options_.lambda;
     for (int level = 0; level < options_.max_levels && worst() > options_.tolerance &&
-                        lambda > least_radius * options_.tolerance;
+                        lambda > least_radius * options_.tolerance / growth_;
          ++level, lambda /= 2) {
       progress_.step("elastic", std::size_t(level), std::size_t(options_.max_levels));
       if (options_.composed)
@@ -147,7 +149,7 @@ class Fitter {
 
   double tolerance(Eigen::Index i) const {
     return i < pairs_ ? options_.tolerance
-                      : std::max(options_.tolerance, guide_tolerance * options_.guides.offset);
+                      : std::max(options_.tolerance, guide_tolerance * growth_ * options_.guides.offset);
   }
 
   void compose_scale(double lambda) {
@@ -218,6 +220,7 @@ class Fitter {
   const MultiscaleOptions& options_;
   const Progress& progress_;
   AffineMap affine_;
+  double growth_;  // of sizes, from where layers act to the targets
   Points images_;  // E(sources) so far
   Points residuals_at_centers_;
   std::vector<RbfLayer> layers_;

@@ -25,7 +25,8 @@ ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& 
                                const Anchors& anchors, const FitOptions& options, ElasticSummary& summary) {
   // A vertex and an anchor closer than this ask an interpolating map for differences of rounding errors.
   constexpr double least_distance = 1e-6;  // of the source's diagonal
-  const double off_surface = std::max(options.fit_tolerance, least_distance * diagonal(source.vertices));
+  const double tolerance = options.fit_tolerance / octave_of(growth(source, fitted.fitted_vertices));
+  const double off_surface = std::max(tolerance, least_distance * diagonal(source.vertices));
   const std::vector<std::size_t> off = anchors_off_surface(source, anchors, off_surface);
   ElasticPairs pairs = elastic_pairs(source, fitted.fitted_vertices);
   summary.unreferenced_vertices = pairs.unreferenced;

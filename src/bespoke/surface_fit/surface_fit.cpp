@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bespoke/error.h"
+#include "bespoke/length.h"
 #include "bespoke/mesh/facing_outward.h"
 #include "bespoke/mesh/require_surface.h"
 #include "bespoke/surface_fit/detail/facing.h"
@@ -126,6 +127,8 @@ std::string to_string(const SurfaceFitSummary& summary) {
     line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn too far taken back";
   return line;
 }
+
+double SurfaceFitInput::octave() const { return octave_of(growth(source, warped_vertices)); }
 
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress) {

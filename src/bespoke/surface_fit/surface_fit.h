@@ -50,7 +50,8 @@ struct SurfaceFitOptions {
   /// inside out is turned over. Not part of the printed method.
   bool mend_models = true;
   int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
-  double epsilon = 1e-5;     ///< ε of the paper, a fraction of the source's bounding-box diagonal
+  /// ε of the paper, a fraction of the source's bounding-box diagonal, in octaves as large as the target.
+  double epsilon = 1e-5;
   /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit, instead of the printed or the scaled one:
   /// how much smoothness counts against reaching the target in one step (laplacian only).
   std::optional<double> stiffness;
@@ -129,6 +130,9 @@ struct SurfaceFitInput {
   /// what is excluded attracts nothing. The deformation graph only.
   FacePatches source_patches = {};
   FacePatches target_patches = {};
+
+  /// How many times as large the target is (octave_of, length.h), by the warp.
+  double octave() const;
 };
 
 /// A target whose faces look the other way than the source's, as of a file that is inside out, is turned over

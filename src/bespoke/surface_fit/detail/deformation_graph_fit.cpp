@@ -34,13 +34,14 @@ struct SurfaceAnchors {
 };
 
 /// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
-/// their anchors are from the source.
-void lay_on_target(const TriangleMesh& source, const TriangleMesh& target, SurfaceAnchors& anchors) {
+/// their anchors are from the source, were that `octave` times as large.
+void lay_on_target(const TriangleMesh& source, const TriangleMesh& target, double octave,
+                   SurfaceAnchors& anchors) {
   if (!(anchors.sigmas.array() > 0).any()) return;
   const ClosestPointTree source_surface(source), target_surface(target);
   for (Eigen::Index k = 0; k < anchors.sigmas.size(); ++k) {
     if (!(anchors.sigmas[k] > 0)) continue;
-    const double wanted = source_surface.closest(anchors.sources.col(k))->squared_distance;
+    const double wanted = octave * octave * source_surface.closest(anchors.sources.col(k))->squared_distance;
     const SurfacePoint foot = *target_surface.closest(anchors.targets.col(k));
     if (foot.squared_distance > wanted)
       anchors.targets.col(k) =
@@ -64,7 +65,7 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
     else if (std::isinf(anchors.weights[k]))
       anchors.exact.push_back(k);
   }
-  lay_on_target(input.source, input.target, anchors);
+  lay_on_target(input.source, input.target, input.octave(), anchors);
   return anchors;
 }
 

@@ -15,7 +15,8 @@ namespace bespoke {
 namespace {
 
 /// Anchors count only where both ends lie on their surfaces to this fraction of the source's bounding-box
-/// diagonal: farther off, the surface point beneath them is not what the user paired.
+/// diagonal, in octaves as large on the target: farther off, the surface point beneath them is not what the
+/// user paired.
 constexpr double on_surface = 1e-3;
 
 /// s of Eq. 11. With scaled_stiffness s grows with the vertices: displacements then spread over some 0.08 of
@@ -73,17 +74,17 @@ struct SnappedAnchors {
 };
 
 SnappedAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffness) {
-  const double reach = on_surface * diagonal(input.source.vertices);
   const double heaviest = exact_anchor_weight(stiffness);
   const ClosestPointTree source(input.source);
   const ClosestPointTree target(input.target);
-  ClosestPointQuery near;
-  near.max_distance = reach;
+  ClosestPointQuery near_source, near_target;
+  near_source.max_distance = on_surface * diagonal(input.source.vertices);
+  near_target.max_distance = input.octave() * near_source.max_distance;
   SnappedAnchors result;
   std::vector<Vector3> targets;
   for (Eigen::Index k = 0; k < input.anchor_sources.cols(); ++k) {
-    const auto on_source = source.closest(input.anchor_sources.col(k), near);
-    if (!on_source || !target.closest(input.anchor_targets.col(k), near)) continue;
+    const auto on_source = source.closest(input.anchor_sources.col(k), near_source);
+    if (!on_source || !target.closest(input.anchor_targets.col(k), near_target)) continue;
     result.places.push_back({input.source.faces.col(on_source->face), on_source->barycentric,
                              std::min(input.anchor_weights[k], heaviest)});
     result.exact.push_back(input.anchor_weights[k] >= heaviest);
@@ -175,7 +176,7 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
                                  const Progress& progress) {
   const Stopwatch watch;
   const LaplacianAdditions& additions = options.laplacian;
-  const double epsilon = options.epsilon * diagonal(input.source.vertices);
+  const double epsilon = options.epsilon * input.octave() * diagonal(input.source.vertices);
   SurfaceFit fit;
   SurfaceFitSummary& summary = fit.summary;
   summary.stiffness = stiffness_of(options, input.source.vertices.cols());
