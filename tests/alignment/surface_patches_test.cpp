@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "bespoke/error.h"
+#include "support/pocketed_ball.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -72,6 +74,21 @@ TEST(SurfacePatches, AreTheirMirrorImagesMirrorImage) {
 
 TEST(SurfacePatches, RejectMeshesWithoutArea) {
   EXPECT_THROW(make_surface_patches(TriangleMesh{}, 10), InvalidInput);
+}
+
+TEST(SurfacePatches, HaveNoOpenAreaInThePocketOfABall) {
+  const TriangleMesh mesh = shapes::pocketed_ball(9 * std::numbers::pi / 180);
+  const SurfacePatches patches = make_surface_patches(mesh, 300);
+  EXPECT_NEAR(patches.open_areas.sum(), 1, 1e-12);
+  for (Eigen::Index i = 0; i < patches.size(); ++i) {
+    const double far = patches.points.col(i).norm();
+    if (far < 0.7) {
+      EXPECT_EQ(patches.open_areas[i], 0);
+    }
+    if (far > 0.98) {
+      EXPECT_GT(patches.open_areas[i], patches.areas[i]);
+    }
+  }
 }
 
 }  // namespace

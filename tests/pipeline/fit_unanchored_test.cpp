@@ -2,15 +2,22 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
+#include <numbers>
+#include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/product/mesh_io.h"
 #include "samples.h"
+#include "support/pocketed_ball.h"
 #include "support/random_points.h"
+#include "support/shapes.h"
 
 namespace bespoke {
 namespace {
@@ -64,6 +71,50 @@ TEST(FitUnanchored, FindsAHandWhereverItLies) {
   EXPECT_EQ(here.summary.from_deformed, there.summary.from_deformed);
   EXPECT_NEAR(there.summary.alignment.misfit, here.summary.alignment.misfit,
               0.01 * here.summary.alignment.misfit);
+}
+
+/// A ball with three limbs of different lengths: what lies within is carried along.
+TriangleMesh with_limbs(TriangleMesh ball) {
+  for (auto&& vertex : ball.vertices.colwise()) {
+    const Vector3 direction = vertex.normalized();
+    const auto limb = [&](const Vector3& end, double height, double width) {
+      return height * std::exp((direction.dot(end.normalized()) - 1) / (width * width));
+    };
+    vertex *=
+        1 + limb({1, 0.2, -0.3}, 2.4, 0.4) + limb({-0.3, 1, -0.2}, 1.4, 0.3) + limb({0, -1, 0.4}, 0.7, 0.5);
+  }
+  return ball;
+}
+
+/// Largest height of the points over a surface, mesh units; negative where all lie within.
+double farthest_out(const TriangleMesh& surface, const Points& points) {
+  const ClosestPointTree tree(surface);
+  const Points normals = face_normals(surface);
+  double most = -std::numeric_limits<double>::infinity();
+  for (const auto& x : points.colwise()) {
+    const SurfacePoint foot = *tree.closest(x);
+    most = std::max(most, (x - foot.point).dot(normals.col(foot.face)));
+  }
+  return most;
+}
+
+TEST(FitUnanchored, KeepsAMouthThatTheTargetLacksInsideAndReachesAllOfATargetWithOne) {
+  const TriangleMesh pocketed = shapes::pocketed_ball(9 * std::numbers::pi / 180);
+  const TriangleMesh with_mouth = with_limbs(pocketed), smooth = with_limbs(shapes::icosphere(4));
+  const double unit = diagonal(smooth.vertices);
+
+  const UnanchoredFit fit = fit_unanchored(with_mouth, smooth, {});
+  const Points placed = fit.target_from_source * fit.surface.vertices;
+  std::vector<int> lining, outside;
+  for (int i = 0; i < placed.cols(); ++i)
+    (shapes::in_pocket(pocketed.vertices.col(i)) ? lining : outside).push_back(i);
+  EXPECT_LT(farthest_out(smooth, placed(Eigen::all, lining)), 0.005 * unit);
+  const Points apart = (placed - with_mouth.vertices)(Eigen::all, outside);
+  EXPECT_LT(apart.colwise().norm().mean(), 0.01 * unit);
+
+  const UnanchoredFit back = fit_unanchored(smooth, with_mouth, {});
+  const Points there = back.target_from_source * back.surface.vertices - smooth.vertices;
+  EXPECT_LT(there.colwise().norm().mean(), 0.01 * unit);
 }
 
 TEST(FitUnanchored, RefusesAMirroredHand) {

@@ -184,6 +184,11 @@ TEST_F(MeshFormats, NamesThePlaceOfABadPly) {
       HasSubstr("vertices have no x, y and z"));
   EXPECT_THAT(complaint("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty quad x\nend_header\n1\n"),
               HasSubstr("a.ply:4: unknown type 'quad'"));
+  EXPECT_THAT(complaint("a.ply",
+                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                        "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                        "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+              HasSubstr("a.ply: its faces are triangle strips (element tristrips), which are not read"));
   std::string four, nan;
   for (int i = 0; i < 4; ++i) four += bytes(static_cast<float>(i)) + bytes(0.0) + bytes(0.0f);
   for (int i = 0; i < 4; ++i) nan += bytes(0.0f) + bytes(i == 2 ? std::nan("") : 0.0) + bytes(0.0f);

@@ -2,12 +2,14 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "bespoke/alignment/detail/patch_deformation.h"
 #include "bespoke/alignment/detail/surface_patches.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/mesh/sight.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -30,6 +32,14 @@ Eigen::VectorXd distances_from(const TriangleMesh& surface, const Points& points
   return distances;
 }
 
+/// n: what each vertex that lies in the open speaks for, mesh units squared.
+Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& enclosed) {
+  Eigen::VectorXd areas = vertex_areas(mesh);
+  for (std::size_t i = 0; i < enclosed.size(); ++i)
+    if (enclosed[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+  return areas;
+}
+
 double distortion_of(const TriangleMesh& source, const Points& placed) {
   const RefinedMesh fine = refine_long_edges(source, longest_edge_of_patches(source, patches));
   Points fine_placed(3, fine.mesh.vertices.cols());
@@ -48,7 +58,8 @@ PlacementFigures judge_placement(const TriangleMesh& source, const Points& place
     throw InvalidInput(std::to_string(placed.cols()) + " places for " +
                        std::to_string(source.vertices.cols()) + " vertices");
   const TriangleMesh moved{placed, source.faces};
-  const Eigen::VectorXd areas = vertex_areas(moved), target_areas = vertex_areas(target);
+  const Eigen::VectorXd areas = open_areas(moved, enclosed_vertices(source));
+  const Eigen::VectorXd target_areas = open_areas(target, enclosed_vertices(target));
   const Eigen::VectorXd there = distances_from(target, placed);
   const Eigen::VectorXd back = distances_from(moved, target.vertices);
   const double unit = diagonal(target.vertices);

@@ -48,13 +48,13 @@ SoftMatches soft_matches(const SurfacePatches& source, const Points& points, con
   const double area = target.spacing * target.spacing * double(target.size());
   const double found_within = 1 / double(target.size()) + 2 * std::numbers::pi * length * length / area;
   const double nothing = none * std::min(1.0, found_within);
-  const Eigen::ArrayXd by_source = (likelihood.matrix() * target.areas).array() + nothing;
-  const Eigen::ArrayXd by_target = (likelihood.matrix().transpose() * source.areas).array() + nothing;
+  const Eigen::ArrayXd by_source = (likelihood.matrix() * target.open_areas).array() + nothing;
+  const Eigen::ArrayXd by_target = (likelihood.matrix().transpose() * source.open_areas).array() + nothing;
   // a_i b_j P_ij (1 / (Σ_j b_j P_ij + none) + 1 / (Σ_i a_i P_ij + none))
   Eigen::ArrayXXd& weights = likelihood;
-  const Eigen::ArrayXd row = source.areas.array() / by_source;
+  const Eigen::ArrayXd row = source.open_areas.array() / by_source;
   for (Eigen::Index j = 0; j < weights.cols(); ++j)
-    weights.col(j) *= target.areas[j] * (row + source.areas.array() / by_target[j]);
+    weights.col(j) *= target.open_areas[j] * (row + source.open_areas.array() / by_target[j]);
 
   SoftMatches matches;
   matches.weights = weights.rowwise().sum();

@@ -9,6 +9,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/mesh/sight.h"
 
 namespace bespoke {
 namespace {
@@ -125,9 +126,9 @@ Eigen::VectorXd mean_curvatures(const SurfacePatches& patches) {
 }
 
 void add_moments(SurfacePatches& patches) {
-  patches.center = patches.points * patches.areas;
+  patches.center = patches.points * patches.open_areas;
   const Points arms = patches.points.colwise() - patches.center;
-  const Matrix3 covariance = arms * patches.areas.asDiagonal() * arms.transpose();
+  const Matrix3 covariance = arms * patches.open_areas.asDiagonal() * arms.transpose();
   patches.radius = std::sqrt(covariance.trace());
   const Eigen::SelfAdjointEigenSolver<Matrix3> solver(covariance);
   patches.axes = solver.eigenvectors().rowwise().reverse();
@@ -152,18 +153,21 @@ SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count) {
 
   const Eigen::Index size =
       1 + *std::max_element(patches.patch_of_vertex.begin(), patches.patch_of_vertex.end());
+  const std::vector<char> enclosed = enclosed_vertices(fine);
   patches.points = patches.normals = Points::Zero(3, size);
-  patches.areas = Eigen::VectorXd::Zero(size);
+  patches.areas = patches.open_areas = Eigen::VectorXd::Zero(size);
   for (Eigen::Index i = 0; i < fine.vertices.cols(); ++i) {
     const int patch = patches.patch_of_vertex[static_cast<std::size_t>(i)];
     if (patch < 0) continue;
     patches.areas[patch] += shares.areas[i];
+    if (!enclosed[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
     patches.points.col(patch) += shares.areas[i] * fine.vertices.col(i);
     patches.normals.col(patch) += shares.normals.col(i);
   }
   patches.points *= patches.areas.cwiseInverse().asDiagonal();
   patches.normals.colwise().normalize();
   patches.areas /= patches.areas.sum();
+  patches.open_areas /= patches.open_areas.sum();
   patches.on_boundary = Eigen::VectorXd::Zero(size);
   const std::vector<char> boundary = boundary_vertices(fine);
   for (std::size_t i = 0; i < boundary.size(); ++i)

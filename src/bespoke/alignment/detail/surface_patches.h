@@ -12,11 +12,12 @@ struct SurfacePatches {
   Points points;                             ///< centroids, mesh units
   Points normals;                            ///< mean normals, unit
   Eigen::VectorXd areas;                     ///< shares of the whole, sum 1
+  Eigen::VectorXd open_areas;                ///< shares of what is not enclosed (sight.h), sum 1
   Eigen::VectorXd curvature;                 ///< mean curvature × `radius`, positive where convex; no unit
   Eigen::VectorXd on_boundary;               ///< 1 where an open boundary of the mesh runs through, else 0
   std::vector<std::vector<int>> neighbours;  ///< across edges of the mesh, ascending, connected as a whole
   std::vector<int> patch_of_vertex;          ///< of the mesh; -1 for vertices in no face
-  Vector3 center = Vector3::Zero();          ///< of all points, by area, mesh units
+  Vector3 center = Vector3::Zero();          ///< of all points, by open area, mesh units
   Matrix3 axes = Matrix3::Identity();        ///< principal axes, by descending variance; right-handed
   double radius = 0;                         ///< root mean square distance from the centre, mesh units
   double spacing = 0;                        ///< √(area / patches), mesh units

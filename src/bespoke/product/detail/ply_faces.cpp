@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <string>
 #include <vector>
 
+#include "bespoke/error.h"
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/ply_binary.h"
@@ -9,11 +11,21 @@
 namespace bespoke {
 namespace {
 
+bool has(const PlyHeader& header, const std::string& name) {
+  return std::any_of(header.elements.begin(), header.elements.end(),
+                     [&](const auto& element) { return element.name == name && element.count > 0; });
+}
+
 /// Whether the file is a point cloud with normals; of a mesh these are not read.
-bool shows_directions(const PlyHeader& header) {
-  return header.normal &&
-         std::none_of(header.elements.begin(), header.elements.end(),
-                      [](const auto& element) { return element.name == "face" && element.count > 0; });
+bool shows_directions(const PlyHeader& header) { return header.normal && !has(header, "face"); }
+
+/// A model whose surface is stored otherwise is no point cloud.
+void require_no_strips(const PlyHeader& header, const std::filesystem::path& path) {
+  if (has(header, "tristrips") && !has(header, "face"))
+    throw FormatError(
+        path.string() +
+        ": its faces are triangle strips (element tristrips), which are not read; store them as "
+        "triangles (element face, property list vertex_indices)");
 }
 
 /// A vertex block's positions, normals and texture coordinates, or a face block's faces.
@@ -61,6 +73,7 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
 
 Product read_ply_faces(const InputFile& file) {
   const PlyHeader header = read_ply_header(file);
+  require_no_strips(header, file.path());
   require_countable(header.elements[header.vertex].count, file.path());
   GatheredFaces gathered =
       header.encoding == PlyHeader::Encoding::ascii

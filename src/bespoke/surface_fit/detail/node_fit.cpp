@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/mesh/sight.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/cavities.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
@@ -65,6 +66,12 @@ Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& in
   return areas;
 }
 
+/// Those vertices speak for nothing.
+void silence(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (vertices[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+}
+
 /// With as many iterations as the anchors ask for.
 NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
   if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
@@ -93,7 +100,14 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
 double NodeFitting::fit_coarse() {
   const NodeLevel& level = settings_.levels.front();
   const std::unique_ptr<NodeSystem> few = system(level);
+  const Eigen::VectorXd areas = areas_, target_areas = target_areas_;
+  if (anchors_.empty()) {
+    silence(enclosed_vertices(rest_.mesh()), areas_);
+    silence(enclosed_vertices(input_.target.mesh()), target_areas_);
+  }
   iterate(*few, level);
+  areas_ = areas;
+  target_areas_ = target_areas;
   fit_.coarse_vertices = fit_.vertices;
   many_ = system(settings_.levels.back());
   const double strain = many_->median_strain();
@@ -104,8 +118,7 @@ double NodeFitting::fit_coarse() {
 NodeFit NodeFitting::fit_fine() {
   fit_.hidden = vertices_in_lacking_cavities(rest_.moved(fit_.vertices), input_.target, input_.diagonal,
                                              settings_.cavities);
-  for (std::size_t i = 0; i < fit_.hidden.size(); ++i)
-    if (fit_.hidden[i]) areas_[static_cast<Eigen::Index>(i)] = 0;
+  silence(fit_.hidden, areas_);
   iterate(*many_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);
   fit_.matched_boundaries = boundaries_.matched_boundaries();

@@ -47,8 +47,9 @@ struct NodeFit {
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
 /// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
 /// from the target that bends least. After the first level vertices in cavities that the target lacks have
-/// no more pairs, and the similarities count by the pair's rigidity. Where the target has nothing to offer,
-/// the last two extrapolate.
+/// no more pairs, and the similarities count by the pair's rigidity. Where no anchor leads, linings of either
+/// (enclosed_vertices) have none in the first level: they would be laid onto whatever is near. Where the
+/// target has nothing to offer, the last two extrapolate.
 class NodeFitting {
  public:
   /// The input's references and the progress must outlive it.

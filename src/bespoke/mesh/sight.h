@@ -1,0 +1,36 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "bespoke/mesh/box_tree.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// What a straight way can meet of a face.
+enum class FaceSides { front, both };
+
+/// Straight ways from places on a surface or off it, and whether the surface is in their way. Thread-safe.
+class Sight {
+ public:
+  /// The mesh must outlive it, have a face and valid indices.
+  explicit Sight(const TriangleMesh& mesh);
+
+  /// Whether a face lies before x along `direction` (unit), within `reach` (mesh units). Faces through x are
+  /// not before it.
+  bool is_blocked(const Vector3& x, const Vector3& direction, FaceSides sides = FaceSides::both,
+                  double reach = std::numeric_limits<double>::infinity()) const;
+
+ private:
+  const TriangleMesh& mesh_;
+  BoxTree tree_;
+  double least_;  // mesh units: what is nearer is at x itself
+};
+
+/// One per vertex: whether it sees next to nothing of the open, wherever it looks out of the surface: the
+/// linings of mouths, sockets and nostrils, pockets. A surface of which that would be more than half (inside
+/// out, or lined throughout) is taken for one that lies in the open.
+std::vector<char> enclosed_vertices(const TriangleMesh& mesh);
+
+}  // namespace bespoke
