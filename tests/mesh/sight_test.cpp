@@ -2,12 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <vector>
 
-#include "support/pocketed_ball.h"
 #include "support/random_points.h"
 #include "support/shapes.h"
 
@@ -55,39 +51,6 @@ TEST(Sight, DoesNotSeeWhatItLooksOutOf) {
   const Sight sight(ball);
   for (const auto& vertex : ball.vertices.colwise())
     EXPECT_FALSE(sight.is_blocked(vertex, vertex.normalized()));
-}
-
-TEST(EnclosedVertices, AreTheLiningOfAPocketWithANarrowMouth) {
-  const TriangleMesh mesh = shapes::pocketed_ball(9 * std::numbers::pi / 180);
-  const std::vector<char> enclosed = enclosed_vertices(mesh);
-  for (std::size_t i = 0; i < enclosed.size(); ++i) {
-    const Vector3 x = mesh.vertices.col(static_cast<Eigen::Index>(i));
-    const bool at_the_mouth = x.z() > 0.85 && x.head<2>().norm() < 0.35;
-    if (!at_the_mouth) {
-      EXPECT_EQ(enclosed[i] != 0, shapes::in_pocket(x)) << x.transpose();
-    }
-  }
-}
-
-TEST(EnclosedVertices, AreTheSameInAnyPlaceAndSize) {
-  const TriangleMesh mesh = shapes::pocketed_ball();
-  const TriangleMesh moved = shapes::moved(mesh, {400 * test::random_rotation(3), Vector3(30, -500, 2)});
-  const std::vector<char> here = enclosed_vertices(mesh), there = enclosed_vertices(moved);
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < here.size(); ++i) differing += here[i] != there[i];
-  EXPECT_LE(differing, here.size() / 50);  // looks are not the same ones about another normal
-}
-
-TEST(EnclosedVertices, AreNoneOfASurfaceInTheOpenOrInsideOut) {
-  TriangleMesh ball = shapes::icosphere(3);
-  const auto none = [](const TriangleMesh& mesh) {
-    const std::vector<char> enclosed = enclosed_vertices(mesh);
-    return std::none_of(enclosed.begin(), enclosed.end(), [](char is) { return is != 0; });
-  };
-  EXPECT_TRUE(none(ball));
-  ball.faces.row(1).swap(ball.faces.row(2));
-  EXPECT_TRUE(none(ball));
-  EXPECT_TRUE(none(shapes::square_grid(5)));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/edge_refinement.h"
-#include "bespoke/mesh/sight.h"
+#include "bespoke/mesh/linings.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -33,10 +33,10 @@ Eigen::VectorXd distances_from(const TriangleMesh& surface, const Points& points
 }
 
 /// n: what each vertex that lies in the open speaks for, mesh units squared.
-Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& enclosed) {
+Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& lined) {
   Eigen::VectorXd areas = vertex_areas(mesh);
-  for (std::size_t i = 0; i < enclosed.size(); ++i)
-    if (enclosed[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+  for (std::size_t i = 0; i < lined.size(); ++i)
+    if (lined[i]) areas[static_cast<Eigen::Index>(i)] = 0;
   return areas;
 }
 
@@ -58,8 +58,8 @@ PlacementFigures judge_placement(const TriangleMesh& source, const Points& place
     throw InvalidInput(std::to_string(placed.cols()) + " places for " +
                        std::to_string(source.vertices.cols()) + " vertices");
   const TriangleMesh moved{placed, source.faces};
-  const Eigen::VectorXd areas = open_areas(moved, enclosed_vertices(source));
-  const Eigen::VectorXd target_areas = open_areas(target, enclosed_vertices(target));
+  const Eigen::VectorXd areas = open_areas(moved, linings_of(source).contains);
+  const Eigen::VectorXd target_areas = open_areas(target, linings_of(target).contains);
   const Eigen::VectorXd there = distances_from(target, placed);
   const Eigen::VectorXd back = distances_from(moved, target.vertices);
   const double unit = diagonal(target.vertices);

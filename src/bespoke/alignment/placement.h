@@ -5,7 +5,7 @@
 namespace bespoke {
 
 /// How well a source laid onto a target explains it; to choose among placements of one source by. Linings of
-/// cavities (sight.h) of either have no say in how near the two are.
+/// cavities (linings.h) of either have no say in how near the two are.
 struct PlacementFigures {
   double distance =
       0;  ///< mean of both surfaces' distances from the other, fraction of the target's diagonal

@@ -2,10 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
-
-#include "bespoke/parallel.h"
 
 namespace bespoke {
 namespace {
@@ -13,13 +9,6 @@ namespace {
 constexpr double weight_rounding = 1e-9;  // of barycentric weights: a way through an edge meets a face
 constexpr double slab_rounding = 1e-15;   // of t: a way along a box's side crosses it
 constexpr double at_the_eye = 1e-10;      // of the mesh's diagonal
-
-/// Directions in which a vertex looks, evenly spread over the half-space of its normal.
-constexpr int looks = 32;
-/// Of them, that an enclosed vertex may have free. Of six heads and bodies 1.8 to 15 % of the area is
-/// enclosed then; 0 and 6: less by up to 3.4 % of it, more by at most 0.7 %; of an open hand nothing, of a
-/// fist 1 %; 0 and 6: nothing, 6 %.
-constexpr int most_free = 2;
 
 /// A way from t = 0 to t = reach that is asked about boxes.
 struct Way {
@@ -42,29 +31,6 @@ struct Way {
     return begin <= end;
   }
 };
-
-/// Unit vectors about e_z, the first along it: a spiral of equal areas.
-std::array<Vector3, looks> half_space() {
-  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::array<Vector3, looks> directions;
-  for (int k = 0; k < looks; ++k) {
-    const double height = 1 - double(k) / looks, radius = std::sqrt(1 - height * height);
-    directions[static_cast<std::size_t>(k)] = {radius * std::cos(k * golden_angle),
-                                               radius * std::sin(k * golden_angle), height};
-  }
-  return directions;
-}
-
-bool is_enclosed(const Sight& sight, const Vector3& x, const Vector3& normal,
-                 const std::array<Vector3, looks>& directions) {
-  const Matrix3 turn = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), normal).toRotationMatrix();
-  int free = 0;
-  for (const Vector3& direction : directions) {
-    if (!sight.is_blocked(x, (turn * direction).normalized())) ++free;
-    if (free > most_free) return false;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -100,27 +66,6 @@ bool Sight::is_blocked(const Vector3& x, const Vector3& direction, FaceSides sid
     }
   }
   return false;
-}
-
-std::vector<char> enclosed_vertices(const TriangleMesh& mesh) {
-  const Sight sight(mesh);
-  const Points normals = vertex_normals(mesh);
-  const std::array<Vector3, looks> directions = half_space();
-  std::vector<char> enclosed(static_cast<std::size_t>(mesh.vertices.cols()), 0);
-  constexpr std::size_t grain = 128;
-  parallel_for(enclosed.size(), grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      const Vector3 normal = normals.col(i);
-      enclosed[k] = !normal.isZero() && is_enclosed(sight, mesh.vertices.col(i), normal, directions);
-    }
-  });
-  const Eigen::VectorXd areas = vertex_areas(mesh);
-  double inside = 0;
-  for (std::size_t k = 0; k < enclosed.size(); ++k)
-    if (enclosed[k]) inside += areas[static_cast<Eigen::Index>(k)];
-  if (2 * inside > areas.sum()) std::fill(enclosed.begin(), enclosed.end(), char(0));
-  return enclosed;
 }
 
 }  // namespace bespoke

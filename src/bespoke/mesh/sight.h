@@ -1,7 +1,6 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "bespoke/mesh/box_tree.h"
 #include "bespoke/mesh/triangle_mesh.h"
@@ -27,10 +26,5 @@ class Sight {
   BoxTree tree_;
   double least_;  // mesh units: what is nearer is at x itself
 };
-
-/// One per vertex: whether it sees next to nothing of the open, wherever it looks out of the surface: the
-/// linings of mouths, sockets and nostrils, pockets. A surface of which that would be more than half (inside
-/// out, or lined throughout) is taken for one that lies in the open.
-std::vector<char> enclosed_vertices(const TriangleMesh& mesh);
 
 }  // namespace bespoke

@@ -153,6 +153,20 @@ struct CavitySettings {
   double much_nearer = 0.7;
 };
 
+/// Linings of cavities that the target lacks (lacking_linings.h). Tried on an avatar's head with a mouth and
+/// sockets, laid onto three that have none, two of them scans of sculptures.
+struct LiningSettings {
+  /// Of a lining's area: where less of the target is enclosed about its middle, the target lacks it. Not
+  /// varied.
+  double least_met = 0.25;
+  double around = 2;         ///< radii of a lining about its middle: so far places speak for its space
+  std::size_t places = 300;  ///< at most: a dense system
+  /// Of each in the warp (GlobalRbf). Lids lie crumpled on eyes that the target has closed: met exactly, they
+  /// threw sockets out of the face; 1,000: less so; 10, or 3 radii: as here.
+  double weight = 100;
+  double least_width = 1e-3;  ///< of the largest: thinner, places say nothing of space
+};
+
 /// Counterparts that belong to another place (reciprocity.h). Taken for scans: nine of the shared targets
 /// with 0.08 % of noise, eight holes of 2.5 % of the diagonal and debris, where fingers and toes had been
 /// laid onto their neighbours: x 0.91 / 0.89, flipped faces 247 to 12; on the shared cases x 1.004 / 1.002,
@@ -247,6 +261,7 @@ struct NodeFitSettings {
   BoundarySettings boundaries;
   AnchorSettings anchors;
   CavitySettings cavities;
+  LiningSettings linings;
   ReciprocitySettings reciprocity;
   SinkingSettings sinking;
 };

@@ -8,8 +8,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/mesh/linings.h"
 #include "bespoke/mesh/mesh_edges.h"
-#include "bespoke/mesh/sight.h"
 
 namespace bespoke {
 namespace {
@@ -153,14 +153,14 @@ SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count) {
 
   const Eigen::Index size =
       1 + *std::max_element(patches.patch_of_vertex.begin(), patches.patch_of_vertex.end());
-  const std::vector<char> enclosed = enclosed_vertices(fine);
+  const std::vector<char> lined = linings_of(fine).contains;
   patches.points = patches.normals = Points::Zero(3, size);
   patches.areas = patches.open_areas = Eigen::VectorXd::Zero(size);
   for (Eigen::Index i = 0; i < fine.vertices.cols(); ++i) {
     const int patch = patches.patch_of_vertex[static_cast<std::size_t>(i)];
     if (patch < 0) continue;
     patches.areas[patch] += shares.areas[i];
-    if (!enclosed[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
+    if (!lined[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
     patches.points.col(patch) += shares.areas[i] * fine.vertices.col(i);
     patches.normals.col(patch) += shares.normals.col(i);
   }

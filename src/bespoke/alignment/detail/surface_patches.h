@@ -12,7 +12,7 @@ struct SurfacePatches {
   Points points;                             ///< centroids, mesh units
   Points normals;                            ///< mean normals, unit
   Eigen::VectorXd areas;                     ///< shares of the whole, sum 1
-  Eigen::VectorXd open_areas;                ///< shares of what is not enclosed (sight.h), sum 1
+  Eigen::VectorXd open_areas;                ///< shares of what lines no cavity (linings.h), sum 1
   Eigen::VectorXd curvature;                 ///< mean curvature × `radius`, positive where convex; no unit
   Eigen::VectorXd on_boundary;               ///< 1 where an open boundary of the mesh runs through, else 0
   std::vector<std::vector<int>> neighbours;  ///< across edges of the mesh, ascending, connected as a whole

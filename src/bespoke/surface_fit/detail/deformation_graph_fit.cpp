@@ -16,6 +16,7 @@
 #include "bespoke/surface_fit/detail/anchor_pose.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
+#include "bespoke/surface_fit/detail/lacking_linings.h"
 #include "bespoke/surface_fit/detail/node_fit.h"
 #include "bespoke/surface_fit/detail/similarity_fit.h"
 #include "bespoke/surface_fit/detail/turned_faces.h"
@@ -246,7 +247,9 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
   scene.exact_sources = details.anchor_sources;
   if (mended.mended_vertices > 0)
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
-  scene.surface.vertices = mended.vertices;
+  const TriangleMesh rest{shape, scene.surface.faces};
+  const LaidSurface laid{rest, mended.vertices};
+  scene.surface.vertices = carried_by_space(laid, nodes.linings, nodes.hidden, settings.nodes.linings);
 
   summary.mended_vertices = mended.mended_vertices;
   summary.stretched_vertices = std::move(mended.stretched_vertices);

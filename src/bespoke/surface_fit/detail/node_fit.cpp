@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/mesh/sight.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/cavities.h"
 #include "bespoke/surface_fit/detail/informative_areas.h"
@@ -102,8 +101,9 @@ double NodeFitting::fit_coarse() {
   const std::unique_ptr<NodeSystem> few = system(level);
   const Eigen::VectorXd areas = areas_, target_areas = target_areas_;
   if (anchors_.empty()) {
-    silence(enclosed_vertices(rest_.mesh()), areas_);
-    silence(enclosed_vertices(input_.target.mesh()), target_areas_);
+    find_linings();
+    silence(fit_.linings.contains, areas_);
+    silence(target_lined_, target_areas_);
   }
   iterate(*few, level);
   areas_ = areas;
@@ -115,9 +115,20 @@ double NodeFitting::fit_coarse() {
   return fit_.rigidity;
 }
 
+void NodeFitting::find_linings() {
+  if (!target_lined_.empty()) return;
+  fit_.linings = linings_of(rest_.mesh());
+  target_lined_ = linings_of(input_.target.mesh()).contains;
+}
+
 NodeFit NodeFitting::fit_fine() {
-  fit_.hidden = vertices_in_lacking_cavities(rest_.moved(fit_.vertices), input_.target, input_.diagonal,
-                                             settings_.cavities);
+  find_linings();
+  const TargetSurface now = rest_.moved(fit_.vertices);
+  fit_.hidden = vertices_in_lacking_cavities(now, input_.target, input_.diagonal, settings_.cavities);
+  const std::vector<char> lining = vertices_of_lacking_linings(fit_.linings, now.mesh(), input_.target.mesh(),
+                                                               target_lined_, settings_.linings);
+  for (std::size_t i = 0; i < lining.size(); ++i)
+    if (lining[i]) fit_.hidden[i] = 1;
   silence(fit_.hidden, areas_);
   iterate(*many_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);

@@ -7,6 +7,7 @@
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/anchor_limits.h"
 #include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/lacking_linings.h"
 #include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -35,7 +36,8 @@ struct NodeFit {
   Points vertices;           ///< 3×n, of the deformed `rest`
   Points coarse_vertices;    ///< 3×n, as the few nodes of the first level left them
   Points anchor_sources;     ///< 3×k, carried along
-  std::vector<char> hidden;  ///< n: in a cavity that the target lacks (cavities.h), without any pair
+  Linings linings;           ///< of `rest`
+  std::vector<char> hidden;  ///< n: in a cavity or lining that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
   double rigidity = 1;  ///< g of the pair, as NodeFitting::fit_coarse tells it
@@ -46,10 +48,10 @@ struct NodeFit {
 /// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
 /// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
-/// from the target that bends least. After the first level vertices in cavities that the target lacks have
-/// no more pairs, and the similarities count by the pair's rigidity. Where no anchor leads, linings of either
-/// (enclosed_vertices) have none in the first level: they would be laid onto whatever is near. Where the
-/// target has nothing to offer, the last two extrapolate.
+/// from the target that bends least. After the first level vertices in cavities or linings that the target
+/// lacks (cavities.h, lacking_linings.h) have no more pairs, and the similarities count by the pair's
+/// rigidity. Where no anchor leads, linings of either (mesh/linings.h) have none in the first level: they
+/// would be laid onto whatever is near. Where the target has nothing to offer, the last two extrapolate.
 class NodeFitting {
  public:
   /// The input's references and the progress must outlive it.
@@ -66,6 +68,7 @@ class NodeFitting {
   std::unique_ptr<NodeSystem> system(const NodeLevel& level) const;
   void iterate(NodeSystem& system, const NodeLevel& level);
   std::vector<double> next_limits(const NodeGoals& goals);
+  void find_linings();
 
   const NodeFitInput input_;
   const NodeFitSettings settings_;  // as the input needs them
@@ -77,6 +80,7 @@ class NodeFitting {
   BoundaryMatcher boundaries_;
   NodeSurface surface_;
   AnchorLimits limits_;
+  std::vector<char> target_lined_;  // found with the linings
   NodeFit fit_;
   std::unique_ptr<NodeSystem> many_;  // of the second level, from the end of the first on
 };

@@ -1,0 +1,137 @@
+#include "bespoke/surface_fit/detail/lacking_linings.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/spread_points.h"
+#include "bespoke/principal_widths.h"
+#include "bespoke/rbf/global_rbf.h"
+
+namespace bespoke {
+namespace {
+
+/// A ball about some of the points, mesh units.
+struct Surroundings {
+  Vector3 center;
+  double radius;
+
+  explicit Surroundings(const Points& points)
+      : center(points.rowwise().mean()),
+        radius(std::sqrt((points.colwise() - center).colwise().squaredNorm().maxCoeff())) {}
+};
+
+constexpr double least_apart = 1e-6;  // of a lining's radius: nearer places are one
+
+/// Places of the open surface around a lining. `lined`: the vertices in linings.
+std::vector<int> open_places(const Points& vertices, const Lining& lining, const std::vector<char>& lined,
+                             const LiningSettings& settings) {
+  const Surroundings own(vertices(Eigen::all, lining.vertices));
+  std::vector<int> around;
+  for (int i = 0; i < vertices.cols(); ++i)
+    if (!lined[static_cast<std::size_t>(i)] &&
+        (vertices.col(i) - own.center).norm() <= settings.around * own.radius)
+      around.push_back(i);
+  std::vector<int> chosen;
+  for (const int column : spread_points(vertices(Eigen::all, around), settings.places)) {
+    const int vertex = around[static_cast<std::size_t>(column)];
+    // The next are no farther from those before.
+    if (std::any_of(chosen.begin(), chosen.end(), [&](int other) {
+          return (vertices.col(vertex) - vertices.col(other)).norm() < least_apart * own.radius;
+        }))
+      break;
+    chosen.push_back(vertex);
+  }
+  return chosen;
+}
+
+bool span_space(const Points& points, double least_width) {
+  if (points.cols() < 4) return false;
+  const Vector3 widths = principal_widths(points).widths;
+  return widths[2] > least_width * widths[0];
+}
+
+/// What is given at the rim, spread over the lining such that it is the mean over the neighbours, by one over
+/// their distance. `offsets`: 3×n, of the rim's vertices; the lining's are set.
+void spread_from_rim(const Lining& lining, const Points& vertices, Points& offsets) {
+  std::map<int, Eigen::Index> column;
+  for (const int vertex : lining.vertices) column.emplace(vertex, static_cast<Eigen::Index>(column.size()));
+  const auto size = static_cast<Eigen::Index>(column.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(size, 3);
+  double largest = 0;
+  for (const MeshEdge& edge : lining.edges) {
+    const double length = (vertices.col(edge.a) - vertices.col(edge.b)).norm();
+    if (!(length > 0)) continue;
+    largest = std::max(largest, 1 / length);
+    for (const auto& [from, to] : {std::pair(edge.a, edge.b), std::pair(edge.b, edge.a)}) {
+      const auto own = column.find(from), other = column.find(to);
+      if (own == column.end()) continue;
+      entries.emplace_back(own->second, own->second, 1 / length);
+      if (other != column.end())
+        entries.emplace_back(own->second, other->second, -1 / length);
+      else
+        right.row(own->second) += offsets.col(to).transpose() / length;
+    }
+  }
+  constexpr double free_floating = 1e-9;  // of the largest weight: a lining without rim stays
+  for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(i, i, free_floating * largest);
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  if (solver.info() != Eigen::Success)
+    throw SolverError("surface fitting: the system of a lining is singular");
+  const Eigen::MatrixX3d solution = solver.solve(right);
+  for (const auto& [vertex, row] : column) offsets.col(vertex) = solution.row(row).transpose();
+}
+
+}  // namespace
+
+std::vector<char> vertices_of_lacking_linings(const Linings& linings, const TriangleMesh& source,
+                                              const TriangleMesh& target, const std::vector<char>& lined,
+                                              const LiningSettings& settings) {
+  const Eigen::VectorXd areas = vertex_areas(source), target_areas = vertex_areas(target);
+  std::vector<char> lacking(linings.contains.size(), 0);
+  for (const Lining& lining : linings.parts) {
+    const Surroundings own(source.vertices(Eigen::all, lining.vertices));
+    double met = 0;
+    for (Eigen::Index i = 0; i < target.vertices.cols(); ++i)
+      if (lined[static_cast<std::size_t>(i)] && (target.vertices.col(i) - own.center).norm() <= own.radius)
+        met += target_areas[i];
+    if (met >= settings.least_met * areas(lining.vertices).sum()) continue;
+    for (const int vertex : lining.vertices) lacking[static_cast<std::size_t>(vertex)] = 1;
+  }
+  return lacking;
+}
+
+Points carried_by_space(const LaidSurface& laid, const Linings& linings, const std::vector<char>& hidden,
+                        const LiningSettings& settings) {
+  Points vertices = laid.fitted;
+  const Points& source = laid.source.vertices;
+  for (const Lining& lining : linings.parts) {
+    const auto lost = std::count_if(lining.vertices.begin(), lining.vertices.end(), [&](int vertex) {
+      return hidden[static_cast<std::size_t>(vertex)] != 0;
+    });
+    if (2 * lost <= static_cast<std::ptrdiff_t>(lining.vertices.size())) continue;
+    const std::vector<int> places = open_places(source, lining, linings.contains, settings);
+    if (!span_space(source(Eigen::all, places), settings.least_width)) continue;
+    const auto count = static_cast<Eigen::Index>(places.size());
+    const GlobalRbf warp(source(Eigen::all, places), laid.fitted(Eigen::all, places),
+                         Eigen::VectorXd::Constant(count, settings.weight));
+    std::vector<int> rim;
+    for (const MeshEdge& edge : lining.edges)
+      for (const int vertex : {edge.a, edge.b})
+        if (!linings.contains[static_cast<std::size_t>(vertex)]) rim.push_back(vertex);
+    Points offsets = Points::Zero(3, source.cols());
+    if (!rim.empty()) offsets(Eigen::all, rim) = laid.fitted(Eigen::all, rim) - warp(source(Eigen::all, rim));
+    spread_from_rim(lining, source, offsets);
+    vertices(Eigen::all, lining.vertices) =
+        warp(source(Eigen::all, lining.vertices)) + offsets(Eigen::all, lining.vertices);
+  }
+  return vertices;
+}
+
+}  // namespace bespoke
