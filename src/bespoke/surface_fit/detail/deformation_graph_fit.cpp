@@ -249,7 +249,8 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
   const TriangleMesh rest{shape, scene.surface.faces};
   const LaidSurface laid{rest, mended.vertices};
-  scene.surface.vertices = carried_by_space(laid, nodes.linings, nodes.hidden, settings.nodes.linings);
+  scene.surface.vertices =
+      carried_by_space(laid, nodes.lacking, nodes.linings.contains, settings.nodes.linings);
 
   summary.mended_vertices = mended.mended_vertices;
   summary.stretched_vertices = std::move(mended.stretched_vertices);

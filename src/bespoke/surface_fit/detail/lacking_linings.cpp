@@ -90,33 +90,28 @@ void spread_from_rim(const Lining& lining, const Points& vertices, Points& offse
 
 }  // namespace
 
-std::vector<char> vertices_of_lacking_linings(const Linings& linings, const TriangleMesh& source,
-                                              const TriangleMesh& target, const std::vector<char>& lined,
-                                              const LiningSettings& settings) {
+std::vector<Lining> lacking_linings(const std::vector<Lining>& linings, const TriangleMesh& source,
+                                    const TriangleMesh& target, const std::vector<char>& lined,
+                                    const LiningSettings& settings) {
   const Eigen::VectorXd areas = vertex_areas(source), target_areas = vertex_areas(target);
-  std::vector<char> lacking(linings.contains.size(), 0);
-  for (const Lining& lining : linings.parts) {
+  std::vector<Lining> lacking;
+  for (const Lining& lining : linings) {
     const Surroundings own(source.vertices(Eigen::all, lining.vertices));
     double met = 0;
     for (Eigen::Index i = 0; i < target.vertices.cols(); ++i)
       if (lined[static_cast<std::size_t>(i)] && (target.vertices.col(i) - own.center).norm() <= own.radius)
         met += target_areas[i];
-    if (met >= settings.least_met * areas(lining.vertices).sum()) continue;
-    for (const int vertex : lining.vertices) lacking[static_cast<std::size_t>(vertex)] = 1;
+    if (met < settings.least_met * areas(lining.vertices).sum()) lacking.push_back(lining);
   }
   return lacking;
 }
 
-Points carried_by_space(const LaidSurface& laid, const Linings& linings, const std::vector<char>& hidden,
-                        const LiningSettings& settings) {
+Points carried_by_space(const LaidSurface& laid, const std::vector<Lining>& linings,
+                        const std::vector<char>& lined, const LiningSettings& settings) {
   Points vertices = laid.fitted;
   const Points& source = laid.source.vertices;
-  for (const Lining& lining : linings.parts) {
-    const auto lost = std::count_if(lining.vertices.begin(), lining.vertices.end(), [&](int vertex) {
-      return hidden[static_cast<std::size_t>(vertex)] != 0;
-    });
-    if (2 * lost <= static_cast<std::ptrdiff_t>(lining.vertices.size())) continue;
-    const std::vector<int> places = open_places(source, lining, linings.contains, settings);
+  for (const Lining& lining : linings) {
+    const std::vector<int> places = open_places(source, lining, lined, settings);
     if (!span_space(source(Eigen::all, places), settings.least_width)) continue;
     const auto count = static_cast<Eigen::Index>(places.size());
     const GlobalRbf warp(source(Eigen::all, places), laid.fitted(Eigen::all, places),
@@ -124,7 +119,7 @@ Points carried_by_space(const LaidSurface& laid, const Linings& linings, const s
     std::vector<int> rim;
     for (const MeshEdge& edge : lining.edges)
       for (const int vertex : {edge.a, edge.b})
-        if (!linings.contains[static_cast<std::size_t>(vertex)]) rim.push_back(vertex);
+        if (!lined[static_cast<std::size_t>(vertex)]) rim.push_back(vertex);
     Points offsets = Points::Zero(3, source.cols());
     if (!rim.empty()) offsets(Eigen::all, rim) = laid.fitted(Eigen::all, rim) - warp(source(Eigen::all, rim));
     spread_from_rim(lining, source, offsets);

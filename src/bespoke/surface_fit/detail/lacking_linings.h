@@ -8,12 +8,12 @@
 
 namespace bespoke {
 
-/// One per vertex: whether it is in a lining that the target lacks. Within the lining's radius about its
-/// middle, as the source lies now (mesh units), the target's linings have less than a share of its area.
-/// `lined`: n, the target's vertices in linings.
-std::vector<char> vertices_of_lacking_linings(const Linings& linings, const TriangleMesh& source,
-                                              const TriangleMesh& target, const std::vector<char>& lined,
-                                              const LiningSettings& settings);
+/// Those of the source's linings that the target lacks: within a lining's radius about its middle, as the
+/// source lies now (mesh units), the target's linings have less than a share of its area. `lined`: the
+/// target's vertices in linings.
+std::vector<Lining> lacking_linings(const std::vector<Lining>& linings, const TriangleMesh& source,
+                                    const TriangleMesh& target, const std::vector<char>& lined,
+                                    const LiningSettings& settings);
 
 /// One surface twice, with the same faces; mesh units.
 struct LaidSurface {
@@ -21,12 +21,12 @@ struct LaidSurface {
   const Points& fitted;  ///< 3×n: its vertices where they are laid
 };
 
-/// Takes linings without counterpart where the space around them goes: each of which most vertices are
-/// hidden, by the warp |r|³ that takes places of the open surface around it where these are laid; what that
-/// leaves at its rim is spread over it. Following its neighbours along the surface, it would keep its shape,
-/// and come through a cheek that is thinner on the target. A lining without enough of the surface around it
-/// stays. `hidden`: n, without counterpart. Returns all vertices, 3×n. Throws SolverError.
-Points carried_by_space(const LaidSurface& laid, const Linings& linings, const std::vector<char>& hidden,
-                        const LiningSettings& settings);
+/// Takes linings where the space around them goes: each by the warp |r|³ that takes places of the open
+/// surface around it where these are laid; what that leaves at its rim is spread over it. Following its
+/// neighbours along the surface, it would keep its shape, and come through a cheek that is thinner on the
+/// target. A lining without enough of the surface around it stays. `lined`: n, the source's vertices in any
+/// lining. Returns all vertices, 3×n. Throws SolverError.
+Points carried_by_space(const LaidSurface& laid, const std::vector<Lining>& linings,
+                        const std::vector<char>& lined, const LiningSettings& settings);
 
 }  // namespace bespoke

@@ -125,10 +125,10 @@ NodeFit NodeFitting::fit_fine() {
   find_linings();
   const TargetSurface now = rest_.moved(fit_.vertices);
   fit_.hidden = vertices_in_lacking_cavities(now, input_.target, input_.diagonal, settings_.cavities);
-  const std::vector<char> lining = vertices_of_lacking_linings(fit_.linings, now.mesh(), input_.target.mesh(),
-                                                               target_lined_, settings_.linings);
-  for (std::size_t i = 0; i < lining.size(); ++i)
-    if (lining[i]) fit_.hidden[i] = 1;
+  fit_.lacking =
+      lacking_linings(fit_.linings.parts, now.mesh(), input_.target.mesh(), target_lined_, settings_.linings);
+  for (const Lining& lining : fit_.lacking)
+    for (const int vertex : lining.vertices) fit_.hidden[static_cast<std::size_t>(vertex)] = 1;
   silence(fit_.hidden, areas_);
   iterate(*many_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);

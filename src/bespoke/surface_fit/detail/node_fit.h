@@ -33,11 +33,12 @@ struct NodeFitInput {
 };
 
 struct NodeFit {
-  Points vertices;           ///< 3×n, of the deformed `rest`
-  Points coarse_vertices;    ///< 3×n, as the few nodes of the first level left them
-  Points anchor_sources;     ///< 3×k, carried along
-  Linings linings;           ///< of `rest`
-  std::vector<char> hidden;  ///< n: in a cavity or lining that the target lacks, without any pair
+  Points vertices;              ///< 3×n, of the deformed `rest`
+  Points coarse_vertices;       ///< 3×n, as the few nodes of the first level left them
+  Points anchor_sources;        ///< 3×k, carried along
+  Linings linings;              ///< of `rest`
+  std::vector<Lining> lacking;  ///< of them, those that the target lacks
+  std::vector<char> hidden;     ///< n: in a cavity or lining that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
   double rigidity = 1;  ///< g of the pair, as NodeFitting::fit_coarse tells it
