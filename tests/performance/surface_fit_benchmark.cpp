@@ -5,9 +5,11 @@
 
 #include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/linings.h"
 #include "bespoke/quality/bare_area.h"
 #include "bespoke/quality/surface_strain.h"
 #include "bespoke/surface_fit/surface_fit.h"
+#include "support/pocketed_ball.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -72,6 +74,15 @@ void bare(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(bare_area(target, laid, 0.035));
 }
 BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// The same, of either model: what lines cavities. A ball with a pocket, 2,834 vertices, subdivided.
+void linings(benchmark::State& state) {
+  TriangleMesh mesh = shapes::pocketed_ball();
+  for (int level = 0; level < state.range(0); ++level) mesh = shapes::subdivided(mesh);
+  for (auto _ : state) benchmark::DoNotOptimize(linings_of(mesh));
+  state.counters["vertices"] = static_cast<double>(mesh.vertices.cols());
+}
+BENCHMARK(linings)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk
 /// over the source that every fit takes.

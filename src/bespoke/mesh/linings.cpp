@@ -110,6 +110,7 @@ Linings linings_of(const TriangleMesh& mesh) {
   const auto is_enclosed = [&](int vertex) {
     return linings.contains[static_cast<std::size_t>(vertex)] != 0;
   };
+  if (std::count(linings.contains.begin(), linings.contains.end(), 0) == mesh.vertices.cols()) return linings;
   const MeshEdges table = mesh_edges(mesh);
   DisjointSets sets(static_cast<int>(mesh.vertices.cols()));
   for (const MeshEdge& edge : table.edges)

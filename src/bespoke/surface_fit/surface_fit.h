@@ -75,7 +75,8 @@ enum class StopReason {
 const char* to_string(StopReason reason);
 
 struct SurfaceFitSummary {
-  /// Distance of the warped source's vertices from the target surface, without what is excluded, mesh units.
+  /// Distance of the warped source's vertices from the target surface, without what is excluded or lies in
+  /// cavities that the target lacks, mesh units.
   Statistics before;
   Statistics after;  ///< the same for the fitted source
   int iterations = 0;
@@ -93,7 +94,8 @@ struct SurfaceFitSummary {
   /// How much more than other pairs the models keep their shape, 1 to 10; similarities of parts count by it.
   double rigidity = 1;
   int matched_boundaries = 0;  ///< open boundaries of the source taken for the target's cut
-  /// By index: in cavities that the target lacks (detail/cavities.h), so they follow their neighbours.
+  /// By index: in cavities that the target lacks, so they follow their neighbours (detail/cavities.h), or the
+  /// space around (detail/lacking_linings.h).
   std::vector<int> cavity_vertices;
   /// By index: without counterpart since a patch excludes it, or what lies nearest to it on the target.
   std::vector<int> excluded_vertices;

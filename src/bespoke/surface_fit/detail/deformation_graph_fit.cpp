@@ -173,11 +173,14 @@ std::vector<int> excluded_vertices(const SurfaceFitInput& input, const SurfaceFi
   return all;
 }
 
-/// Of what is not excluded, to what is not excluded.
+/// Of what is not excluded and not in a cavity that the target lacks, to what is not excluded.
 void measure_distances(const SurfaceFitInput& input, const TargetSurface& target, SurfaceFit& fit) {
+  const auto is_among = [](const std::vector<int>& ascending, int vertex) {
+    return std::binary_search(ascending.begin(), ascending.end(), vertex);
+  };
   std::vector<int> measured;
   for (int i = 0; i < input.source.vertices.cols(); ++i)
-    if (!std::binary_search(fit.summary.excluded_vertices.begin(), fit.summary.excluded_vertices.end(), i))
+    if (!is_among(fit.summary.excluded_vertices, i) && !is_among(fit.summary.cavity_vertices, i))
       measured.push_back(i);
   fit.summary.before = distances(target, input.warped_vertices(Eigen::all, measured));
   fit.summary.after = distances(target, fit.vertices(Eigen::all, measured));
