@@ -12,6 +12,7 @@
 #include "bespoke/alignment/detail/similarity_search.h"
 #include "bespoke/alignment/detail/surface_patches.h"
 #include "bespoke/error.h"
+#include "bespoke/mesh/linings.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -129,8 +130,12 @@ std::string to_string(const AlignmentSummary& summary) {
 Alignment align_models(const TriangleMesh& source, const TriangleMesh& target, const Progress& progress) {
   const Stopwatch watch;
   progress.step("alignment", 0, 0);
-  const SurfacePatches coarse_source = make_surface_patches(source, settings.coarse_patches);
-  const SurfacePatches coarse_target = make_surface_patches(target, settings.coarse_patches);
+  require_valid(source, "model to align");
+  require_valid(target, "model to align");
+  const std::vector<char> source_lined = linings_of(source).contains;
+  const std::vector<char> target_lined = linings_of(target).contains;
+  const SurfacePatches coarse_source = make_surface_patches(source, settings.coarse_patches, source_lined);
+  const SurfacePatches coarse_target = make_surface_patches(target, settings.coarse_patches, target_lined);
   const auto candidates = search_similarities(coarse_source, coarse_target, covering_rotations());
   progress.check();
   Alignment alignment;
@@ -139,8 +144,8 @@ Alignment align_models(const TriangleMesh& source, const TriangleMesh& target, c
   summary.misfit = std::numeric_limits<double>::infinity();
   if (candidates.empty()) return alignment;
 
-  const SurfacePatches fine_source = make_surface_patches(source, settings.patches);
-  const SurfacePatches fine_target = make_surface_patches(target, settings.patches);
+  const SurfacePatches fine_source = make_surface_patches(source, settings.patches, source_lined);
+  const SurfacePatches fine_target = make_surface_patches(target, settings.patches, target_lined);
   const auto deformed = deform_best(fine_source, fine_target, candidates, settings.finalists);
   progress.check();
   const PatchDeformation& best = deformed.front();

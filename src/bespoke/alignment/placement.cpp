@@ -52,23 +52,27 @@ double distortion_of(const TriangleMesh& source, const Points& placed) {
 
 }  // namespace
 
-PlacementFigures judge_placement(const TriangleMesh& source, const Points& placed,
-                                 const TriangleMesh& target) {
-  if (placed.cols() != source.vertices.cols())
+PlacementJudge::PlacementJudge(const TriangleMesh& source, const TriangleMesh& target)
+    : source_(source),
+      target_(target),
+      source_lined_(linings_of(source).contains),
+      target_areas_(open_areas(target, linings_of(target).contains)) {}
+
+PlacementFigures PlacementJudge::operator()(const Points& placed) const {
+  if (placed.cols() != source_.vertices.cols())
     throw InvalidInput(std::to_string(placed.cols()) + " places for " +
-                       std::to_string(source.vertices.cols()) + " vertices");
-  const TriangleMesh moved{placed, source.faces};
-  const Eigen::VectorXd areas = open_areas(moved, linings_of(source).contains);
-  const Eigen::VectorXd target_areas = open_areas(target, linings_of(target).contains);
-  const Eigen::VectorXd there = distances_from(target, placed);
-  const Eigen::VectorXd back = distances_from(moved, target.vertices);
-  const double unit = diagonal(target.vertices);
+                       std::to_string(source_.vertices.cols()) + " vertices");
+  const TriangleMesh moved{placed, source_.faces};
+  const Eigen::VectorXd areas = open_areas(moved, source_lined_);
+  const Eigen::VectorXd there = distances_from(target_, placed);
+  const Eigen::VectorXd back = distances_from(moved, target_.vertices);
+  const double unit = diagonal(target_.vertices);
   PlacementFigures figures;
   figures.distance =
-      (there.dot(areas) / areas.sum() + back.dot(target_areas) / target_areas.sum()) / 2 / unit;
+      (there.dot(areas) / areas.sum() + back.dot(target_areas_) / target_areas_.sum()) / 2 / unit;
   const Eigen::VectorXd near = (back.array() <= reach * unit).cast<double>();
-  figures.covered = near.dot(target_areas) / target_areas.sum();
-  figures.distortion = distortion_of(source, placed);
+  figures.covered = near.dot(target_areas_) / target_areas_.sum();
+  figures.distortion = distortion_of(source_, placed);
   return figures;
 }
 

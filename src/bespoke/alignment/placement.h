@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -21,9 +23,21 @@ struct PlacementFigures {
   static constexpr double settled = 1e-3;
 };
 
-/// `placed`: 3×n, where the source's vertices lie on the target, mesh units. Throws InvalidInput for unusable
-/// meshes or another number of vertices.
-PlacementFigures judge_placement(const TriangleMesh& source, const Points& placed,
-                                 const TriangleMesh& target);
+/// Judges placements of one source on one target.
+class PlacementJudge {
+ public:
+  /// The meshes must outlive it. Throws InvalidInput for unusable meshes.
+  PlacementJudge(const TriangleMesh& source, const TriangleMesh& target);
+
+  /// `placed`: 3×n, where the source's vertices lie on the target, mesh units. Throws InvalidInput for
+  /// another number of vertices.
+  PlacementFigures operator()(const Points& placed) const;
+
+ private:
+  const TriangleMesh& source_;
+  const TriangleMesh& target_;
+  std::vector<char> source_lined_;
+  Eigen::VectorXd target_areas_;  // n, of what lies in the open, mesh units squared
+};
 
 }  // namespace bespoke

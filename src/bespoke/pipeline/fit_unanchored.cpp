@@ -41,6 +41,7 @@ struct Scene {
   const TriangleMesh& target;  // in the source frame
   SurfaceFitOptions options;
   const TriangleMesh& target_in_place;
+  const PlacementJudge& judge;  // in the source frame
 };
 
 SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, const TriangleMesh& fixed,
@@ -56,7 +57,7 @@ SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, con
 Candidate fit_from(const Points& start, const Scene& scene, const Leads& leads, const Progress& progress) {
   Candidate candidate;
   candidate.surface = fit_surface_from(start, scene.source, scene.target, leads, scene.options, progress);
-  candidate.placement = judge_placement(scene.source, candidate.surface.vertices, scene.target);
+  candidate.placement = scene.judge(candidate.surface.vertices);
   return candidate;
 }
 
@@ -136,7 +137,8 @@ UnanchoredFit fit_unanchored(const TriangleMesh& source, const TriangleMesh& tar
     rules.boundaries = alignment.summary.same_boundaries ? BoundaryRule::matched : BoundaryRule::free;
 
   const Points similar = source_from_target * (alignment.target_from_source * source.vertices);
-  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target},
+  const PlacementJudge judge(source, target_in_source);
+  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target, judge},
                             fit.summary, progress);
   fit.surface = std::move(best.surface);
   fit.summary.alignment = alignment.summary;

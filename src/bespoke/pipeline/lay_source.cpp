@@ -106,12 +106,6 @@ Points laid_with_source(const FittedMapping& laid, const TriangleMesh& source, c
   return places;
 }
 
-PlacementFigures placement(const FittedMapping& laid, const LayInput& input) {
-  return judge_placement(input.source, laid_vertices(laid), input.target);
-}
-
-double misfit(const FittedMapping& laid, const LayInput& input) { return placement(laid, input).misfit(); }
-
 /// The source laid by its rated pairs without some of them.
 struct LayTrial {
   const LayInput& input;
@@ -140,13 +134,15 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   constexpr std::size_t few = 6;  // each is a surface fitting
   LayTrial trial{input, rated, judge, progress, result};
   const DisownAnchors disown = [&](const auto& left_out) { return trial.lay_without(left_out); };
-  const double trusting = misfit(result, input);
+  const PlacementJudge placement(input.source, input.target);
+  const auto misfit = [&](const FittedMapping& laid) { return placement(laid_vertices(laid)).misfit(); };
+  const double trusting = misfit(result);
 
   std::vector<LeftOutAnchor> disowned = disowned_anchors(doubted, disown);
-  double undoubted = misfit(trial.laid, input);
+  double undoubted = misfit(trial.laid);
   if (disowned.size() > 1 && disowned.size() <= few && undoubted > trusting) {
     disowned = disowned_anchors(disowned_alone(disowned, disown), disown);
-    undoubted = misfit(trial.laid, input);
+    undoubted = misfit(trial.laid);
   }
   if (disowned.empty() || undoubted > trusting) return rated;
 
@@ -155,7 +151,7 @@ RatedAnchors lay_by_undoubted(FittedMapping& result, const LayInput& input, cons
   const TakeBackAnchor take_back = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
     trial.lay_without(others);
     const std::vector<std::size_t> doubts = judge.doubted(laid_vertices(trial.laid), audit);
-    const double with_anchor = misfit(trial.laid, input);
+    const double with_anchor = misfit(trial.laid);
     if (std::binary_search(doubts.begin(), doubts.end(), anchor) || with_anchor > undoubted) return false;
     result = trial.laid;
     undoubted = with_anchor;
@@ -205,12 +201,13 @@ void lay_by_counterparts(FittedMapping& result, const LayInput& input, const Rat
   const Points places = laid_with_source(result, input.source, counterparts.sources);
   const auto elsewhere = ((places - counterparts.targets).colwise().norm().array() > far_off * sigma).count();
   if (elsewhere < 2) return;  // one alone may be mistaken
-  const PlacementFigures by_anchors = placement(result, input);
+  const PlacementJudge placement(input.source, input.target);
+  const PlacementFigures by_anchors = placement(laid_vertices(result));
   if (!is_in_doubt(by_anchors)) return;
 
   FittedMapping trial = result;
   lay_by_rated(trial, input, rated, progress, pairs_of(counterparts, sigma));
-  const bool taken = misfit(trial, input) < clearly_better * by_anchors.misfit();
+  const bool taken = placement(laid_vertices(trial)).misfit() < clearly_better * by_anchors.misfit();
   if (taken) result = std::move(trial);
   result.summary.counterparts = {static_cast<std::size_t>(counterparts.sources.cols()),
                                  static_cast<std::size_t>(elsewhere), taken, watch.seconds()};

@@ -8,7 +8,6 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/edge_refinement.h"
-#include "bespoke/mesh/linings.h"
 #include "bespoke/mesh/mesh_edges.h"
 
 namespace bespoke {
@@ -135,32 +134,41 @@ void add_moments(SurfacePatches& patches) {
   if (patches.axes.determinant() < 0) patches.axes.col(2) *= -1;
 }
 
+/// Of the refined vertices: a new one is flagged where both ends of its edge are. None where `flags` is
+/// empty.
+std::vector<char> refined_flags(std::vector<char> flags, const RefinedMesh& refined) {
+  flags.resize(static_cast<std::size_t>(refined.mesh.vertices.cols() - refined.parents.cols()), 0);
+  for (const auto& ends : refined.parents.colwise()) flags.push_back(flags[ends[0]] && flags[ends[1]]);
+  return flags;
+}
+
 }  // namespace
 
 double longest_edge_of_patches(const TriangleMesh& mesh, int count) {
   return std::sqrt(vertex_areas(mesh).sum() / count) / edges_per_spacing;
 }
 
-SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count) {
+SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& lined) {
   require_valid(mesh, "model to align");
   const double area = vertex_shares(mesh).areas.sum();
   if (!(area > 0)) throw InvalidInput("a model to align has no area");
   SurfacePatches patches;
   patches.spacing = std::sqrt(area / count);
-  const TriangleMesh fine = refine_long_edges(mesh, longest_edge_of_patches(mesh, count)).mesh;
+  const RefinedMesh refined = refine_long_edges(mesh, longest_edge_of_patches(mesh, count));
+  const TriangleMesh& fine = refined.mesh;
   const VertexShares shares = vertex_shares(fine);
   patches.patch_of_vertex = patches_of_vertices(fine.vertices, shares, count, normal_share * patches.spacing);
 
   const Eigen::Index size =
       1 + *std::max_element(patches.patch_of_vertex.begin(), patches.patch_of_vertex.end());
-  const std::vector<char> lined = linings_of(fine).contains;
+  const std::vector<char> fine_lined = refined_flags(lined, refined);
   patches.points = patches.normals = Points::Zero(3, size);
   patches.areas = patches.open_areas = Eigen::VectorXd::Zero(size);
   for (Eigen::Index i = 0; i < fine.vertices.cols(); ++i) {
     const int patch = patches.patch_of_vertex[static_cast<std::size_t>(i)];
     if (patch < 0) continue;
     patches.areas[patch] += shares.areas[i];
-    if (!lined[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
+    if (!fine_lined[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
     patches.points.col(patch) += shares.areas[i] * fine.vertices.col(i);
     patches.normals.col(patch) += shares.normals.col(i);
   }

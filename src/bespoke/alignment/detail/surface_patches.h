@@ -30,8 +30,9 @@ struct SurfacePatches {
 double longest_edge_of_patches(const TriangleMesh& mesh, int count);
 
 /// About `count` (≥ 4) patches, seeded one by one at the vertex farthest, in place and normal, from all seeds
-/// so far. Throws InvalidInput unless the mesh is valid and has area.
-SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count);
+/// so far. `lined`: n, the vertices that line cavities (linings.h), or empty for none. Throws InvalidInput
+/// unless the mesh is valid and has area.
+SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& lined = {});
 
 /// The patches of the mirror image (x ↦ −x, faces turned so that normals stay outward).
 SurfacePatches mirrored(SurfacePatches patches);
