@@ -51,6 +51,7 @@ TEST_F(FitRefusals, TakesNothingThatTheMethodsDoNotKnow) {
   const std::vector<std::vector<std::string>> options = {
       {"--guides", "all", "--elastic", "csrbf"},
       {"--guides", "steps", "--paper"},
+      {"--nodes", "balanced", "--voxel-size", "5%"},
       {"--boundaries", "free", "--surface-fit", "laplacian"},
       {"--max-stretch", "3", "--paper"},
       {"--elastic", "pffd", "--paper"},

@@ -260,7 +260,7 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
 
 // Halves of a step share what it had to say, and the voxels that the steps after them have left.
 TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
-  const TriangleMesh source = tubes(0), fitted = tubes(0.16);
+  const TriangleMesh source = tubes(0), fitted = tubes(0.2);
   MakeMapOptions options = default_options(diagonal(source.vertices));
   options.bake.max_leaves = 2500;
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options);

@@ -173,6 +173,7 @@ def test_interrupt_becomes_keyboard_interrupt(pair):
         ({"steps": 0}, "steps"),
         ({"guides": "some"}, "guides 'some'.*steps"),
         ({"guides": "all", "elastic": "csrbf"}, "guides: .*csrbf"),
+        ({"nodes": "balanced", "voxel_size": "5%"}, "nodes: .*uniform"),
         ({"max_stretch": 3, "surface_fit": "laplacian"}, "max_stretch: .*laplacian"),
         ({"paper": True, "elastic": "csrbf"}, "elastic: .*printed"),
         ({"anchors": (), "paper": True}, "paper: .*anchors"),

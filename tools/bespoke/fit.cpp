@@ -238,10 +238,16 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
          "more, those that fold when baked, or are foreseen to, are divided")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
+  add_name_option(
+      fit, "--nodes", arguments.nodes, node_values,
+      with_default("What the nodes of nested levels hold: the map's own values, or values between "
+                   "which interpolation errs as far to either side, in a third fewer voxels",
+                   name_of(node_values, defaults.bake.nodes)));
   fit.add_flag(
       "--paper", arguments.paper,
       "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, --path "
-      "euler, --steps 1, --contact-gap 0, --as-given, and pairs met exactly that have neither a sigma nor a "
+      "euler, --steps 1, --contact-gap 0, --nodes sampled, --as-given, and pairs met exactly that have "
+      "neither a sigma nor a "
       "weight");
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/bake/node_values.h"
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/elastic_map.h"
@@ -35,6 +36,7 @@ struct BakeOptions {
   /// Half precision stores 16 bits a number. Error, certificate and all decisions are about the rounded
   /// values.
   ValuePrecision precision = ValuePrecision::single;
+  NodeValues nodes = NodeValues::balanced;  ///< of a nested pyramid; one uniform level is sampled
 };
 
 struct BakeLevelSummary {

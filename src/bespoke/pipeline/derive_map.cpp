@@ -130,6 +130,7 @@ std::string recorded_options(Json json, const BakeOptions& options) {
   json["tolerance"] = options.tolerance;
   if (options.max_leaves) json["max_voxels"] = *options.max_leaves * leaf_nodes;
   if (options.precision == ValuePrecision::half) json["half"] = true;
+  json["nodes"] = name_of(node_values, options.nodes);
   return json.dump();
 }
 

@@ -47,7 +47,10 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
     json["max_voxels"] = *options.bake.max_leaves * leaf_nodes;
   if (options.fit.steps) json["steps"] = *options.fit.steps;
   if (options.bake.precision == ValuePrecision::half) json["half"] = true;
-  if (options.bake.voxel_size) json["voxel_size"] = *options.bake.voxel_size;
+  if (options.bake.voxel_size)
+    json["voxel_size"] = *options.bake.voxel_size;
+  else
+    json["nodes"] = name_of(node_values, options.bake.nodes);
   return json.dump();
 }
 

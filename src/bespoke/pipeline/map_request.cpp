@@ -18,6 +18,7 @@ void use_printed_method(MakeMapOptions& options) {
   options.path = RotationPath::euler;
   options.fit.steps = 1;
   options.fit.contact_gap = 0;
+  options.bake.nodes = NodeValues::sampled;
 }
 
 void set_lengths(const MapRequest& request, double source_diagonal, double octave, MakeMapOptions& options) {
@@ -59,6 +60,8 @@ std::optional<UnheededOption> against_paper(const MapRequest& request) {
 }
 
 std::optional<UnheededOption> unknown_to_methods(const MapRequest& request) {
+  if (request.nodes == NodeValues::balanced && request.voxel_size)
+    return UnheededOption{"nodes", "one uniform level, which a voxel size asks for, is sampled"};
   const FitOptions fit = make_options(request, 1).fit;
   const ElasticMethodRow& elastic = elastic_method(fit.elastic);
   if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
@@ -90,6 +93,7 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal, d
   // Who names a tolerance wants that one.
   if (request.tolerance || request.strict) options.bake.max_leaves.reset();
   if (request.max_memory) options.fit.max_memory = options.bake.max_memory = *request.max_memory;
+  if (request.nodes) options.bake.nodes = *request.nodes;
   if (request.half) options.bake.precision = ValuePrecision::half;
   options.keep_exact = request.keep_exact;
   return options;

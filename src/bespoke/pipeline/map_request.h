@@ -24,6 +24,7 @@ struct MapRequest {
   std::optional<Length> tolerance;
   std::optional<Length> fit_tolerance;
   std::optional<Length> voxel_size;
+  std::optional<NodeValues> nodes;
   std::optional<Length> contact_gap;
   std::optional<std::uint64_t> max_memory;  ///< bytes
   bool keep_exact = false;

@@ -37,6 +37,7 @@ class RequestReader {
     take("elastic", elastic_methods, request.elastic);
     take("guides", guided_maps, request.guides);
     take("path", rotation_paths, request.path);
+    take("nodes", node_values, request.nodes);
     take("max_stretch", request.max_stretch);
     take("steps", request.steps);
     take("max_memory", request.max_memory);

@@ -33,8 +33,8 @@ class AdaptiveBake {
         progress_(progress),
         builder_(std::make_unique<PyramidBuilder>(
             map,
-            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.max_leaves,
-                              options.surface, options.then, octave_of(map.affine()),
+            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.nodes,
+                              options.max_leaves, options.surface, options.then, octave_of(map.affine()),
                               options.then ? octave_of(options.then->affine()) : 1},
             progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bespoke/bake/detail/balanced_values.h"
 #include "bespoke/bake/detail/octant_test.h"
 #include "bespoke/mapping/affine_map.h"
 
@@ -15,33 +16,65 @@ constexpr std::uint64_t forecast_seed = 11;
 // Leaves that rims add to those that errors ask for (measured: 1.2 to 1.6 on the shared cases).
 constexpr double share_of_rims = 1.6;
 
-constexpr int coarse_edge = leaf_edge / 2 + 1;  // of an octant's nodes
+// Of an octant's coarse nodes and of those around them, by which they are balanced.
+constexpr int inner_edge = leaf_edge / 2 + 1;
+constexpr int coarse_edge = inner_edge + 2;
 constexpr int coarse_nodes = coarse_edge * coarse_edge * coarse_edge;
 constexpr int points_per_octant = coarse_nodes + tested_nodes;
+
+constexpr int coarse_number(const LatticeCoordinates& place) {
+  return (place[0] * coarse_edge + place[1]) * coarse_edge + place[2];
+}
+
+constexpr LatticeCoordinates coarse_place(int number) {
+  return {number / (coarse_edge * coarse_edge), number / coarse_edge % coarse_edge, number % coarse_edge};
+}
+
+constexpr bool is_inner(const LatticeCoordinates& place) {
+  return std::all_of(place.begin(), place.end(), [](int at) { return at > 0 && at <= inner_edge; });
+}
+
+// In the nodes of the octant's leaf.
+LatticeCoordinates coarse_node(int number) {
+  const LatticeCoordinates place = coarse_place(number);
+  return {2 * place[0] - 2, 2 * place[1] - 2, 2 * place[2] - 2};
+}
+
+// What balanced_values makes of the inner ones.
+Points balanced(const Eigen::Ref<const Points>& coarse) {
+  Points values = coarse;
+  for (int number = 0; number < coarse_nodes; ++number) {
+    const LatticeCoordinates place = coarse_place(number);
+    if (!is_inner(place) || coarse.col(number).isZero(0)) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      LatticeCoordinates step{};
+      step[axis] = 1;
+      const int to_next = coarse_number(step);
+      values.col(number) -= share_of_difference * (coarse.col(number - to_next) - 2 * coarse.col(number) +
+                                                   coarse.col(number + to_next));
+    }
+  }
+  return values;
+}
 
 // Mean of the coarse nodes around a node of the octant.
 Vector3 interpolated(const Eigen::Ref<const Points>& coarse, const LatticeCoordinates& node) {
   Vector3 sum = Vector3::Zero();
   for (int corner = 0; corner < 8; ++corner) {
     const LatticeCoordinates step = corner_step(corner);
-    int place = 0;
+    LatticeCoordinates place;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      place = place * coarse_edge + (node[axis] + (step[axis] & node[axis])) / 2;
-    sum += coarse.col(place);
+      place[axis] = 1 + (node[axis] + (step[axis] & node[axis])) / 2;
+    sum += coarse.col(coarse_number(place));
   }
   return sum / 8;
-}
-
-LatticeCoordinates coarse_node(int number) {
-  return {number / (coarse_edge * coarse_edge) * 2, number / coarse_edge % coarse_edge * 2,
-          number % coarse_edge * 2};
 }
 
 }  // namespace
 
 // `fine`: the lattice of the leaves that cover the octants.
 std::vector<double> LeafForecast::errors_of(const ElasticMap& map, const Lattice& fine,
-                                            const std::vector<Sample>& octants) {
+                                            const std::vector<Sample>& octants, NodeValues nodes) {
   Points x(3, static_cast<Eigen::Index>(points_per_octant * octants.size()));
   Eigen::Index column = 0;
   for (const Sample& octant : octants) {
@@ -54,8 +87,10 @@ std::vector<double> LeafForecast::errors_of(const ElasticMap& map, const Lattice
   std::vector<double> errors(octants.size());
   for (std::size_t n = 0; n < octants.size(); ++n) {
     const auto of_octant = u.middleCols<points_per_octant>(static_cast<Eigen::Index>(points_per_octant * n));
+    const Points sampled = of_octant.leftCols<coarse_nodes>();
+    const Points coarse = nodes == NodeValues::balanced ? balanced(sampled) : sampled;
     for (int test = 0; test < tested_nodes; ++test) {
-      const Vector3 expected = interpolated(of_octant.leftCols<coarse_nodes>(), tested_node(test));
+      const Vector3 expected = interpolated(coarse, tested_node(test));
       errors[n] = std::max(errors[n], (expected - of_octant.col(coarse_nodes + test)).norm());
     }
   }
@@ -89,7 +124,7 @@ std::vector<LeafForecast::Sample> LeafForecast::draw_octants(const std::vector<S
 }
 
 LeafForecast::LeafForecast(const ElasticMap& map, const Lattice& coarsest,
-                           const std::vector<LeafCoordinates>& band, double tolerance,
+                           const std::vector<LeafCoordinates>& band, double tolerance, NodeValues nodes,
                            const Progress& progress)
     : growth_(octave_of(map.affine())) {
   std::mt19937_64 engine(forecast_seed);
@@ -101,7 +136,7 @@ LeafForecast::LeafForecast(const ElasticMap& map, const Lattice& coarsest,
   for (; !refined.empty() && fine.voxel_size >= least_voxel(tolerance); fine.voxel_size /= 2) {
     progress.check();
     std::vector<Sample> octants = draw_octants(refined, engine);
-    const std::vector<double> errors = errors_of(map, fine, octants);
+    const std::vector<double> errors = errors_of(map, fine, octants, nodes);
     refined.clear();
     for (std::size_t n = 0; n < octants.size(); ++n) {
       octants[n].tolerance = std::min(octants[n].tolerance, errors[n] / test_margin);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/bake/band.h"
+#include "bespoke/bake/node_values.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
 
@@ -22,7 +23,7 @@ class LeafForecast {
  public:
   /// `band`: the leaves of the lattice `coarsest`. Evaluates the map at up to a million points or two.
   LeafForecast(const ElasticMap& map, const Lattice& coarsest, const std::vector<LeafCoordinates>& band,
-               double tolerance, const Progress& progress);
+               double tolerance, NodeValues nodes, const Progress& progress);
 
   /// Expected leaves at a tolerance (mesh units) not below the constructor's.
   double leaves(double tolerance) const;
@@ -42,7 +43,7 @@ class LeafForecast {
   };
   static std::vector<Sample> draw_octants(const std::vector<Sample>& leaves, std::mt19937_64& engine);
   std::vector<double> errors_of(const ElasticMap& map, const Lattice& fine,
-                                const std::vector<Sample>& octants);
+                                const std::vector<Sample>& octants, NodeValues nodes);
 
   double least_voxel(double tolerance) const { return least_voxel_of_tolerance * tolerance / growth_; }
 

@@ -12,10 +12,10 @@
 namespace bespoke {
 namespace {
 
-// Four arrays of values at most: the samples, a pyramid, the one that may replace it, and the stored sums
-// that the latter's residuals are taken against; coordinates, tables, and the index that the look-up needs
-// (measured: up to 8 entries of 112 bytes for a leaf that stands alone).
-constexpr std::size_t bytes_per_leaf = 4 * leaf_floats * sizeof(float) + 1500;
+// Five arrays of values at most: the samples, the values that balance them, a pyramid, the one that may
+// replace it, and the stored sums that the latter's residuals are taken against; coordinates, tables, and the
+// index that the look-up needs (measured: up to 8 entries of 112 bytes for a leaf that stands alone).
+constexpr std::size_t bytes_per_leaf = 5 * leaf_floats * sizeof(float) + 1500;
 constexpr std::size_t fixed_bytes = std::size_t{48} << 20;
 // Below this many leaves, and this share of the memory, a forecast costs more than it may save.
 constexpr std::size_t leaves_without_forecast = 4096;
@@ -46,7 +46,8 @@ void MemoryBudget::require_room_for(std::size_t leaves) {
 double MemoryBudget::expected_leaves() {
   if (band_.empty()) return 0;
   if (!forecast_)
-    forecast_ = std::make_shared<LeafForecast>(map_, coarsest_, band_, options_.tolerance, progress_);
+    forecast_ =
+        std::make_shared<LeafForecast>(map_, coarsest_, band_, options_.tolerance, options_.nodes, progress_);
   return forecast_->leaves(options_.tolerance);
 }
 

@@ -104,7 +104,8 @@ std::uint8_t OctantRefinement::octants_of_large_residuals(const SampledLevels& l
     const LatticeCoordinates place = place_of_number(node);
     x.col(node) = sampled.lattice(moved(first_node(sampled.leaves[leaf]), place));
     sum.col(node) = value_at(coarse, number_in_block(place));
-    exact.col(node) = Eigen::Map<const Eigen::Vector3f>(sampled.samples[leaf] + 3 * node).cast<double>();
+    exact.col(node) =
+        Eigen::Map<const Eigen::Vector3f>(sampled.samples[leaf]->data() + 3 * node).cast<double>();
   }
   const Eigen::VectorXd errors = errors_at(x, sum, exact);
   std::uint8_t octants = 0;

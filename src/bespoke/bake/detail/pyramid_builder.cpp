@@ -42,7 +42,7 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
       progress_(progress),
       coarsest_(coarsest_lattice(map.support())),
       band_(band_leaves(map.support(), coarsest_)),
-      levels_(coarsest_),
+      levels_(coarsest_, options.nodes),
       octants_(map, options, progress),
       budget_(map, coarsest_, band_, options, progress),
       reserve_(options.max_leaves.value_or(0) / share_for_folds) {

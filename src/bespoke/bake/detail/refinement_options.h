@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "bespoke/bake/node_values.h"
 #include "bespoke/lattice/pyramid.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/mesh/triangle_mesh.h"
@@ -13,6 +14,7 @@ struct RefinementOptions {
   double tolerance = 0;        ///< wanted largest |baked − exact|, > 0, mesh units
   std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
   ValuePrecision precision = ValuePrecision::single;
+  NodeValues nodes = NodeValues::balanced;
   std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
   const TriangleMesh* surface = nullptr;  ///< BakeOptions::surface
   const ElasticMap* then = nullptr;       ///< BakeOptions::then

@@ -9,7 +9,8 @@ namespace bespoke {
 namespace {
 
 // Of a leaf's nodes that touch the neighbour at this step.
-double largest_squared_residual(const float* u, const NodeBlock& coarse, const LatticeCoordinates& step) {
+double largest_squared_residual(const LeafValues& values, const NodeBlock& coarse,
+                                const LatticeCoordinates& step) {
   LatticeCoordinates from, to;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     from[axis] = step[axis] > 0 ? leaf_edge - 1 : 0;
@@ -19,7 +20,7 @@ double largest_squared_residual(const float* u, const NodeBlock& coarse, const L
   for (int i = from[0]; i <= to[0]; ++i)
     for (int j = from[1]; j <= to[1]; ++j)
       for (int k = from[2]; k <= to[2]; ++k)
-        largest = std::max(largest, squared_residual(u, coarse, {i, j, k}));
+        largest = std::max(largest, squared_residual(values, coarse, {i, j, k}));
   return largest;
 }
 
@@ -34,7 +35,7 @@ std::vector<LeafCoordinates> neighbours_beside(const SampledLevels& levels, std:
     if (!known) levels.coarse_sum_at(level, levels[level].leaves[leaf], coarse);
     known = true;
     const double residual =
-        largest_squared_residual(levels[level].samples[leaf], coarse, neighbour_step(side));
+        largest_squared_residual(*levels[level].values[leaf], coarse, neighbour_step(side));
     if (!(residual <= limit * limit)) neighbours.push_back(neighbour);
   }
   return neighbours;

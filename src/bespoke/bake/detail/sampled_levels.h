@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "bespoke/bake/detail/balanced_values.h"
+#include "bespoke/bake/node_values.h"
 #include "bespoke/lattice/finest_cells.h"
 #include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"
@@ -13,17 +15,19 @@ namespace bespoke {
 
 struct SampledLevel {
   Lattice lattice;
-  std::vector<LeafCoordinates> leaves;  ///< in the order they came
-  std::vector<const float*> samples;  ///< u at the nodes of each leaf, as PyramidLevel::values_of, mesh units
-  LeafTable table;                    ///< finds the leaves
+  std::vector<LeafCoordinates> leaves;                     ///< in the order they came
+  std::vector<std::shared_ptr<const LeafValues>> samples;  ///< u at the nodes of each leaf, mesh units
+  std::vector<std::shared_ptr<const LeafValues>> values;   ///< of the sum of the levels there
+  LeafTable table;                                         ///< finds the leaves
 };
 
-/// The leaves of a nested pyramid in the making with u at their nodes; not residuals, because these change
-/// whenever a coarser leaf comes. A leaf below level 0 lies inside a leaf of the level above. Copies share
-/// the samples, which are most of the memory.
+/// The leaves of a nested pyramid in the making with u at their nodes, and what the sum of the levels down to
+/// theirs is there; not residuals, because these change whenever a coarser leaf comes. The values follow from
+/// the leaves of a level, not from the order in which they came. A leaf below level 0 lies inside a leaf of
+/// the level above. Copies share samples and values, which are most of the memory.
 class SampledLevels {
  public:
-  explicit SampledLevels(const Lattice& coarsest) : coarsest_(coarsest) {}
+  SampledLevels(const Lattice& coarsest, NodeValues nodes) : coarsest_(coarsest), nodes_(nodes) {}
 
   std::size_t size() const { return levels_.size(); }
   const SampledLevel& operator[](std::size_t level) const { return levels_[level]; }
@@ -36,12 +40,14 @@ class SampledLevels {
   Lattice lattice(std::size_t level) const;
 
   /// `leaves`: none of them there yet, the level above there already. `samples`: u at their nodes in turn.
-  void append(std::size_t level, const std::vector<LeafCoordinates>& leaves, std::vector<float> samples);
+  void append(std::size_t level, const std::vector<LeafCoordinates>& leaves,
+              const std::vector<float>& samples);
 
-  /// The leaves of a level, in this order instead, with other values.
-  void replace(std::size_t level, std::vector<LeafCoordinates> leaves, std::vector<float> samples);
+  /// The leaves of a level, in this order instead, with other values and without samples.
+  void replace(std::size_t level, const std::vector<LeafCoordinates>& leaves,
+               const std::vector<float>& values);
 
-  /// The sum of the levels down to this one at the nodes of a leaf's block: u where there is a leaf,
+  /// The sum of the levels down to this one at the nodes of a leaf's block: its values where there is a leaf,
   /// interpolated from the levels above elsewhere.
   void sum_at(std::size_t level, const LeafCoordinates& leaf, NodeBlock& sum) const;
 
@@ -53,17 +59,19 @@ class SampledLevels {
   std::bitset<8> missing_in_block(std::size_t level, const LeafCoordinates& leaf) const;
 
  private:
-  using Batch = std::shared_ptr<const std::vector<float>>;
+  LeafSurroundings surroundings(const SampledLevel& level, std::size_t leaf) const;
+  void balance_from(SampledLevel& level, std::size_t first) const;
 
   Lattice coarsest_;
+  NodeValues nodes_;
   std::vector<SampledLevel> levels_;
-  std::vector<std::vector<Batch>> batches_;  // hold the samples, by level
 };
 
-/// |u − sum|² at a place of a leaf whose samples start at `u`.
-inline double squared_residual(const float* u, const NodeBlock& sum, const LatticeCoordinates& place) {
+/// |value − sum|² at a place of a leaf of these values.
+inline double squared_residual(const LeafValues& values, const NodeBlock& sum,
+                               const LatticeCoordinates& place) {
   const int node = number_in_block(place);
-  const float* value = u + 3 * number_of_place(place);
+  const float* value = values.data() + 3 * number_of_place(place);
   double squared = 0;
   for (int c = 0; c < 3; ++c) squared += (value[c] - sum[c][node]) * (value[c] - sum[c][node]);
   return squared;

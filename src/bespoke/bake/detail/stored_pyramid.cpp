@@ -22,10 +22,11 @@ double coarse_value(const NodeBlock& coarse, int node, int component) {
   return coarse[component][number_in_block(place_of_number(node))];
 }
 
-void store_residuals(const float* u, const NodeBlock& coarse, float* stored) {
+void store_residuals(const LeafValues& values, const NodeBlock& coarse, float* stored) {
   for (int node = 0; node < leaf_nodes; ++node)
     for (int c = 0; c < 3; ++c)
-      stored[3 * node + c] = static_cast<float>(u[3 * node + c] - coarse_value(coarse, node, c));
+      stored[3 * node + c] =
+          static_cast<float>(values[static_cast<std::size_t>(3 * node + c)] - coarse_value(coarse, node, c));
 }
 
 void add_residuals(const float* stored, const NodeBlock& coarse, float* sum) {
@@ -50,12 +51,12 @@ PyramidLevel store_level(SampledLevels& levels, std::size_t level, double tolera
     NodeBlock coarse;
     for (std::size_t n = begin; n < end; ++n) {
       levels.coarse_sum_at(level, stored.leaves[n], coarse);
-      store_residuals(from.samples[order[n]], coarse, stored.values_of(n));
+      store_residuals(*from.values[order[n]], coarse, stored.values_of(n));
       round_values({stored.values_of(n), leaf_floats}, tolerance, precision);
       if (!is_last) add_residuals(stored.values_of(n), coarse, &sums[leaf_floats * n]);
     }
   });
-  if (!is_last) levels.replace(level, stored.leaves, std::move(sums));
+  if (!is_last) levels.replace(level, stored.leaves, sums);
   return stored;
 }
 
