@@ -90,6 +90,22 @@ TEST(MendTurnedFaces, TakesBackWhatWasStretchedOrSqueezedTooFar) {
   }
 }
 
+// Each side of the ridge turned by less than the limit, but the two are folded onto each other.
+TEST(MendTurnedFaces, TakesBackAFoldThatTheShapeDoesNotHave) {
+  const TriangleMesh grid = shapes::square_grid(side);
+  const auto with_ridge = [&](double degrees) {
+    Points after = grid.vertices;
+    const double height = square * std::tan(degrees * std::numbers::pi / 180);
+    for (int k = 4; k <= 8; ++k) after(2, vertex_at(grid, 0.5, k * square)) = height;
+    return after;
+  };
+  const Points folded = with_ridge(50), bent = with_ridge(40);
+  EXPECT_GT(mend(grid, folded).mended_vertices, 0u);
+  EXPECT_LT(mend(grid, folded).vertices.row(2).maxCoeff(), 0.5 * folded.row(2).maxCoeff());
+  EXPECT_EQ(mend(grid, bent).vertices, bent);
+  EXPECT_EQ(mend_turned_faces({folded, grid, folded}).vertices, folded);
+}
+
 TEST(MendTurnedFaces, LeavesNoFaceTurnedInACrumpledPatch) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> shift(-1, 1);

@@ -49,7 +49,7 @@ void add_compose_command(CLI::App& app, const TakePlan& take) {
   add_derived_map_options(
       *compose, arguments->options,
       "Largest difference between the joined map and the two, mesh units or % of a's "
-      "bounding-box diagonal (default: the larger one of AB and BC, within 4.4 M voxels), doubled or halved "
+      "bounding-box diagonal (default: the larger one of AB and BC, within 4.2 M voxels), doubled or halved "
       "as often as c is twice or half as large");
   compose->footer(
       "Examples:\n"

@@ -17,7 +17,7 @@ void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& deriv
   std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
                 bake.error.max, derived.asset.record.tolerance);
   const std::string relaxed = "it was relaxed in " + std::to_string(bake.relaxed.size()) +
-                              " regions, to keep to 4.4 M voxels; --tolerance gives them more";
+                              " regions, to keep to 4.2 M voxels; --tolerance gives them more";
   context.warn(text + (bake.relaxed.empty() ? "a smaller --tolerance allows finer voxels" : relaxed));
 }
 

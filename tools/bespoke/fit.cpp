@@ -317,7 +317,7 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_flag(
       "--strict", arguments.strict,
       "Meet the tolerance everywhere or refuse, for want of memory; by default a map that would take more "
-      "than 4.4 M voxels keeps to these, and the regions where it misses the tolerance are named "
+      "than 4.2 M voxels keeps to these, and the regions where it misses the tolerance are named "
       "(implied by --tolerance)");
   fit.add_flag("--half", arguments.half, half_help);
   fit.add_flag("--keep-exact", arguments.keep_exact,

@@ -38,7 +38,7 @@ void add_invert_command(CLI::App& app, const TakePlan& take) {
   invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
   add_derived_map_options(*invert, arguments->options,
                           "Largest difference between the baked and the exact inverse, mesh units or % of "
-                          "the target's bounding-box diagonal (default: that of MAP, within 4.4 M voxels), "
+                          "the target's bounding-box diagonal (default: that of MAP, within 4.2 M voxels), "
                           "doubled or halved as often as the source is twice or half as large");
   invert->footer(
       "Examples:\n"

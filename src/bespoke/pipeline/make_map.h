@@ -14,7 +14,7 @@ inline constexpr double default_fit_tolerance = 0.0001;
 inline constexpr double default_contact_gap = 0.001;
 
 /// Of the pyramids of a map, all steps together: some 25 MB of file.
-inline constexpr std::size_t default_max_leaves = 8600;
+inline constexpr std::size_t default_max_leaves = 8200;
 
 struct MakeMapOptions {
   FitOptions fit;

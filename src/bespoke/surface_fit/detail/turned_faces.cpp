@@ -41,21 +41,32 @@ struct FaceNormals {
   double crease(Eigen::Index face) const { return angle(own.col(face), around.col(face)); }
 };
 
+/// Edges at which the faces are bent by more than a right angle.
+std::vector<char> folded_edges(const std::vector<Hinge>& edges, const Points& face_normals) {
+  std::vector<char> folded(edges.size());
+  for (std::size_t k = 0; k < edges.size(); ++k)
+    folded[k] = face_normals.col(edges[k].first).dot(face_normals.col(edges[k].second)) < 0;
+  return folded;
+}
+
 /// What became of a surface, face by face.
 class FaceChanges {
  public:
-  FaceChanges(const TriangleMesh& before, const MendingSettings& settings)
-      : before_(before),
-        normals_(before),
+  FaceChanges(const DrawnSurface& surface, const std::vector<Hinge>& edges, const MendingSettings& settings)
+      : before_(surface.before),
+        normals_(surface.before),
+        edges_(edges),
+        folded_shape_(folded_edges(edges, face_normals({surface.shape, surface.before.faces}))),
         most_turned_(settings.most_degrees * std::numbers::pi / 180),
         most_stretch_(settings.most_stretch) {}
 
   struct Bad {
-    std::vector<Eigen::Index> turned, stretched;  // a face that turned is not called stretched as well
-    std::size_t size() const { return turned.size() + stretched.size(); }
+    std::vector<Eigen::Index> turned, folded, stretched;  // a face is in the first that it could be in
+    std::size_t size() const { return turned.size() + folded.size() + stretched.size(); }
     bool empty() const { return size() == 0; }
     std::vector<Eigen::Index> all() const {
       std::vector<Eigen::Index> faces = turned;
+      faces.insert(faces.end(), folded.begin(), folded.end());
       faces.insert(faces.end(), stretched.begin(), stretched.end());
       return faces;
     }
@@ -64,10 +75,13 @@ class FaceChanges {
   /// A face without area has not turned.
   Bad bad(const Points& after) const {
     const FaceNormals normals({after, before_.faces});
+    const std::vector<char> is_folded = at_new_folds(normals.own);
     Bad found;
     for (Eigen::Index face = 0; face < before_.faces.cols(); ++face) {
       if (normals.has_area(face) && normals_.has_area(face) && turn(normals, face) > most_turned_)
         found.turned.push_back(face);
+      else if (is_folded[face])
+        found.folded.push_back(face);
       else if (stretch(after, face) > most_stretch_)
         found.stretched.push_back(face);
     }
@@ -75,6 +89,15 @@ class FaceChanges {
   }
 
  private:
+  /// Faces at edges that are folded now and are not in the shape.
+  std::vector<char> at_new_folds(const Points& normals) const {
+    const std::vector<char> folded = folded_edges(edges_, normals);
+    std::vector<char> faces(static_cast<std::size_t>(before_.faces.cols()), 0);
+    for (std::size_t k = 0; k < edges_.size(); ++k)
+      if (folded[k] && !folded_shape_[k]) faces[edges_[k].first] = faces[edges_[k].second] = 1;
+    return faces;
+  }
+
   /// Radians. A face that stood off the surface around it turns as that is smoothed, over no fold.
   double turn(const FaceNormals& after, Eigen::Index face) const {
     const double smoothed = std::max(0.0, normals_.crease(face) - after.crease(face));
@@ -105,6 +128,8 @@ class FaceChanges {
 
   const TriangleMesh& before_;
   FaceNormals normals_;
+  const std::vector<Hinge>& edges_;
+  std::vector<char> folded_shape_;
   double most_turned_, most_stretch_;
 };
 
@@ -178,7 +203,8 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
 
 /// Of the free vertices, those of patches that are bent no farther from their shape as mended than as drawn.
 /// A patch is connected along edges, and its faces are those with a corner in it.
-std::vector<int> no_farther_bent(const DrawnSurface& surface, const Points& mended, std::vector<int> free) {
+std::vector<int> no_farther_bent(const DrawnSurface& surface, const std::vector<Hinge>& edges,
+                                 const Points& mended, std::vector<int> free) {
   if (free.empty()) return free;
   constexpr int none = -1;
   constexpr double rounding = 1e-9;  // squared radians
@@ -194,7 +220,6 @@ std::vector<int> no_farther_bent(const DrawnSurface& surface, const Points& mend
       patches.join(vertex, free_corner[face]);
     }
 
-  const std::vector<Hinge> edges = hinges(surface.before);
   const std::vector<double> drawn_bends = bends(edges, faces, surface.shape, surface.after);
   const std::vector<double> mended_bends = bends(edges, faces, surface.shape, mended);
   std::vector<double> growth(is_free.size(), 0.0);  // of a patch, by its least vertex
@@ -214,7 +239,8 @@ std::vector<int> no_farther_bent(const DrawnSurface& surface, const Points& mend
 MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings) {
   const TriangleMesh& before = surface.before;
   const Points& after = surface.after;
-  const FaceChanges changes(before, settings);
+  const std::vector<Hinge> edges = hinges(before);
+  const FaceChanges changes(surface, edges, settings);
   const VertexAdjacency adjacency = vertex_adjacency(before);
   const FaceChanges::Bad drawn = changes.bad(after);
   const auto most_free = std::max(settings.released_at_least,
@@ -241,7 +267,7 @@ MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettin
     best_free = free.size();
   }
   free.resize(best_free);
-  free = no_farther_bent(surface, best, std::move(free));
+  free = no_farther_bent(surface, edges, best, std::move(free));
   MendedSurface result{after, free.size(), {}, 0};
   for (const int vertex : free) result.vertices.col(vertex) = best.col(vertex);
   result.turned_faces = changes.bad(result.vertices).turned.size();

@@ -23,14 +23,15 @@ struct MendedSurface {
   std::size_t turned_faces = 0;         ///< faces still turned
 };
 
-/// Where a face turned or was stretched or squeezed by more than the limits of the settings since before, its
-/// vertices give up their displacements and take the mean of their neighbours' (harmonic along the edges), in
-/// as many rings around the face as help and the settings allow, and as long as that is a small part of the
-/// vertices: where more has turned, mending would undo the fit. By as much as a face comes nearer to the
-/// surface around it, that of its corners' normals, it has not turned: the fit smooths what is crumpled on
-/// the source. A patch of such vertices stays as it was drawn, turned and stretched, where following would
-/// bend it farther from its shape (the sum of the squared bends of its edges, bends.h): there it is the
-/// smooth deformation that is folded, a nostril inside out, and measures nothing. Throws SolverError.
+/// Where a face turned or was stretched or squeezed by more than the limits of the settings since before, or
+/// is bent by more than a right angle at an edge at which it is not in the shape, its vertices give up their
+/// displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings around
+/// the face as help and the settings allow, and as long as that is a small part of the vertices: where more
+/// has turned, mending would undo the fit. By as much as a face comes nearer to the surface around it, that
+/// of its corners' normals, it has not turned: the fit smooths what is crumpled on the source. A patch of such
+/// vertices stays as it was drawn, turned and stretched, where following would bend it farther from its shape
+/// (the sum of the squared bends of its edges, bends.h): there it is the smooth deformation that is folded, a
+/// nostril inside out, and measures nothing. Throws SolverError.
 MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings = {});
 
 }  // namespace bespoke
