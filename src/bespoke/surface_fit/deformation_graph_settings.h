@@ -300,10 +300,11 @@ struct DetailSettings {
 
 /// Faces taken back (turned_faces.h), but for patches that this would bend farther. Without that exception,
 /// on 41 pairs of bodies, hands, feet and heads made afresh: x 1.006, and 707 flipped faces instead of 281,
-/// on heads whose nostrils and lids the coarse deformation had folded. Edges folded anew, by more than a right
-/// angle, are mended as well: on the shared pairs and 17 further ones flipped faces of the maps 49 without
-/// that, 31 with it (a noisy scan 9, 0; a squat 19, 17; anchors with 0.3 % noise 3, 1), errors x 1.000, d06
-/// x 1.003; from 60 and 75 degrees on, more faces flipped than without.
+/// on heads whose nostrils and lids the coarse deformation had folded. Edges folded anew, by
+/// more than a right angle, are mended as well: flipped faces of the maps of 17 further pairs 49 without
+/// that, 33 with it (a noisy scan 9, 0; a body 6, 3), of the shared ones 1, 0; anchors with 0.3 % noise 3, 1;
+/// five anchors 7, 4. Errors x 1.000, d06 x 1.003. From 60 and 75 degrees on: more faces flipped than
+/// without.
 struct MendingSettings {
   /// A face that turned farther against the coarse deformation was drawn to the wrong side of a fold. Flipped
   /// faces at 45, 50, 55, 60, 65 degrees: 9 5 2 2 2 on the shared cases, 47 45 73 99 110 on the further
