@@ -296,6 +296,10 @@ struct DetailSettings {
   double solver_residual = 1e-6;    ///< of the squared right-hand side: moves are met to a thousandth.
   double negligible_kernel = 1e-6;  ///< kernel values left out of the matrix, far below the ridge.
   double anchor_radius = 0.03;  ///< diagonals: λ of the last layer, which meets exact anchors. Not varied.
+  /// A layer meets them to a thousandth of its moves; where mending has taken one far from its place, another
+  /// follows until all are within this many diagonals, so many at most. Not varied.
+  double met = 1e-5;
+  int most_meetings = 4;
 };
 
 /// Faces taken back (turned_faces.h), but for patches that this would bend farther. Without that exception,

@@ -237,10 +237,14 @@ DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, 
 DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings) {
   DetailFit fit{input.surface.vertices, input.anchor_sources, 0, 0};
   if (fit.anchor_sources.cols() == 0) return fit;
-  Layer layer(settings.anchor_radius * input.diagonal, fit.anchor_sources,
-              input.anchor_targets - fit.anchor_sources, settings);
-  fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
-  fit.layers = 1;
+  Points moves = input.anchor_targets - fit.anchor_sources;
+  do {
+    Layer layer(settings.anchor_radius * input.diagonal, fit.anchor_sources, moves, settings);
+    fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
+    ++fit.layers;
+    moves = input.anchor_targets - fit.anchor_sources;
+  } while (fit.layers < settings.most_meetings &&
+           moves.colwise().norm().maxCoeff() > settings.met * input.diagonal);
   return fit;
 }
 
