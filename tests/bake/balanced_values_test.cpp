@@ -112,14 +112,14 @@ TEST(SampledLevels, HaveTheSameValuesInWhateverOrderLeavesCome) {
   };
   const std::vector<LeafCoordinates> leaves = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   const auto filled = [&](const std::vector<std::vector<LeafCoordinates>>& batches) {
-    SampledLevels levels({Vector3::Zero(), voxel}, NodeValues::balanced);
+    SampledLevels levels({Vector3::Zero(), voxel});
     for (const std::vector<LeafCoordinates>& batch : batches) {
       std::vector<float> samples;
       for (const LeafCoordinates& leaf : batch) {
         const LeafValues values = sampled(wave, leaf);
         samples.insert(samples.end(), values.begin(), values.end());
       }
-      levels.append(0, batch, samples);
+      levels.append(0, batch, samples, NodeValues::balanced);
     }
     return levels;
   };

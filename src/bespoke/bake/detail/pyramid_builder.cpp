@@ -42,7 +42,7 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
       progress_(progress),
       coarsest_(coarsest_lattice(map.support())),
       band_(band_leaves(map.support(), coarsest_)),
-      levels_(coarsest_, options.nodes),
+      levels_(coarsest_),
       octants_(map, options, progress),
       budget_(map, coarsest_, band_, options, progress),
       reserve_(options.max_leaves.value_or(0) / share_for_folds) {
@@ -175,7 +175,8 @@ std::optional<std::size_t> PyramidBuilder::first_level_of_unknown_rims() const {
   return std::nullopt;
 }
 
-// With the leaves above them, coarse ones first.
+// With the leaves above them, coarse ones first. What the finest voxels do not resolve bends by more than
+// second differences tell, and no finer level takes back what balancing adds there, so they are sampled.
 void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves) {
   leaves = unique_leaves(std::move(leaves));
   std::erase_if(leaves, [&](const LeafCoordinates& leaf) { return levels_.has(level, leaf); });
@@ -186,7 +187,8 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
     add(level - 1, std::move(parents));
   }
   budget_.require_room_for(levels_.leaf_count() + leaves.size());
-  levels_.append(level, leaves, sample_leaves(map_, levels_.lattice(level), leaves, progress_));
+  levels_.append(level, leaves, sample_leaves(map_, levels_.lattice(level), leaves, progress_),
+                 is_finest(level) ? NodeValues::sampled : options_.nodes);
   sampled_points_ += leaves.size() * leaf_nodes;
   looked_.resize(levels_.size());
   for (std::size_t finer = level; finer < levels_.size(); ++finer) looked_[finer].rims_known = false;

@@ -38,12 +38,12 @@ Lattice SampledLevels::lattice(std::size_t level) const {
 }
 
 void SampledLevels::append(std::size_t level, const std::vector<LeafCoordinates>& leaves,
-                           const std::vector<float>& samples) {
+                           const std::vector<float>& samples, NodeValues nodes) {
   while (levels_.size() <= level) levels_.push_back({lattice(levels_.size()), {}, {}, {}, {}});
   SampledLevel& to = levels_[level];
   const std::size_t first = to.leaves.size();
   put_leaves(leaves, samples, to, to.samples);
-  if (nodes_ == NodeValues::sampled)
+  if (nodes == NodeValues::sampled)
     to.values = to.samples;
   else
     balance_from(to, first);

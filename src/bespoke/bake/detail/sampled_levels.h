@@ -27,7 +27,7 @@ struct SampledLevel {
 /// the level above. Copies share samples and values, which are most of the memory.
 class SampledLevels {
  public:
-  SampledLevels(const Lattice& coarsest, NodeValues nodes) : coarsest_(coarsest), nodes_(nodes) {}
+  explicit SampledLevels(const Lattice& coarsest) : coarsest_(coarsest) {}
 
   std::size_t size() const { return levels_.size(); }
   const SampledLevel& operator[](std::size_t level) const { return levels_[level]; }
@@ -40,8 +40,9 @@ class SampledLevels {
   Lattice lattice(std::size_t level) const;
 
   /// `leaves`: none of them there yet, the level above there already. `samples`: u at their nodes in turn.
+  /// `nodes`: always the same for a level.
   void append(std::size_t level, const std::vector<LeafCoordinates>& leaves,
-              const std::vector<float>& samples);
+              const std::vector<float>& samples, NodeValues nodes);
 
   /// The leaves of a level, in this order instead, with other values and without samples.
   void replace(std::size_t level, const std::vector<LeafCoordinates>& leaves,
@@ -63,7 +64,6 @@ class SampledLevels {
   void balance_from(SampledLevel& level, std::size_t first) const;
 
   Lattice coarsest_;
-  NodeValues nodes_;
   std::vector<SampledLevel> levels_;
 };
 
