@@ -28,10 +28,10 @@ struct MendedSurface {
 /// displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings around
 /// the face as help and the settings allow, and as long as that is a small part of the vertices: where more
 /// has turned, mending would undo the fit. By as much as a face comes nearer to the surface around it, that
-/// of its corners' normals, it has not turned: the fit smooths what is crumpled on the source. A patch of such
-/// vertices stays as it was drawn, turned and stretched, where following would bend it farther from its shape
-/// (the sum of the squared bends of its edges, bends.h): there it is the smooth deformation that is folded, a
-/// nostril inside out, and measures nothing. Throws SolverError.
+/// of its corners' normals, it has not turned: the fit smooths what is crumpled on the source. A patch of
+/// such vertices stays as it was drawn, turned and stretched, where following would bend it farther from its
+/// shape (the sum of the squared bends of its edges, bends.h): there it is the smooth deformation that is
+/// folded, a nostril inside out, and measures nothing. Throws SolverError.
 MendedSurface mend_turned_faces(const DrawnSurface& surface, const MendingSettings& settings = {});
 
 }  // namespace bespoke
