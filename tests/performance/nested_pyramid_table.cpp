@@ -149,6 +149,7 @@ void print_case(const std::filesystem::path& directory) {
   const FittedMapping fitted = fit(pair);
   BakeOptions options;
   options.tolerance = 0.00025 * diagonal(pair.source.vertices);
+  options.nodes = NodeValues::sampled;  // as those of one level
   Stopwatch watch;
   BakeOptions with_surface = options;
   with_surface.surface = &pair.source;
