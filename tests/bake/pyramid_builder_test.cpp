@@ -36,17 +36,19 @@ Pyramid refined(const AnalyticMap& map, NodeValues nodes) {
   return builder.pyramid();
 }
 
-// Largest |baked − map| at a node of the pyramid, by component.
-double largest_error_at_nodes(const AnalyticMap& map, const Pyramid& pyramid) {
+// Largest |baked − map| at a node of the pyramid's levels from this one on, by component.
+double largest_error_at_nodes(const AnalyticMap& map, const Pyramid& pyramid, std::size_t first_level = 0) {
   const BakedMap baked({}, pyramid);
   double largest = 0;
-  for (const PyramidLevel& level : pyramid.levels)
+  for (std::size_t number = first_level; number < pyramid.levels.size(); ++number) {
+    const PyramidLevel& level = pyramid.levels[number];
     for (const LeafCoordinates& leaf : level.leaves) {
       Points x(3, leaf_nodes);
       for (int n = 0; n < leaf_nodes; ++n)
         x.col(n) = pyramid.origin + level.voxel_size * as_vector(moved(first_node(leaf), place_of_number(n)));
       largest = std::max(largest, (baked.displacement(x) - map.displacement(x)).cwiseAbs().maxCoeff());
     }
+  }
   return largest;
 }
 
@@ -65,6 +67,21 @@ TEST(PyramidBuilder, MeetsTheToleranceAtFewerNodesWhereTheyAreBalanced) {
   ASSERT_NO_THROW(require_valid(pyramid));
   EXPECT_LE(largest_error_at_nodes(map, pyramid), tolerance);
   EXPECT_LT(pyramid.leaf_count(), 0.8 * static_cast<double>(refined(map, NodeValues::sampled).leaf_count()));
+}
+
+// They do not resolve what is there, so that second differences tell nothing.
+TEST(PyramidBuilder, SamplesTheFinestVoxelsThatTheToleranceAllows) {
+  const AnalyticMap map({{Vector3::Zero(), 1.0, Vector3(0.1, 0.05, 0)},
+                         {Vector3(0.6, 0.1, 0), 0.2 * tolerance, Vector3(0, 50 * tolerance, 0)}});
+  const Progress progress;
+  PyramidBuilder builder(map, options(), progress);
+  builder.refine();
+  builder.refine_at(Vector3(0.6, 0.1, 0));
+  while (builder.pyramid().levels.back().voxel_size >= tolerance)
+    ASSERT_GT(builder.refine_at(Vector3(0.6, 0.1, 0)), 0u);
+  const Pyramid pyramid = builder.pyramid();
+  EXPECT_GE(pyramid.levels.back().voxel_size, tolerance / 2);
+  EXPECT_LT(largest_error_at_nodes(map, pyramid, pyramid.levels.size() - 1), tolerance / 64 + 1e-7);
 }
 
 TEST(PyramidBuilder, RefinesOnlyWhereTheDetailIs) {

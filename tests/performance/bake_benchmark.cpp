@@ -23,6 +23,19 @@ void BakeOfACheapMap(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * voxels));
 }
 
+// The same work for nested levels, by what their nodes hold.
+void NestedBakeOfACheapMap(benchmark::State& state, NodeValues nodes) {
+  const AnalyticMap map({{Vector3::Zero(), 1.0, Vector3(0.1, 0.05, -0.02)}});
+  BakeOptions options;
+  options.tolerance = 2e-5;
+  options.error_points = 1000;
+  options.nodes = nodes;
+  std::size_t voxels = 0;
+  for (auto _ : state) voxels = bake(map, options).pyramid.voxel_count();
+  state.counters["voxels"] = static_cast<double>(voxels);
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * voxels));
+}
+
 // Small balls all over a sphere, as the finest layers of a map leave them.
 void BandOfManySmallBalls(benchmark::State& state) {
   const Eigen::Index count = state.range(0);
@@ -45,6 +58,12 @@ BENCHMARK(BandOfManySmallBalls)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 BENCHMARK(BakeOfACheapMap)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(NestedBakeOfACheapMap, sampled, NodeValues::sampled)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
+BENCHMARK_CAPTURE(NestedBakeOfACheapMap, balanced, NodeValues::balanced)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace bespoke

@@ -247,8 +247,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
       "--paper", arguments.paper,
       "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, --path "
       "euler, --steps 1, --contact-gap 0, --nodes sampled, --as-given, and pairs met exactly that have "
-      "neither a sigma nor a "
-      "weight");
+      "neither a sigma nor a weight");
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "
                "joined, and a target that is inside out is turned over");

@@ -21,7 +21,7 @@ inline constexpr double least_voxel_of_tolerance = 0.5;
 /// passes.
 class LeafForecast {
  public:
-  /// `band`: the leaves of the lattice `coarsest`. Evaluates the map at up to a million points or two.
+  /// `band`: the leaves of the lattice `coarsest`. Evaluates the map at up to four million points.
   LeafForecast(const ElasticMap& map, const Lattice& coarsest, const std::vector<LeafCoordinates>& band,
                double tolerance, NodeValues nodes, const Progress& progress);
 

@@ -175,8 +175,7 @@ std::optional<std::size_t> PyramidBuilder::first_level_of_unknown_rims() const {
   return std::nullopt;
 }
 
-// With the leaves above them, coarse ones first. What the finest voxels do not resolve bends by more than
-// second differences tell, and no finer level takes back what balancing adds there, so they are sampled.
+// With the leaves above them, coarse ones first.
 void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves) {
   leaves = unique_leaves(std::move(leaves));
   std::erase_if(leaves, [&](const LeafCoordinates& leaf) { return levels_.has(level, leaf); });
@@ -188,10 +187,16 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
   }
   budget_.require_room_for(levels_.leaf_count() + leaves.size());
   levels_.append(level, leaves, sample_leaves(map_, levels_.lattice(level), leaves, progress_),
-                 is_finest(level) ? NodeValues::sampled : options_.nodes);
+                 nodes_of(level));
   sampled_points_ += leaves.size() * leaf_nodes;
   looked_.resize(levels_.size());
   for (std::size_t finer = level; finer < levels_.size(); ++finer) looked_[finer].rims_known = false;
+}
+
+// What the finest voxels do not resolve bends by more than second differences tell, and no finer level takes
+// back what balancing adds there: a cell of a head folded, which no leaf could mend.
+NodeValues PyramidBuilder::nodes_of(std::size_t level) const {
+  return is_finest(level) ? NodeValues::sampled : options_.nodes;
 }
 
 bool PyramidBuilder::is_finest(std::size_t level) const {

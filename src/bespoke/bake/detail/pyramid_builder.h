@@ -21,6 +21,7 @@ namespace bespoke {
 ///
 /// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
 /// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
+/// Nodes hold what RefinementOptions::nodes says, those of the smallest voxels u.
 ///
 /// With RefinementOptions::max_leaves refinement stops there: once they might not suffice for a level, what
 /// is left goes to the largest errors of all levels, and, in turn, to the largest of errors times voxel
@@ -82,6 +83,7 @@ class PyramidBuilder {
   std::optional<std::size_t> first_untested_level() const;
   std::optional<std::size_t> first_level_of_unknown_rims() const;
   std::vector<WantedLeaf> leaves_wanted_at(const Vector3& x) const;
+  NodeValues nodes_of(std::size_t level) const;
   bool is_finest(std::size_t level) const;
 
   const ElasticMap& map_;

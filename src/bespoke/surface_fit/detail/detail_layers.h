@@ -33,7 +33,8 @@ struct DetailFit {
 /// centres, but those nearer to another than the centres are apart.
 DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress);
 
-/// One layer that carries the exact anchors onto their targets and vanishes a short way off.
+/// A layer that carries the exact anchors onto their targets and vanishes a short way off, and others after
+/// it while these are missed by more than DetailSettings::met.
 DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings = {});
 
 }  // namespace bespoke

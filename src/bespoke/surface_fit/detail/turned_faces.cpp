@@ -42,10 +42,10 @@ struct FaceNormals {
 };
 
 /// Edges at which the faces are bent by more than a right angle.
-std::vector<char> folded_edges(const std::vector<Hinge>& edges, const Points& face_normals) {
+std::vector<char> folded_edges(const std::vector<Hinge>& edges, const Points& normals) {
   std::vector<char> folded(edges.size());
   for (std::size_t k = 0; k < edges.size(); ++k)
-    folded[k] = face_normals.col(edges[k].first).dot(face_normals.col(edges[k].second)) < 0;
+    folded[k] = normals.col(edges[k].first).dot(normals.col(edges[k].second)) < 0;
   return folded;
 }
 
