@@ -25,6 +25,13 @@ Vector3 point_of_unit_cube(std::mt19937_64& engine) {
   return {x, y, z};
 }
 
+struct Corner {
+  Vector3 place;
+  FinestCell cell;
+  bool in_a_leaf;
+  double cell_size;  ///< of a leaf, where there is none
+};
+
 class CellFinder {
  public:
   explicit CellFinder(const Pyramid& pyramid) : pyramid_(pyramid) {
@@ -44,8 +51,11 @@ class CellFinder {
     }
   }
 
-  bool is_in_a_leaf(const FinestCell& cell) const {
-    return cell.level > 0 || tables_.front().find(leaf_of(cell.node)) != no_leaf;
+  Corner corner(const Vector3& place) const {
+    const FinestCell cell = find(place);
+    const bool in_a_leaf = cell.level > 0 || tables_.front().find(leaf_of(cell.node)) != no_leaf;
+    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cell.level)].voxel_size;
+    return {place, cell, in_a_leaf, in_a_leaf ? voxel_size : leaf_edge * voxel_size};
   }
 
  private:
@@ -53,21 +63,17 @@ class CellFinder {
   std::vector<LeafTable> tables_;
 };
 
-struct Corner {
-  Vector3 place;
-  double cell_size;
-};
 using Triangle = std::array<Corner, 3>;
 
 /// Adds the cells along a triangle: its longest edge is halved until it is no longer than the finest voxel at
 /// its corners, or than a leaf where there is none: a step of fine layers may have leaves in few places.
 class CellsAlong {
  public:
-  CellsAlong(const Pyramid& pyramid, const CellFinder& finder, std::vector<FinestCell>& cells)
-      : pyramid_(pyramid), finder_(finder), cells_(cells) {}
+  CellsAlong(const CellFinder& finder, std::vector<FinestCell>& cells) : finder_(finder), cells_(cells) {}
 
-  void add(const Vector3& a, const Vector3& b, const Vector3& c) {
-    parts_.push_back({corner(a), corner(b), corner(c)});
+  void add(const Triangle& triangle) {
+    for (const Corner& corner : triangle) add_cell(corner);
+    parts_.push_back(triangle);
     while (!parts_.empty()) {
       const Triangle part = parts_.back();
       parts_.pop_back();
@@ -76,13 +82,9 @@ class CellsAlong {
   }
 
  private:
-  Corner corner(const Vector3& place) {
-    const FinestCell cell = finder_.find(place);
-    const double voxel_size = pyramid_.levels[static_cast<std::size_t>(cell.level)].voxel_size;
-    if (!finder_.is_in_a_leaf(cell)) return {place, leaf_edge * voxel_size};
-    // Neighbours along the surface mostly share one.
-    if (cells_.empty() || cells_.back() != cell) cells_.push_back(cell);
-    return {place, voxel_size};
+  // Neighbours along the surface mostly share one.
+  void add_cell(const Corner& corner) {
+    if (corner.in_a_leaf && (cells_.empty() || cells_.back() != corner.cell)) cells_.push_back(corner.cell);
   }
 
   void split_if_longer(const Triangle& triangle) {
@@ -97,14 +99,14 @@ class CellsAlong {
     }
     if (!(squared > finest * finest)) return;
     const std::size_t next = (longest + 1) % 3;
-    const Corner middle = corner(0.5 * (triangle[longest].place + triangle[next].place));
+    const Corner middle = finder_.corner(0.5 * (triangle[longest].place + triangle[next].place));
+    add_cell(middle);
     for (const std::size_t replaced : {next, longest}) {
       parts_.push_back(triangle);
       parts_.back()[replaced] = middle;
     }
   }
 
-  const Pyramid& pyramid_;
   const CellFinder& finder_;
   std::vector<FinestCell>& cells_;
   std::vector<Triangle> parts_;
@@ -138,17 +140,22 @@ std::vector<FinestCell> finest_cells_at(const Pyramid& pyramid, const Points& at
 std::vector<FinestCell> finest_cells_on(const Pyramid& pyramid, const TriangleMesh& surface) {
   if (pyramid.levels.empty()) return {};
   const CellFinder finder(pyramid);
-  const auto faces = static_cast<std::size_t>(surface.faces.cols());
   constexpr std::size_t grain = 1024;
+  std::vector<Corner> corners(static_cast<std::size_t>(surface.vertices.cols()));
+  parallel_for(corners.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      corners[i] = finder.corner(surface.vertices.col(static_cast<Eigen::Index>(i)));
+  });
+  const auto faces = static_cast<std::size_t>(surface.faces.cols());
   std::vector<std::vector<FinestCell>> found((faces + grain - 1) / grain);
   parallel_for(faces, grain, [&](std::size_t begin, std::size_t end) {
     std::vector<FinestCell>& cells = found[begin / grain];
-    CellsAlong along(pyramid, finder, cells);
+    CellsAlong along(finder, cells);
     for (std::size_t face = begin; face < end; ++face) {
       const auto corner = [&](int n) {
-        return Vector3(surface.vertices.col(surface.faces(n, static_cast<Eigen::Index>(face))));
+        return corners[static_cast<std::size_t>(surface.faces(n, static_cast<Eigen::Index>(face)))];
       };
-      along.add(corner(0), corner(1), corner(2));
+      along.add({corner(0), corner(1), corner(2)});
     }
     sort_unique(cells);
   });

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <numeric>
+#include <span>
 #include <utility>
 
 namespace bespoke {
@@ -43,13 +43,14 @@ Box bounds_of(const Node& node) {
 
 class Builder {
  public:
-  explicit Builder(const std::vector<Box>& boxes) : boxes_(boxes), order_(boxes.size()) {
-    std::iota(order_.begin(), order_.end(), 0);
+  explicit Builder(const std::vector<Box>& boxes) {
+    items_.reserve(boxes.size());
+    for (const Box& box : boxes) items_.push_back({box, box.center(), static_cast<int>(items_.size())});
   }
 
   BoxTree build() && {
     std::vector<Node> nodes(1);
-    std::vector<std::pair<std::size_t, Range>> pending{{0, {0, static_cast<int>(order_.size()), 0}}};
+    std::vector<std::pair<std::size_t, Range>> pending{{0, {0, static_cast<int>(items_.size()), 0}}};
     while (!pending.empty()) {
       const auto [node, range] = pending.back();
       pending.pop_back();
@@ -65,18 +66,27 @@ class Builder {
         nodes.emplace_back();
       }
     }
-    return {std::move(nodes), std::move(order_)};
+    std::vector<int> order(items_.size());
+    std::transform(items_.begin(), items_.end(), order.begin(), [](const Item& item) { return item.index; });
+    return {std::move(nodes), std::move(order)};
   }
 
  private:
-  Vector3 center(int at) const {
-    return boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(at)])].center();
+  /// What is sorted: walks over a range read one stretch of memory.
+  struct Item {
+    Box box;
+    Vector3 center;
+    int index;
+  };
+
+  std::span<Item> items(const Range& range) {
+    return std::span(items_).subspan(static_cast<std::size_t>(range.begin),
+                                     static_cast<std::size_t>(range.size()));
   }
 
-  Box bounds(const Range& range) const {
+  Box bounds(const Range& range) {
     Box box;
-    for (int i = range.begin; i < range.end; ++i)
-      box.extend(boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])]);
+    for (const Item& item : items(range)) box.extend(item.box);
     return box;
   }
 
@@ -102,36 +112,36 @@ class Builder {
 
   // By the surface-area heuristic over bins of the centres along their longest axis.
   int split(const Range& range) {
+    const std::span<Item> all = items(range);
     Box centers;
-    for (int i = range.begin; i < range.end; ++i) centers.extend(center(i));
+    for (const Item& item : all) centers.extend(item.center);
     int axis = 0;
     const double extent = centers.diagonal().maxCoeff(&axis);
     if (!(extent > 0)) return range.begin + range.size() / 2;
     if (range.depth >= balanced_from) {
-      const int middle = range.begin + range.size() / 2;
-      std::nth_element(order_.begin() + range.begin, order_.begin() + middle, order_.begin() + range.end,
-                       [&](int x, int y) { return key(x, axis) < key(y, axis); });
-      return middle;
+      const int half = range.size() / 2;
+      std::nth_element(all.begin(), all.begin() + half, all.end(),
+                       [&](const Item& x, const Item& y) { return x.center(axis) < y.center(axis); });
+      return range.begin + half;
     }
-    const auto bin = [&](int box) {
-      const double share = (key(box, axis) - centers.min()(axis)) / extent;
+    const auto bin = [&](const Item& item) {
+      const double share = (item.center(axis) - centers.min()(axis)) / extent;
       return std::clamp(static_cast<int>(share * bins), 0, bins - 1);
     };
-    const int cut = best_cut(range, bin);
-    const auto middle = std::partition(order_.begin() + range.begin, order_.begin() + range.end,
-                                       [&](int box) { return bin(box) < cut; });
-    return static_cast<int>(middle - order_.begin());
+    const int cut = best_cut(all, bin);
+    const auto middle =
+        std::partition(all.begin(), all.end(), [&](const Item& item) { return bin(item) < cut; });
+    return range.begin + static_cast<int>(middle - all.begin());
   }
 
   // Between 1 and bins − 1: the first and the last bin are never empty.
   template <class Bin>
-  int best_cut(const Range& range, const Bin& bin) const {
+  static int best_cut(std::span<const Item> items, const Bin& bin) {
     std::array<Box, bins> bounds_of_bin;
     std::array<int, bins> count{};
-    for (int i = range.begin; i < range.end; ++i) {
-      const int box = order_[static_cast<std::size_t>(i)];
-      const auto at = static_cast<std::size_t>(bin(box));
-      bounds_of_bin[at].extend(boxes_[static_cast<std::size_t>(box)]);
+    for (const Item& item : items) {
+      const auto at = static_cast<std::size_t>(bin(item));
+      bounds_of_bin[at].extend(item.box);
       ++count[at];
     }
     std::array<double, bins> cost{};
@@ -152,10 +162,7 @@ class Builder {
     return static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
   }
 
-  double key(int box, int axis) const { return boxes_[static_cast<std::size_t>(box)].center()(axis); }
-
-  const std::vector<Box>& boxes_;
-  std::vector<int> order_;  ///< in the order of the leaves
+  std::vector<Item> items_;  ///< in the order of the leaves
 };
 
 }  // namespace

@@ -67,7 +67,8 @@ struct EdgePoint {
   double share;  ///< of the edge's end
 };
 
-EdgePoint closest_on_edge(const Vector3& from, const Vector3& to, double inverse, const Vector3& x) {
+[[gnu::always_inline]] inline EdgePoint closest_on_edge(const Vector3& from, const Vector3& to,
+                                                        double inverse, const Vector3& x) {
   const Vector3 along = to - from;
   const double share = along.dot(x - from) * inverse;
   if (!(share > 0)) return {from, 0};
@@ -118,12 +119,11 @@ std::vector<Box> valid_face_boxes(const TriangleMesh& mesh) {
 
 }  // namespace
 
-ClosestPointTree::ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh) {
+ClosestPointTree::ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh, const Points& normals) {
   constexpr std::size_t grain = 1024;
   auto tree = std::make_unique<Tree>();
   tree->triangles.resize(boxes.order.size());
   tree->normals.resize(boxes.order.size());
-  const Points normals = face_normals(mesh);
   parallel_for(boxes.order.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const int face = boxes.order[k];
@@ -137,16 +137,20 @@ ClosestPointTree::ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh) {
 }
 
 ClosestPointTree::ClosestPointTree(const TriangleMesh& mesh)
-    : ClosestPointTree(build_box_tree(valid_face_boxes(mesh)), mesh) {}
+    : ClosestPointTree(build_box_tree(valid_face_boxes(mesh)), mesh, face_normals(mesh)) {}
 
 ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh) const {
+  return moved(mesh, face_normals(mesh));
+}
+
+ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh, const Points& face_normals) const {
   const std::vector<Box> places = valid_face_boxes(mesh);
   if (places.size() != tree_->boxes.order.size())
     throw InvalidInput("a closest-point tree over " + std::to_string(tree_->boxes.order.size()) +
                        " faces cannot move to a mesh of " + std::to_string(places.size()));
   BoxTree boxes = tree_->boxes;
   refit(boxes, places);
-  return ClosestPointTree(std::move(boxes), mesh);
+  return ClosestPointTree(std::move(boxes), mesh, face_normals);
 }
 
 ClosestPointTree::~ClosestPointTree() = default;

@@ -145,8 +145,9 @@ Points face_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-Points vertex_normals(const TriangleMesh& mesh) {
-  const Points of_faces = face_normals(mesh);
+Points vertex_normals(const TriangleMesh& mesh) { return vertex_normals(mesh, face_normals(mesh)); }
+
+Points vertex_normals(const TriangleMesh& mesh, const Points& of_faces) {
   Points corner_angles(3, mesh.faces.cols());  // 0 where the face has no area
   for_each_face(mesh, [&](Eigen::Index face) {
     for (int k = 0; k < 3; ++k) {

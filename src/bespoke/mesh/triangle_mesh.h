@@ -52,6 +52,9 @@ Points face_normals(const TriangleMesh& mesh);
 /// 3×n unit normals, one per vertex, faces weighted by the angle at the vertex; zero where undefined.
 Points vertex_normals(const TriangleMesh& mesh);
 
+/// The same where face_normals() of the mesh are known.
+Points vertex_normals(const TriangleMesh& mesh, const Points& of_faces);
+
 /// n: a third of the area of the faces around each vertex, mesh units squared.
 Eigen::VectorXd vertex_areas(const TriangleMesh& mesh);
 

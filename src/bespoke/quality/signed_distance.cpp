@@ -49,7 +49,7 @@ struct SignedDistance::Surface {
       : tree(mesh),
         joined(joined_at_equal_positions(mesh)),
         normals(face_normals(joined)),
-        at_vertices(vertex_normals(joined)),
+        at_vertices(vertex_normals(joined, normals)),
         vertex_on_boundary(boundary_vertices(joined)),
         at_edges(edge_normals(joined, normals)) {}
 

@@ -44,7 +44,7 @@ class ContactSearch {
   /// In the order of the vertices.
   std::vector<Contact> operator()(const TriangleMesh& fitted) const {
     const ClosestPointTree tree(fitted);
-    const Points normals = vertex_normals(fitted), facing = face_normals(fitted);
+    const Points facing = face_normals(fitted), normals = vertex_normals(fitted, facing);
     std::vector<std::optional<Contact>> found(static_cast<std::size_t>(fitted.vertices.cols()));
     constexpr std::size_t grain = 256;
     parallel_for(found.size(), grain, [&](std::size_t begin, std::size_t end) {

@@ -65,7 +65,7 @@ double Measurement::near_worst(Pyramid& pyramid) {
 }
 
 double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
-  const std::vector<FinestCell> cells = surface_cells(pyramid);
+  const std::vector<FinestCell>& cells = surface_cells(pyramid);
   Points x = points_in_cells(pyramid, cells, recorded_surface_points * options_.error_points, ++seed_);
   const Points random = random_points(band_lattice_, band_, options_.error_points, ++seed_);
   summary.surface_cells = cells.size();
@@ -80,8 +80,14 @@ double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
 
 void Measurement::widen_worst() { worst_share_ *= worst_share; }
 
-std::vector<FinestCell> Measurement::surface_cells(const Pyramid& pyramid) const {
-  return options_.surface ? finest_cells_on(pyramid, *options_.surface) : cells_in_all_leaves(pyramid, seed_);
+const std::vector<FinestCell>& Measurement::surface_cells(const Pyramid& pyramid) {
+  if (!options_.surface) {
+    surface_cells_ = cells_in_all_leaves(pyramid, seed_);
+  } else if (pyramid.leaf_count() != leaves_of_cells_) {
+    surface_cells_ = finest_cells_on(pyramid, *options_.surface);
+    leaves_of_cells_ = pyramid.leaf_count();
+  }
+  return surface_cells_;
 }
 
 // One point a cell, as far as the limit allows.

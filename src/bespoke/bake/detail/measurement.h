@@ -33,7 +33,8 @@ class Measurement {
   void widen_worst();
 
  private:
-  std::vector<FinestCell> surface_cells(const Pyramid& pyramid) const;
+  /// The same as long as the pyramid has the same number of leaves: leaves come, and none goes.
+  const std::vector<FinestCell>& surface_cells(const Pyramid& pyramid);
   double search(Pyramid& pyramid, const std::vector<FinestCell>& cells);
   double measure(Pyramid& pyramid, const Points& x);
 
@@ -43,6 +44,8 @@ class Measurement {
   const BakeOptions& options_;
   const Progress& progress_;
   std::uint64_t seed_;
+  std::vector<FinestCell> surface_cells_;
+  std::size_t leaves_of_cells_ = 0;
   double worst_share_;  // of the tolerance, above which points are among the worst
   std::vector<double> errors_;
   Points worst_;

@@ -2,8 +2,12 @@
 
 namespace bespoke {
 
+bool may_be_creased(const FoundPair& pair) {
+  return (pair.match.point - pair.point).dot(pair.match.halfway) > 0;
+}
+
 double crease(const FoundPair& pair, double claimed) {
-  if (!((pair.match.point - pair.point).dot(pair.match.halfway) > 0)) return 0;
+  if (!may_be_creased(pair)) return 0;
   const double bent = 1 - claimed * claimed;
   return bent * bent;
 }

@@ -4,6 +4,9 @@
 
 namespace bespoke {
 
+/// Whether the match is in front of the asking surface; crease() is 0 where it is not.
+bool may_be_creased(const FoundPair& pair);
+
 /// How sharply the asking surface is creased under a pair with this claimed share (reciprocity.h, sought over
 /// the whole distance of the point), 0 to 1: (1 − claimed²)². At the bottom of a wedge of angle 2α, with the
 /// match on the bisector, cos⁴ α. 0 where the surface is flat or bulges, and where the match is behind it. An

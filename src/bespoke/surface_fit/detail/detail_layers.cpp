@@ -83,13 +83,18 @@ class Layer {
     return sum;
   }
 
-  double gradient_norm(const Vector3& x) const {
+  /// displacement(x), and ‖∇u(x)‖.
+  Vector3 displacement(const Vector3& x, double& gradient_norm) const {
+    Vector3 sum = Vector3::Zero();
     Matrix3 gradient = Matrix3::Zero();
     grid_.for_each_within(x, lambda_, [&](int j, double squared) {
-      const double slope = WendlandC4::slope_over_s(std::sqrt(squared) / lambda_) / (lambda_ * lambda_);
+      const double s = std::sqrt(squared) / lambda_;
+      const double slope = WendlandC4::slope_over_s(s) / (lambda_ * lambda_);
+      sum += WendlandC4::value(s) * coefficients_.col(j);
       gradient += coefficients_.col(j) * (slope * (x - centers_.col(j))).transpose();
     });
-    return gradient.norm();
+    gradient_norm = gradient.norm();
+    return sum;
   }
 
  private:
@@ -188,21 +193,19 @@ Samples sample(const DetailStep& step) {
 /// Moves vertices and anchors; root mean square of the vertices' displacements.
 double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchors) {
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
-  const double steepest = parallel_reduce(
-      count, layer_grain, 0.0,
-      [&](std::size_t begin, std::size_t end) {
-        double largest = 0;
-        for (std::size_t i = begin; i < end; ++i)
-          largest = std::max(largest, layer.gradient_norm(vertices.col(static_cast<Eigen::Index>(i))));
-        return largest;
-      },
-      [](double a, double b) { return std::max(a, b); });
-  if (steepest > max_gradient) layer.scale(max_gradient / steepest);
   Points step(3, vertices.cols());
+  Eigen::VectorXd gradient_norms(vertices.cols());
   parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
     for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
-      step.col(i) = layer.displacement(vertices.col(i));
+      step.col(i) = layer.displacement(vertices.col(i), gradient_norms[i]);
   });
+  if (const double steepest = gradient_norms.maxCoeff(); steepest > max_gradient) {
+    layer.scale(max_gradient / steepest);
+    parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
+        step.col(i) = layer.displacement(vertices.col(i));
+    });
+  }
   for (auto&& anchor : anchors.colwise()) anchor += layer.displacement(anchor);
   vertices += step;
   return std::sqrt(step.squaredNorm() / double(count));

@@ -39,6 +39,14 @@ double sinking(const Search& search, const FoundPair& pair, int source_vertex) {
   return stands_out ? (*certainty)[source_vertex] : 0;
 }
 
+/// The claimed share as far as the pair depends on it; 1 beyond.
+double claimed_as_far_as_asked(const Search& search, const FoundPair& pair, double sunk) {
+  const ReciprocitySettings& settings = search.settings.reciprocity;
+  if (may_be_creased(pair)) return claimed_share(pair, search.asking(), 1, settings);
+  if (!search.level.reciprocity && sunk == 0) return 1;
+  return claimed_share(pair, search.asking(), settings.much_nearer, settings);
+}
+
 /// Which vertex of the source shall go where, as the asking vertex found.
 PlanePair pair_of(const Search& search, Eigen::Index asking_vertex, const SurfaceMatch& match) {
   PlanePair pair{.vertex = static_cast<int>(asking_vertex), .point = match.point, .normal = match.halfway};
@@ -68,9 +76,10 @@ void append_pairs(const Search& search, std::vector<PlanePair>& pairs) {
       if (!match) continue;
       found[k] = pair_of(search, i, *match);
       const FoundPair pair{points.col(i), *match, limits};
-      const double claimed = claimed_share(pair, search.asking(), 1, settings);
+      const double sunk = sinking(search, pair, found[k].vertex);
+      const double claimed = claimed_as_far_as_asked(search, pair, sunk);
       const double fading = reciprocity(claimed, settings);
-      found[k].leeway = fading * std::max(crease(pair, claimed), sinking(search, pair, found[k].vertex));
+      found[k].leeway = fading * std::max(crease(pair, claimed), sunk);
       found[k].weight = search.share() * search.areas()[i] * double(stride) * match->agreement *
                         match->agreement * (search.level.reciprocity ? fading : 1);
     }

@@ -37,29 +37,31 @@ std::map<int, TargetSurface::Part> TargetSurface::parts_of(const TriangleMesh& m
   return parts;
 }
 
-TargetSurface::TargetSurface(TriangleMesh mesh, Part whole, std::map<int, Part> parts,
-                             std::shared_ptr<const VertexPatches> vertex_patches)
+TargetSurface::TargetSurface(TriangleMesh mesh, const Points& face_normals, Part whole,
+                             std::map<int, Part> parts, std::shared_ptr<const VertexPatches> vertex_patches)
     : mesh_(std::move(mesh)),
       whole_(std::move(whole)),
       parts_(std::move(parts)),
       vertex_patches_(std::move(vertex_patches)),
-      normals_(vertex_normals(mesh_)),
+      normals_(vertex_normals(mesh_, face_normals)),
       areas_(vertex_areas(mesh_)) {}
 
 TargetSurface::TargetSurface(TriangleMesh mesh, const FacePatches& patches)
-    : TargetSurface(mesh, part_of(mesh, {}), parts_of(mesh, patches),
+    : TargetSurface(mesh, face_normals(mesh), part_of(mesh, {}), parts_of(mesh, patches),
                     std::make_shared<const VertexPatches>(bespoke::vertex_patches(mesh, patches))) {}
 
-TargetSurface::Part TargetSurface::Part::moved(const Points& vertices) const {
-  return {extent, tree.moved({vertices, extent->faces})};
+TargetSurface::Part TargetSurface::Part::moved(const TriangleMesh& mesh, const Points& face_normals) const {
+  if (extent->numbers.empty()) return {extent, tree.moved(mesh, face_normals)};
+  return {extent, tree.moved({mesh.vertices, extent->faces}, face_normals(Eigen::all, extent->numbers))};
 }
 
 TargetSurface TargetSurface::moved(Points vertices) const {
+  TriangleMesh mesh{std::move(vertices), mesh_.faces};
+  const Points normals = face_normals(mesh);
   std::map<int, Part> parts;
-  for (const auto& [patch, part] : parts_) parts.emplace(patch, part.moved(vertices));
-  Part whole = whole_.moved(vertices);
-  return TargetSurface({std::move(vertices), mesh_.faces}, std::move(whole), std::move(parts),
-                       vertex_patches_);
+  for (const auto& [patch, part] : parts_) parts.emplace(patch, part.moved(mesh, normals));
+  Part whole = whole_.moved(mesh, normals);
+  return TargetSurface(std::move(mesh), normals, std::move(whole), std::move(parts), vertex_patches_);
 }
 
 std::optional<int> TargetSurface::patch(Eigen::Index vertex) const {

@@ -31,7 +31,7 @@ struct FaceNormals {
 
   explicit FaceNormals(const TriangleMesh& mesh)
       : own(face_normals(mesh)), around(Points::Zero(3, mesh.faces.cols())) {
-    const Points corners = vertex_normals(mesh);
+    const Points corners = vertex_normals(mesh, own);
     for (Eigen::Index face = 0; face < around.cols(); ++face)
       for (const int vertex : mesh.faces.col(face)) around.col(face) += corners.col(vertex);
   }
