@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
+#include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
@@ -20,6 +22,21 @@ TEST(Summarize, ReportsOnlyValuesOfTheSample) {
   EXPECT_EQ(statistics.p95, 95);
   EXPECT_EQ(statistics.p99, 99);
   EXPECT_EQ(statistics.max, 100);
+}
+
+TEST(Summarize, AgreesWithTheRanksOfTheSortedValues) {
+  std::mt19937_64 engine(1);
+  for (std::size_t count = 1; count < 250; ++count) {
+    std::vector<double> values(count);
+    for (double& value : values) value = static_cast<double>(engine() % 100);  // with ties
+    const std::vector<double> sorted = sorted_finite(values);
+    const Statistics statistics = summarize(values);
+    EXPECT_EQ(statistics.min, sorted.front());
+    EXPECT_EQ(statistics.median, nearest_rank(sorted, 0.5));
+    EXPECT_EQ(statistics.p95, nearest_rank(sorted, 0.95));
+    EXPECT_EQ(statistics.p99, nearest_rank(sorted, 0.99));
+    EXPECT_EQ(statistics.max, sorted.back());
+  }
 }
 
 TEST(Summarize, OfNothingCountsZero) { EXPECT_EQ(summarize({}).count, 0u); }

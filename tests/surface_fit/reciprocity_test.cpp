@@ -59,6 +59,19 @@ TEST(Reciprocity, IsWholeOfAPointOnItsMatch) {
   EXPECT_EQ(reciprocity(1, half_as_far), 1);
 }
 
+TEST(Reciprocity, NeedsNoClaimBeyondMuchNearer) {
+  const TargetSurface answering(plane_at(0));
+  const Vector3 point = centre + upwards;
+  const SurfaceMatch match = *answering.match(point, upwards, within_one);
+  for (const double height : {0.1, 0.4, 0.5, 0.6, 0.9}) {
+    const TargetSurface asking(shapes::joined(plane_at(1), plane_at(height)));
+    const auto found = [&](double share) {
+      return reciprocity(claimed_share({point, match, within_one}, asking, share, half_as_far), half_as_far);
+    };
+    EXPECT_EQ(found(half_as_far.much_nearer), found(1)) << height;
+  }
+}
+
 TEST(ClaimedShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
   const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
   const Vector3 point = centre + upwards;

@@ -33,6 +33,13 @@ std::vector<FinestCell> cells_in_all_leaves(const Pyramid& pyramid, std::uint64_
   return finest_cells_at(pyramid, x);
 }
 
+// Level by level.
+std::vector<std::vector<LeafCoordinates>> leaves_of(const Pyramid& pyramid) {
+  std::vector<std::vector<LeafCoordinates>> all;
+  for (const PyramidLevel& level : pyramid.levels) all.push_back(level.leaves);
+  return all;
+}
+
 // Each cell with the 26 around it.
 std::vector<FinestCell> with_neighbours(const Pyramid& pyramid, const std::vector<FinestCell>& cells) {
   Points centers(3, static_cast<Eigen::Index>(neighbour_steps * cells.size()));
@@ -83,9 +90,10 @@ void Measurement::widen_worst() { worst_share_ *= worst_share; }
 const std::vector<FinestCell>& Measurement::surface_cells(const Pyramid& pyramid) {
   if (!options_.surface) {
     surface_cells_ = cells_in_all_leaves(pyramid, seed_);
-  } else if (pyramid.leaf_count() != leaves_of_cells_) {
+  } else if (std::vector<std::vector<LeafCoordinates>> leaves = leaves_of(pyramid);
+             leaves != leaves_of_cells_) {
     surface_cells_ = finest_cells_on(pyramid, *options_.surface);
-    leaves_of_cells_ = pyramid.leaf_count();
+    leaves_of_cells_ = std::move(leaves);
   }
   return surface_cells_;
 }

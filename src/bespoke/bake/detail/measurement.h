@@ -33,7 +33,7 @@ class Measurement {
   void widen_worst();
 
  private:
-  /// The same as long as the pyramid has the same number of leaves: leaves come, and none goes.
+  /// Sought anew where the pyramid has other leaves than the last.
   const std::vector<FinestCell>& surface_cells(const Pyramid& pyramid);
   double search(Pyramid& pyramid, const std::vector<FinestCell>& cells);
   double measure(Pyramid& pyramid, const Points& x);
@@ -45,7 +45,7 @@ class Measurement {
   const Progress& progress_;
   std::uint64_t seed_;
   std::vector<FinestCell> surface_cells_;
-  std::size_t leaves_of_cells_ = 0;
+  std::vector<std::vector<LeafCoordinates>> leaves_of_cells_;
   double worst_share_;  // of the tolerance, above which points are among the worst
   std::vector<double> errors_;
   Points worst_;
