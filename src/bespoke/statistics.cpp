@@ -8,7 +8,6 @@
 #include "bespoke/error.h"
 
 namespace bespoke {
-
 namespace {
 
 void require_finite(const std::vector<double>& values) {

@@ -143,14 +143,14 @@ ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh) const {
   return moved(mesh, face_normals(mesh));
 }
 
-ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh, const Points& face_normals) const {
+ClosestPointTree ClosestPointTree::moved(const TriangleMesh& mesh, const Points& of_faces) const {
   const std::vector<Box> places = valid_face_boxes(mesh);
   if (places.size() != tree_->boxes.order.size())
     throw InvalidInput("a closest-point tree over " + std::to_string(tree_->boxes.order.size()) +
                        " faces cannot move to a mesh of " + std::to_string(places.size()));
   BoxTree boxes = tree_->boxes;
   refit(boxes, places);
-  return ClosestPointTree(std::move(boxes), mesh, face_normals);
+  return ClosestPointTree(std::move(boxes), mesh, of_faces);
 }
 
 ClosestPointTree::~ClosestPointTree() = default;

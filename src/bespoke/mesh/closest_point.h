@@ -54,8 +54,8 @@ class ClosestPointTree {
   /// For the mesh this was built from with its vertices elsewhere: the same answers as a new tree, made in a
   /// fraction of the time, and slower to ask the more the mesh was deformed. Throws as the constructor.
   ClosestPointTree moved(const TriangleMesh& mesh) const;
-  /// The same where face_normals() of the mesh are known.
-  ClosestPointTree moved(const TriangleMesh& mesh, const Points& face_normals) const;
+  /// The same where face_normals() of the mesh are known: 3×m.
+  ClosestPointTree moved(const TriangleMesh& mesh, const Points& of_faces) const;
 
   /// Empty when no face satisfies the query. Throws InvalidInput when x is not finite or max_distance is not
   /// at least 0.

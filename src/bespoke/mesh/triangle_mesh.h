@@ -52,7 +52,7 @@ Points face_normals(const TriangleMesh& mesh);
 /// 3×n unit normals, one per vertex, faces weighted by the angle at the vertex; zero where undefined.
 Points vertex_normals(const TriangleMesh& mesh);
 
-/// The same where face_normals() of the mesh are known.
+/// The same where face_normals() of the mesh are known: 3×m.
 Points vertex_normals(const TriangleMesh& mesh, const Points& of_faces);
 
 /// n: a third of the area of the faces around each vertex, mesh units squared.

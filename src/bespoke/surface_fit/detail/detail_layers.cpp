@@ -75,16 +75,12 @@ class Layer {
 
   void scale(double factor) { coefficients_ *= factor; }
 
-  Vector3 displacement(const Vector3& x) const {
-    Vector3 sum = Vector3::Zero();
-    grid_.for_each_within(x, lambda_, [&](int j, double squared) {
-      sum += WendlandC4::value(std::sqrt(squared) / lambda_) * coefficients_.col(j);
-    });
-    return sum;
-  }
+  struct Jet {
+    Vector3 displacement;
+    double gradient_norm;  // ‖∇u(x)‖
+  };
 
-  /// displacement(x), and ‖∇u(x)‖.
-  Vector3 displacement(const Vector3& x, double& gradient_norm) const {
+  Jet operator()(const Vector3& x) const {
     Vector3 sum = Vector3::Zero();
     Matrix3 gradient = Matrix3::Zero();
     grid_.for_each_within(x, lambda_, [&](int j, double squared) {
@@ -93,8 +89,7 @@ class Layer {
       sum += WendlandC4::value(s) * coefficients_.col(j);
       gradient += coefficients_.col(j) * (slope * (x - centers_.col(j))).transpose();
     });
-    gradient_norm = gradient.norm();
-    return sum;
+    return {sum, gradient.norm()};
   }
 
  private:
@@ -195,18 +190,21 @@ double apply(Layer& layer, double max_gradient, Points& vertices, Points& anchor
   const std::size_t count = static_cast<std::size_t>(vertices.cols());
   Points step(3, vertices.cols());
   Eigen::VectorXd gradient_norms(vertices.cols());
-  parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
-    for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
-      step.col(i) = layer.displacement(vertices.col(i), gradient_norms[i]);
-  });
+  const auto look = [&] {
+    parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
+      for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+        const Layer::Jet jet = layer(vertices.col(i));
+        step.col(i) = jet.displacement;
+        gradient_norms[i] = jet.gradient_norm;
+      }
+    });
+  };
+  look();
   if (const double steepest = gradient_norms.maxCoeff(); steepest > max_gradient) {
     layer.scale(max_gradient / steepest);
-    parallel_for(count, layer_grain, [&](std::size_t begin, std::size_t end) {
-      for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i)
-        step.col(i) = layer.displacement(vertices.col(i));
-    });
+    look();
   }
-  for (auto&& anchor : anchors.colwise()) anchor += layer.displacement(anchor);
+  for (auto&& anchor : anchors.colwise()) anchor += layer(anchor).displacement;
   vertices += step;
   return std::sqrt(step.squaredNorm() / double(count));
 }

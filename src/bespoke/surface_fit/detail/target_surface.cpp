@@ -37,22 +37,22 @@ std::map<int, TargetSurface::Part> TargetSurface::parts_of(const TriangleMesh& m
   return parts;
 }
 
-TargetSurface::TargetSurface(TriangleMesh mesh, const Points& face_normals, Part whole,
-                             std::map<int, Part> parts, std::shared_ptr<const VertexPatches> vertex_patches)
+TargetSurface::TargetSurface(TriangleMesh mesh, const Points& of_faces, Part whole, std::map<int, Part> parts,
+                             std::shared_ptr<const VertexPatches> vertex_patches)
     : mesh_(std::move(mesh)),
       whole_(std::move(whole)),
       parts_(std::move(parts)),
       vertex_patches_(std::move(vertex_patches)),
-      normals_(vertex_normals(mesh_, face_normals)),
+      normals_(vertex_normals(mesh_, of_faces)),
       areas_(vertex_areas(mesh_)) {}
 
 TargetSurface::TargetSurface(TriangleMesh mesh, const FacePatches& patches)
     : TargetSurface(mesh, face_normals(mesh), part_of(mesh, {}), parts_of(mesh, patches),
                     std::make_shared<const VertexPatches>(bespoke::vertex_patches(mesh, patches))) {}
 
-TargetSurface::Part TargetSurface::Part::moved(const TriangleMesh& mesh, const Points& face_normals) const {
-  if (extent->numbers.empty()) return {extent, tree.moved(mesh, face_normals)};
-  return {extent, tree.moved({mesh.vertices, extent->faces}, face_normals(Eigen::all, extent->numbers))};
+TargetSurface::Part TargetSurface::Part::moved(const TriangleMesh& mesh, const Points& of_faces) const {
+  if (extent->numbers.empty()) return {extent, tree.moved(mesh, of_faces)};
+  return {extent, tree.moved({mesh.vertices, extent->faces}, of_faces(Eigen::all, extent->numbers))};
 }
 
 TargetSurface TargetSurface::moved(Points vertices) const {

@@ -76,12 +76,12 @@ class TargetSurface {
     std::shared_ptr<const Extent> extent;
     ClosestPointTree tree;
 
-    Part moved(const TriangleMesh& mesh, const Points& face_normals) const;
+    Part moved(const TriangleMesh& mesh, const Points& of_faces) const;
     bool ends_at(const SurfacePoint& found) const;
   };
   using VertexPatches = std::vector<std::optional<int>>;
 
-  TargetSurface(TriangleMesh mesh, const Points& face_normals, Part whole, std::map<int, Part> parts,
+  TargetSurface(TriangleMesh mesh, const Points& of_faces, Part whole, std::map<int, Part> parts,
                 std::shared_ptr<const VertexPatches> vertex_patches);
   static Part part_of(const TriangleMesh& mesh, std::vector<int> numbers);
   static std::map<int, Part> parts_of(const TriangleMesh& mesh, const FacePatches& patches);
