@@ -367,6 +367,15 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
 }
 
+TEST_F(FitCommand, RefusesADirectoryAsItsOutputBeforeAnyWork) {
+  std::filesystem::create_directory(pair_.file("folder.vdb"));
+  const ProgramResult fit = pair_.fit("folder.vdb");
+  EXPECT_EQ(fit.exit_code, 4);
+  EXPECT_THAT(fit.err, HasSubstr("folder.vdb: is a directory"));
+  EXPECT_THAT(fit.out, IsEmpty());
+  EXPECT_TRUE(std::filesystem::is_empty(pair_.file("folder.vdb")));
+}
+
 TEST_F(FitCommand, RefusesAnchorsOfTheOtherDirection) {
   json anchors = read_json("anchors.json");
   for (json& anchor : anchors["pairs"]) std::swap(anchor["a"], anchor["b"]);

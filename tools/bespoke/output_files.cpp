@@ -41,8 +41,11 @@ void require_safe_outputs(const std::vector<fs::path>& inputs, const std::vector
       throw CLI::ValidationError(output.string(), "is an input of this run and would be overwritten");
     if (!written.insert(own).second)
       throw CLI::ValidationError(output.string(), "would be written twice; give each output its own name");
+    if (writes_are_held()) continue;
+    if (fs::is_directory(output))
+      throw FileError(output.string() + ": is a directory; give the output the name of a file");
     const fs::path directory = output.parent_path();
-    if (!directory.empty() && !writes_are_held() && !fs::is_directory(directory))
+    if (!directory.empty() && !fs::is_directory(directory))
       throw FileError(output.string() + ": the directory " + directory.string() + " does not exist");
   }
 }
