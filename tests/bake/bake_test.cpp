@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
@@ -176,6 +177,9 @@ TEST(Bake, RefusesValuesOutOfRange) {
     options.voxel_size = bad;
     EXPECT_THROW(bake(two_bumps(), options), InvalidInput);
     options.voxel_size.reset();
+    options.most_face_turn = bad;
+    EXPECT_THROW(bake(two_bumps(), options), InvalidInput);
+    options.most_face_turn = 180;
   }
 }
 
@@ -332,6 +336,79 @@ TEST(Bake, SpendsFewLeavesNearTheSurfaceFirst) {
     return (baked.displacement(x) - map.displacement(x)).colwise().norm().mean();
   };
   EXPECT_LT(error(here), 0.5 * error(there));
+}
+
+// A surface across a bump that is hardly larger than the tolerance, and much narrower than another.
+struct SteepPlace {
+  AnalyticMap map{{{Vector3::Zero(), 1.0, Vector3(0.1, 0.05, -0.02)},
+                   {Vector3(0.3, 0.2, 0), 6e-3, Vector3(0, 0, 2.2e-3)}},
+                  some_affine()};
+  TriangleMesh surface = shapes::square_grid(20);
+  BakeOptions options;
+
+  SteepPlace() {
+    surface.vertices = (0.02 * surface.vertices).colwise() + Vector3(0.29, 0.19, 0);
+    options.tolerance = 1e-3;
+    options.error_points = 50000;
+    options.surface = &surface;
+  }
+
+  std::size_t turned_faces(const Pyramid& pyramid, double degrees) const {
+    const auto normals = [&](const ElasticMap& by) {
+      return face_normals({by(surface.vertices), surface.faces});
+    };
+    const Eigen::VectorXd cosines =
+        normals(BakedMap(map.affine(), pyramid)).cwiseProduct(normals(map)).colwise().sum();
+    return static_cast<std::size_t>((cosines.array() < std::cos(degrees * std::numbers::pi / 180)).count());
+  }
+};
+
+// The tolerance alone leaves small faces turned by any angle.
+TEST(Bake, TurnsNoFaceOfTheSurfaceFartherThanAsked) {
+  SteepPlace place;
+  place.options.most_face_turn = 180;
+  const Bake by_tolerance = bake(place.map, place.options);
+  ASSERT_TRUE(by_tolerance.summary.tolerance_met);
+  for (const double degrees : {15.0, 5.0}) {
+    EXPECT_GT(place.turned_faces(by_tolerance.pyramid, degrees), 0u);
+    place.options.most_face_turn = degrees;
+    const Bake baked = bake(place.map, place.options);
+    EXPECT_EQ(place.turned_faces(baked.pyramid, degrees), 0u);
+    EXPECT_EQ(baked.summary.turned_faces, 0u);
+  }
+}
+
+TEST(Bake, CountsTheFacesThatItsLeavesDoNotTurnBack) {
+  SteepPlace place;
+  place.options.most_face_turn = 5;
+  place.options.max_leaves = 40;
+  const Bake baked = bake(place.map, place.options);
+  EXPECT_GT(baked.summary.turned_faces, 0u);
+  EXPECT_EQ(baked.summary.turned_faces, place.turned_faces(baked.pyramid, 5));
+}
+
+// No voxel resolves what is thinner than the smallest.
+TEST(Bake, SpendsNoLeafOnFacesThinnerThanItsSmallestVoxel) {
+  const auto baked = [](SteepPlace place, double height) {
+    // Of each face what lies next to a side.
+    const TriangleMesh& grid = place.surface;
+    TriangleMesh strips{Points(3, 3 * grid.faces.cols()), Faces(3, grid.faces.cols())};
+    for (int face = 0; face < grid.faces.cols(); ++face) {
+      const Vector3 a = grid.vertices.col(grid.faces(0, face)), b = grid.vertices.col(grid.faces(1, face));
+      const Vector3 inwards = Vector3::UnitZ().cross(b - a).normalized();
+      strips.vertices.middleCols<3>(3 * face) << a, b, (a + b) / 2 + height * inwards;
+      strips.faces.col(face) << 3 * face, 3 * face + 1, 3 * face + 2;
+    }
+    place.options.most_face_turn = 5;
+    place.surface = strips;
+    place.options.surface = &place.surface;
+    return bake(place.map, place.options);
+  };
+  const SteepPlace place;
+  const double smallest = place.options.tolerance / 2;
+  EXPECT_GT(baked(place, 1.1 * smallest).pyramid.leaf_count(),
+            baked(place, 0.5 * smallest).pyramid.leaf_count());
+  EXPECT_EQ(baked(place, 0.5 * smallest).summary.turned_faces, 0u);
 }
 
 // What is kept for folds goes to the tolerance where nothing folds.

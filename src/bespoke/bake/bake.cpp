@@ -26,16 +26,17 @@ std::string to_string(const BakeSummary& summary) {
     leaves += level.leaves;
     voxels += level.voxels;
   }
-  char text[400];
+  char text[500];
   std::snprintf(
       text, sizeof text,
       "%zu levels, finest voxel %.4g, %zu leaves, %zu voxels; error p99 %.4g max %.4g (n = %zu), tolerance "
-      "%s; %zu folds refined, %zu cells repaired by at most %.2g, %zu still folded; %.2f s (refine %.2f, "
-      "measure %.2f, mend %.2f)",
+      "%s; %zu faces turned, %zu folds refined, %zu cells repaired by at most %.2g, %zu still folded; %.2f s "
+      "(refine %.2f, measure %.2f, mend %.2f)",
       summary.levels.size(), summary.levels.empty() ? 0.0 : summary.levels.back().voxel_size, leaves, voxels,
       summary.error.p99, summary.error.max, summary.error.count, summary.tolerance_met ? "met" : "not met",
-      summary.refined_folds, summary.repaired_cells, summary.repair_cost, summary.folded_cells,
-      summary.seconds, summary.refine_seconds, summary.measure_seconds, summary.mend_seconds);
+      summary.turned_faces, summary.refined_folds, summary.repaired_cells, summary.repair_cost,
+      summary.folded_cells, summary.seconds, summary.refine_seconds, summary.measure_seconds,
+      summary.mend_seconds);
   if (summary.relaxed.empty()) return text;
   std::string line = text;
   std::snprintf(text, sizeof text, "; relaxed to %.4g in %zu regions, the worst around (%.4g, %.4g, %.4g)",
@@ -51,6 +52,9 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
     throw InvalidInput("bake tolerance " + std::to_string(options.tolerance) + " is not positive and finite");
   if (options.voxel_size && !(*options.voxel_size > 0 && std::isfinite(*options.voxel_size)))
     throw InvalidInput("voxel size " + std::to_string(*options.voxel_size) + " is not positive and finite");
+  if (!(options.most_face_turn > 0 && options.most_face_turn <= 180))
+    throw InvalidInput("a largest turn of faces of " + std::to_string(options.most_face_turn) +
+                       " degrees is not above 0 and at most 180");
   Bake result;
   if (is_empty(map.support()))
     result.certificate = certify(result.pyramid, map.affine(), 1, progress);

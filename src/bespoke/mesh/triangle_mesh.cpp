@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <utility>
 
 #include "bespoke/error.h"
@@ -148,15 +149,15 @@ Points face_normals(const TriangleMesh& mesh) {
 Points vertex_normals(const TriangleMesh& mesh) { return vertex_normals(mesh, face_normals(mesh)); }
 
 Points vertex_normals(const TriangleMesh& mesh, const Points& of_faces) {
-  Points corner_angles(3, mesh.faces.cols());  // 0 where the face has no area
+  Points corner_angles = Points::Zero(3, mesh.faces.cols());
   for_each_face(mesh, [&](Eigen::Index face) {
-    for (int k = 0; k < 3; ++k) {
-      const auto vertex = mesh.vertices.col(mesh.faces(k, face));
-      const Vector3 to_next = mesh.vertices.col(mesh.faces((k + 1) % 3, face)) - vertex;
-      const Vector3 to_last = mesh.vertices.col(mesh.faces((k + 2) % 3, face)) - vertex;
-      corner_angles(k, face) =
-          of_faces.col(face).isZero(0) ? 0 : std::atan2(to_next.cross(to_last).norm(), to_next.dot(to_last));
-    }
+    if (of_faces.col(face).isZero(0)) return;
+    const Matrix3 corners = mesh.vertices(Eigen::all, mesh.faces.col(face));
+    const Vector3 a = corners.col(1) - corners.col(0), b = corners.col(2) - corners.col(1);
+    const Vector3 c = corners.col(0) - corners.col(2);
+    const double twice_area = a.cross(b).norm();
+    const double first = std::atan2(twice_area, -c.dot(a)), second = std::atan2(twice_area, -a.dot(b));
+    corner_angles.col(face) << first, second, std::max(0.0, std::numbers::pi - first - second);
   });
   Points normals = Points::Zero(3, mesh.vertices.cols());
   Eigen::VectorXd angles = Eigen::VectorXd::Zero(mesh.vertices.cols());

@@ -55,6 +55,7 @@ Json to_json(const BakeSummary& summary) {
                {"error_surface_points", summary.error_surface_points},
                {"surface_cells", summary.surface_cells},
                {"tolerance_met", summary.tolerance_met},
+               {"turned_faces", summary.turned_faces},
                {"refined_folds", summary.refined_folds},
                {"repaired_cells", summary.repaired_cells},
                {"repair_cost", summary.repair_cost},

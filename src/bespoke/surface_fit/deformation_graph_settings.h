@@ -216,7 +216,8 @@ struct NodeFitSettings {
   /// Nine fine iterations, against six, on the nine shared cases that are not copies: x 0.996 / 0.993, on 17
   /// further pairs (poses, hands, other persons, scans) x 0.996 / 0.993; on the nine with 0.3 % and 1 % of
   /// noise in the anchors x 0.997 / 0.998 and 1.003 / 1.006, with five anchors x 0.995 / 1.002 and 22 flipped
-  /// faces, not 54; for a twentieth of a fit's time. Eight: x 0.998 / 0.996 and 0.997 / 0.993. Half of the
+  /// faces, not 54; for a twentieth of a fit's time. Eight: x 0.998 / 0.996 and 0.997 / 0.993; twelve:
+  /// against nine x 0.997 / 1.001 on the nine cases, x 1.008 / 1.005 on them the other way round. Half of the
   /// coarse samples then: x 0.997 / 0.994 and 0.998 / 0.998, with 1 % of noise x 1.007 / 1.013.
   std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
                                      NodeLevel{2500, 9, 8000, 5000}};

@@ -1,9 +1,12 @@
 #include "bespoke/bake/detail/adaptive_bake.h"
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "bespoke/bake/detail/face_turns.h"
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/detail/mend_folds.h"
 #include "bespoke/bake/detail/pyramid_builder.h"
@@ -14,10 +17,13 @@ namespace bespoke {
 namespace {
 
 // Places where a finished pyramid misses the tolerance are refined and it is measured anew: at a few points,
-// around those that missed it, then everywhere.
-constexpr int quick_rounds = 2;
+// then at more, around those that missed it, and everywhere. With six points a cell in the second round, not
+// one, eight of the shared cases take 12 full measurements instead of 21, and 0.85 of the points.
+constexpr std::array<std::size_t, 2> points_of_quick_rounds = {1, 6};
 constexpr int local_rounds = 6;
 constexpr int full_rounds = 6;
+// Where faces turn (FaceTurns).
+constexpr int face_rounds = 8;
 // A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
 // are as small as they get, the worst points stay however often they are found.
 constexpr double most_left_by_a_round = 0.7;
@@ -37,11 +43,13 @@ class AdaptiveBake {
                               options.max_leaves, options.surface, options.then, octave_of(map.affine()),
                               options.then ? octave_of(options.then->affine()) : 1},
             progress)),
-        measurement_(map, builder_->coarsest(), builder_->band(), options, progress) {}
+        measurement_(map, builder_->coarsest(), builder_->band(), options, progress),
+        face_turns_(map, options, builder_->least_voxel()) {}
 
   Bake run() && {
     refine();
     search();
+    turn_faces_back(PyramidBuilder::Purpose::tolerance);
     measure();
     meet_tolerance();
     mend();
@@ -50,6 +58,7 @@ class AdaptiveBake {
     summary().relaxed = builder_->relaxed();
     builder_.reset();
     repair();
+    summary().turned_faces = face_turns_.turned_faces(result_.pyramid).size();
     keep_first_places(result_.certificate);
     return std::move(result_);
   }
@@ -64,8 +73,19 @@ class AdaptiveBake {
   }
 
   void search() {
-    for (int round = 0; round < quick_rounds; ++round)
-      if (measurement_.quickly(result_.pyramid) > options_.tolerance) refine_around_worst();
+    for (const std::size_t points : points_of_quick_rounds)
+      if (measurement_.quickly(result_.pyramid, points) > options_.tolerance) refine_around_worst();
+  }
+
+  // As far as there are leaves. Returns whether anything was refined.
+  bool turn_faces_back(PyramidBuilder::Purpose purpose) {
+    bool refined = false;
+    for (int round = 0; round < face_rounds; ++round) {
+      const std::vector<Eigen::Index> turned = face_turns_.turned_faces(result_.pyramid);
+      if (!refine_at(face_turns_.places(turned), purpose)) break;
+      refined = true;
+    }
+    return refined;
   }
 
   void measure() {
@@ -88,7 +108,8 @@ class AdaptiveBake {
 
   void mend() {
     refine_folds();
-    if (builder_->free_reserve()) {
+    const bool turned_back = turn_faces_back(PyramidBuilder::Purpose::reserved);
+    if (builder_->free_reserve() || turned_back) {
       refine();
       measure();
       refine_folds();
@@ -114,16 +135,18 @@ class AdaptiveBake {
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < local_rounds; ++round) {
       const auto worst = static_cast<double>(measurement_.worst().cols());
-      if (worst == 0 || !(worst < most_left_by_a_round * before) || !refine_worst()) return round > 0;
+      if (worst == 0 || !(worst < most_left_by_a_round * before) ||
+          !refine_at(measurement_.worst(), PyramidBuilder::Purpose::tolerance))
+        return round > 0;
       before = worst;
       measurement_.near_worst(result_.pyramid);
     }
     return true;
   }
 
-  bool refine_worst() {
+  bool refine_at(const Points& places, PyramidBuilder::Purpose purpose) {
     summary().measure_seconds += watch_.lap();
-    const bool refined = builder_->refine_at(measurement_.worst()) > 0;
+    const bool refined = places.cols() > 0 && builder_->refine_at(places, purpose) > 0;
     if (refined) refine();
     return refined;
   }
@@ -134,6 +157,7 @@ class AdaptiveBake {
   Stopwatch watch_;
   std::unique_ptr<PyramidBuilder> builder_;
   Measurement measurement_;
+  FaceTurns face_turns_;
   Bake result_;
 };
 

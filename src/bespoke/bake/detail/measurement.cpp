@@ -14,8 +14,8 @@ constexpr std::uint64_t error_seed = 3;
 // shared cases 31, 24 and 18 full measurements, each of them a thirtieth of a fit's time, and files 1.00,
 // 1.01 and 1.03 times as large. Widened, its square, its cube, and so on.
 constexpr double worst_share = 0.75;
-// Of BakeOptions::error_points: points on the surface that the record counts, and points of a search at most
-// (one a cell where there are fewer cells).
+// Of BakeOptions::error_points: points on the surface that the record counts, or that a search takes with
+// several in a cell, and points of a search at most.
 constexpr std::size_t recorded_surface_points = 2;
 constexpr std::size_t most_searched_points = 5;
 
@@ -65,10 +65,12 @@ Measurement::Measurement(const ElasticMap& map, const Lattice& band_lattice,
       seed_(error_seed),
       worst_share_(worst_share) {}
 
-double Measurement::quickly(Pyramid& pyramid) { return search(pyramid, surface_cells(pyramid)); }
+double Measurement::quickly(Pyramid& pyramid, std::size_t points_per_cell) {
+  return search(pyramid, surface_cells(pyramid), points_per_cell);
+}
 
 double Measurement::near_worst(Pyramid& pyramid) {
-  return search(pyramid, with_neighbours(pyramid, finest_cells_at(pyramid, worst_)));
+  return search(pyramid, with_neighbours(pyramid, finest_cells_at(pyramid, worst_)), 1);
 }
 
 double Measurement::fully(Pyramid& pyramid, BakeSummary& summary) {
@@ -98,9 +100,12 @@ const std::vector<FinestCell>& Measurement::surface_cells(const Pyramid& pyramid
   return surface_cells_;
 }
 
-// One point a cell, as far as the limit allows.
-double Measurement::search(Pyramid& pyramid, const std::vector<FinestCell>& cells) {
-  const std::size_t count = std::min(cells.size(), most_searched_points * options_.error_points);
+double Measurement::search(Pyramid& pyramid, const std::vector<FinestCell>& cells,
+                           std::size_t points_per_cell) {
+  const std::size_t one_each = std::min(cells.size(), most_searched_points * options_.error_points);
+  const std::size_t several =
+      std::min(points_per_cell * cells.size(), recorded_surface_points * options_.error_points);
+  const std::size_t count = std::max(one_each, several);
   return measure(pyramid, points_in_cells(pyramid, cells, count, ++seed_));
 }
 

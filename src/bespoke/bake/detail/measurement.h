@@ -18,8 +18,8 @@ class Measurement {
   Measurement(const ElasticMap& map, const Lattice& band_lattice, std::vector<LeafCoordinates> band,
               const BakeOptions& options, const Progress& progress);
 
-  /// Largest error (mesh units) at a few points of the surface's cells.
-  double quickly(Pyramid& pyramid);
+  /// Largest error (mesh units) at so many points in each of the surface's cells, as far as the limits allow.
+  double quickly(Pyramid& pyramid, std::size_t points_per_cell);
 
   /// The same in the cells of worst() and those around them.
   double near_worst(Pyramid& pyramid);
@@ -35,7 +35,7 @@ class Measurement {
  private:
   /// Sought anew where the pyramid has other leaves than the last.
   const std::vector<FinestCell>& surface_cells(const Pyramid& pyramid);
-  double search(Pyramid& pyramid, const std::vector<FinestCell>& cells);
+  double search(Pyramid& pyramid, const std::vector<FinestCell>& cells, std::size_t points_per_cell);
   double measure(Pyramid& pyramid, const Points& x);
 
   const ElasticMap& map_;

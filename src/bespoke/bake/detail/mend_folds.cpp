@@ -56,7 +56,7 @@ void refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builde
     const Points needless = needless_folds(map, bake.pyramid, bake.certificate.places);
     if (needless.cols() == 0) break;
     auto refined = std::make_unique<PyramidBuilder>(*builder);
-    if (refined->refine_at(needless, PyramidBuilder::Purpose::folds) == 0) break;
+    if (refined->refine_at(needless, PyramidBuilder::Purpose::reserved) == 0) break;
     refined->refine();
     Pyramid pyramid = refined->pyramid();
     Certificate certificate = certify_listing_all(pyramid, map.affine(), 1, progress);

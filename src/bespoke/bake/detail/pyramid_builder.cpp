@@ -17,8 +17,8 @@ namespace {
 
 // Voxels of the coarsest level in the radius of the largest ball.
 constexpr double coarsest_voxels_per_radius = 4;
-// One of so many leaves is kept for folds.
-constexpr std::size_t share_for_folds = 10;
+// One of so many leaves is kept for folds and faces that turn.
+constexpr std::size_t share_in_reserve = 10;
 
 // Before its frame.
 double largest_radius(const Support& support) {
@@ -45,7 +45,7 @@ PyramidBuilder::PyramidBuilder(const ElasticMap& map, const RefinementOptions& o
       levels_(coarsest_),
       octants_(map, options, progress),
       budget_(map, coarsest_, band_, options, progress),
-      reserve_(options.max_leaves.value_or(0) / share_for_folds) {
+      reserve_(options.max_leaves.value_or(0) / share_in_reserve) {
   add(0, band_);
 }
 
@@ -128,7 +128,7 @@ std::vector<RefusedOctant> PyramidBuilder::worst_refused(std::size_t most) {
 
 std::size_t PyramidBuilder::leaves_left(Purpose purpose) const {
   if (!options_.max_leaves) return std::numeric_limits<std::size_t>::max();
-  const std::size_t most = *options_.max_leaves - (purpose == Purpose::folds ? 0 : reserve_);
+  const std::size_t most = *options_.max_leaves - (purpose == Purpose::reserved ? 0 : reserve_);
   return most - std::min(most, levels_.leaf_count());
 }
 
@@ -154,7 +154,7 @@ void PyramidBuilder::close_rims() {
 // Rims that fold are closed in any case.
 std::vector<LeafCoordinates> PyramidBuilder::rims_within_budget(std::size_t level) {
   std::vector<LeafCoordinates> leaves = rim_neighbours(levels_, level, rim_tolerance_, options_.growth);
-  while (leaves.size() > leaves_left(Purpose::folds) &&
+  while (leaves.size() > leaves_left(Purpose::reserved) &&
          rim_tolerance_ < rim_gradient * options_.growth * levels_.lattice(level).voxel_size) {
     rim_tolerance_ *= 2;
     leaves = rim_neighbours(levels_, level, rim_tolerance_, options_.growth);
@@ -200,7 +200,7 @@ NodeValues PyramidBuilder::nodes_of(std::size_t level) const {
 }
 
 bool PyramidBuilder::is_finest(std::size_t level) const {
-  return levels_.lattice(level + 1).voxel_size < least_voxel_of_tolerance * options_.tolerance_of_places();
+  return levels_.lattice(level + 1).voxel_size < least_voxel();
 }
 
 std::size_t PyramidBuilder::refine_at(const Points& x, Purpose purpose) {

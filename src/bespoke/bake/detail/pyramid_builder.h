@@ -33,8 +33,9 @@ class PyramidBuilder {
   /// The band at the coarsest level. `map` and `progress` must outlive the builder. Throws MemoryLimitError.
   PyramidBuilder(const ElasticMap& map, const RefinementOptions& options, const Progress& progress);
 
-  /// What the leaves are for: a tenth of max_leaves is kept for folds, until free_reserve().
-  enum class Purpose { tolerance, folds };
+  /// What the leaves are for: a tenth of max_leaves is kept for folds, then for faces that turn (FaceTurns),
+  /// until free_reserve().
+  enum class Purpose { tolerance, reserved };
 
   /// Adds leaves until every octant passes. Throws MemoryLimitError as soon as a forecast says that the
   /// leaves will not fit (MemoryBudget).
@@ -58,6 +59,8 @@ class PyramidBuilder {
   const Lattice& coarsest() const { return coarsest_; }
   const std::vector<LeafCoordinates>& band() const { return band_; }
   std::size_t evaluated_points() const;
+  /// No voxel is smaller, mesh units.
+  double least_voxel() const { return least_voxel_of_tolerance * options_.tolerance_of_places(); }
   /// What the leaves so far need, values and samples.
   std::size_t byte_count() const { return MemoryBudget::bytes_for(levels_.leaf_count()); }
 
@@ -99,7 +102,7 @@ class PyramidBuilder {
   std::vector<RefusedOctant> refused_;
   bool next_by_size_ = false;                 // what worst_refused goes by next
   std::shared_ptr<const Nearness> nearness_;  // once something was refused, where there is a surface
-  std::size_t reserve_;                       // leaves that only folds may have
+  std::size_t reserve_;                       // leaves for what is worse than a missed tolerance
   std::size_t sampled_points_ = 0;
 };
 

@@ -41,10 +41,15 @@ void BlockSystem::set_zero() {
 }
 
 Matrix3& BlockSystem::at(int row, int column) {
-  const auto begin = rows_.begin() + start_[column], end = rows_.begin() + start_[column + 1];
-  const auto found = std::lower_bound(begin, end, row);
-  assert(found != end && *found == row);
-  return blocks_[static_cast<std::size_t>(found - rows_.begin())];
+  // Halving without branches: the processor guesses every other one of a binary search wrongly.
+  std::size_t first = start_[column];
+  for (std::size_t count = start_[column + 1] - first; count > 1;) {
+    const std::size_t half = count / 2;
+    first += rows_[first + half] <= row ? half : 0;
+    count -= half;
+  }
+  assert(rows_[first] == row);
+  return blocks_[first];
 }
 
 Points BlockSystem::solve() {

@@ -16,11 +16,6 @@ void couple(const std::vector<int>& ids, std::vector<std::vector<int>>& rows) {
   for (const int id : ids) rows[id].insert(rows[id].end(), ids.begin(), ids.end());
 }
 
-void sort_and_unite(std::vector<int>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-}
-
 }  // namespace
 
 NodeSystem::NodeSystem(const NodeSurface& surface, DeformationNodes nodes,
@@ -51,18 +46,16 @@ std::vector<std::vector<int>> NodeSystem::adjacency() const {
     for (const NodeWeight& entry : anchor.foot) ids.push_back(entry.node);
     couple(ids, rows);
   }
-  // Thousands of vertices repeat the same nodes: lists are tidied when they have doubled.
-  constexpr std::size_t first_limit = 4096;
-  std::vector<std::size_t> limit(rows.size(), first_limit);
-  for (int vertex = 0; vertex < static_cast<int>(nodes_.vertex_nodes.cols()); ++vertex) {
-    const VertexNodes followed = nodes_.at_vertex(vertex);
-    for (const NodeWeight& a : followed) {
-      for (const NodeWeight& b : followed) rows[a.node].push_back(b.node);
-      if (rows[a.node].size() < limit[a.node]) continue;
-      sort_and_unite(rows[a.node]);
-      limit[a.node] = std::max(first_limit, 2 * rows[a.node].size());
-    }
-  }
+  std::vector<std::vector<int>> followers(rows.size());
+  for (int vertex = 0; vertex < static_cast<int>(nodes_.vertex_nodes.cols()); ++vertex)
+    for (const NodeWeight& entry : nodes_.at_vertex(vertex)) followers[entry.node].push_back(vertex);
+  // Thousands of vertices repeat the same nodes.
+  constexpr int nobody = -1;
+  std::vector<int> last_coupled(rows.size(), nobody);
+  for (int node = 0; node < nodes_.size(); ++node)
+    for (const int vertex : followers[node])
+      for (const NodeWeight& entry : nodes_.at_vertex(vertex))
+        if (std::exchange(last_coupled[entry.node], node) != node) rows[node].push_back(entry.node);
   return rows;
 }
 
