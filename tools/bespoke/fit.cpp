@@ -11,6 +11,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
 #include "bespoke/page/view_scene.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/product/format_unit.h"
@@ -152,7 +153,10 @@ void run(const FitArguments& arguments, const RunContext& context) {
   const TriangleMesh& target = target_model.mesh;
   require_model(target, "target", arguments.target, quiet);
   std::optional<TriangleMesh> fitted;
-  if (!arguments.fitted.empty()) fitted = read_model("fitted", arguments.fitted, quiet);
+  if (!arguments.fitted.empty()) {
+    fitted = read_model("fitted", arguments.fitted, quiet);
+    require_same_connectivity(source, *fitted, arguments.fitted);
+  }
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
   for (const std::string& model : {arguments.source, arguments.target}) {

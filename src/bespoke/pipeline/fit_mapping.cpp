@@ -47,19 +47,6 @@ void require_one_unit(double ratio, const std::string& what) {
                      "other, or ask for any size (--any-size), and the map goes from one unit to the other");
 }
 
-void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted) {
-  if (fitted.vertices.cols() != source.vertices.cols() || fitted.faces.cols() != source.faces.cols())
-    throw InvalidInput("the fitted mesh has " + std::to_string(fitted.vertices.cols()) + " vertices and " +
-                       std::to_string(fitted.faces.cols()) + " faces, but the source has " +
-                       std::to_string(source.vertices.cols()) + " and " +
-                       std::to_string(source.faces.cols()) + "; both must have the same connectivity");
-  for (Eigen::Index face = 0; face < source.faces.cols(); ++face)
-    if (source.faces.col(face) != fitted.faces.col(face))
-      throw InvalidInput("face " + std::to_string(face) +
-                         " of the fitted mesh has other vertices than the source's; both must have the "
-                         "same connectivity");
-}
-
 /// Where the target touches itself no homeomorphism exists: the parts of the fitted source are held apart.
 void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const FitOptions& options,
                       const Progress& progress) {
@@ -162,12 +149,25 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
   return result;
 }
 
+void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted,
+                               const std::string& what) {
+  if (fitted.vertices.cols() != source.vertices.cols() || fitted.faces.cols() != source.faces.cols())
+    throw InvalidInput(what + " has " + std::to_string(fitted.vertices.cols()) + " vertices and " +
+                       std::to_string(fitted.faces.cols()) + " faces, but the source has " +
+                       std::to_string(source.vertices.cols()) + " and " +
+                       std::to_string(source.faces.cols()) + "; both must have the same connectivity");
+  for (Eigen::Index face = 0; face < source.faces.cols(); ++face)
+    if (source.faces.col(face) != fitted.faces.col(face))
+      throw InvalidInput("face " + std::to_string(face) + " of " + what +
+                         " has other vertices than the source's; both must have the same connectivity");
+}
+
 FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMesh& fitted,
                                     const Anchors& anchors, const FitOptions& options,
                                     const Progress& progress) {
   require_usable(source, anchors, options);
   require_valid(fitted, "fitted source");
-  require_same_connectivity(source, fitted);
+  require_same_connectivity(source, fitted, "the fitted mesh");
   if (!options.any_size)
     require_one_unit(diagonal(fitted.vertices) / diagonal(source.vertices), "their vertices");
   if (!anchors.curves.empty())

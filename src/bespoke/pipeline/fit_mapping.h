@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bespoke/mapping/elastic_chain.h"
@@ -64,5 +65,10 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
 FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMesh& fitted,
                                     const Anchors& anchors, const FitOptions& options,
                                     const Progress& progress = {});
+
+/// That the fitted source has the source's vertices and faces; `what` names it in the message. Throws
+/// InvalidInput.
+void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& fitted,
+                               const std::string& what);
 
 }  // namespace bespoke
