@@ -307,15 +307,6 @@ TEST_F(FitCommand, ListsTheVerticesItMisses) {
   EXPECT_THAT(listed, IsSupersetOf({0, 3}));
 }
 
-TEST_F(FitCommand, NamesTheFittedFileOfOtherConnectivity) {
-  std::ofstream(pair_.file("other.obj"))
-      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
-  expect_refusal(bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--fitted",
-                          pair_.file("other.obj"), "-o", pair_.file("map.vdb")}),
-                 2, pair_.file("other.obj") + " has 4 vertices and 4 faces");
-  EXPECT_FALSE(std::filesystem::exists(pair_.file("map.vdb")));
-}
-
 TEST_F(FitCommand, WritesTheConfidenceOfEveryVertex) {
   ASSERT_EQ(pair_.fit("first.vdb", {"--confidence-out", pair_.file("confidence.txt")}).exit_code, 0);
   std::istringstream lines(read_text(pair_.file("confidence.txt")));

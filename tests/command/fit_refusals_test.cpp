@@ -97,7 +97,8 @@ TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnitsUnlessAnySizeIsAsked) {
 
 TEST_F(FitRefusals, RefusesAFittedSourceOfOtherConnectivity) {
   write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2, "642");
+  expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2,
+                 pair_.file("other.obj") + " has 3 vertices and 1 faces, but the source has 642");
 }
 
 TEST_F(FitRefusals, RefusesUnknownEndingsBeforeItWorks) {

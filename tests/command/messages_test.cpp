@@ -145,7 +145,7 @@ TEST_F(BadPairs, AFittedSourceOfOtherConnectivity) {
   TriangleMesh fitted = shapes::icosphere(3);
   fitted.faces.col(5).swap(fitted.faces.col(6));
   expect_refusal(fit_to(obj_text(fitted.vertices, fitted.faces)), 2,
-                 "face 5 of the fitted mesh has other vertices than the source's");
+                 "face 5 of " + pair_.file("fitted.obj") + " has other vertices than the source's");
 }
 
 TEST_F(BadPairs, AMirrorImage) {
