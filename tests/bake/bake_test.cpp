@@ -385,6 +385,10 @@ TEST(Bake, CountsTheFacesThatItsLeavesDoNotTurnBack) {
   const Bake baked = bake(place.map, place.options);
   EXPECT_GT(baked.summary.turned_faces, 0u);
   EXPECT_EQ(baked.summary.turned_faces, place.turned_faces(baked.pyramid, 5));
+  place.options.voxel_size = 4e-3;
+  const Bake one_level = bake(place.map, place.options);
+  EXPECT_GT(one_level.summary.turned_faces, 0u);
+  EXPECT_EQ(one_level.summary.turned_faces, place.turned_faces(one_level.pyramid, 5));
 }
 
 // No voxel resolves what is thinner than the smallest.

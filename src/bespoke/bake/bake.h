@@ -65,8 +65,10 @@ struct BakeSummary {
   std::size_t surface_cells = 0;         ///< finest cells on the surface
   bool tolerance_met = false;            ///< error.max ≤ tolerance
   std::vector<RelaxedRegion> relaxed;    ///< to stay within max_leaves; the worst first
-  std::size_t turned_faces = 0;   ///< of the surface, by more than most_face_turn; of a chain, over its steps
-  std::size_t refined_folds = 0;  ///< cells that folded though the map does not, mended by finer leaves
+  /// Of the surface, by more than most_face_turn, but for those thinner than the smallest voxel that a nested
+  /// pyramid may have; of a chain, over its steps.
+  std::size_t turned_faces = 0;
+  std::size_t refined_folds = 0;   ///< cells that folded though the map does not, mended by finer leaves
   std::size_t repaired_cells = 0;  ///< cells that folded as the map does, mended by moving nodes
   double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
   std::size_t folded_cells = 0;    ///< cells that still fold or are undecided

@@ -109,8 +109,9 @@ class AdaptiveBake {
   void mend() {
     refine_folds();
     const bool turned_back = turn_faces_back(PyramidBuilder::Purpose::reserved);
-    if (builder_->free_reserve() || turned_back) {
-      refine();
+    const bool freed = builder_->free_reserve();
+    if (freed) refine();
+    if (freed || turned_back) {
       measure();
       refine_folds();
     }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bespoke/bake/band.h"
+#include "bespoke/bake/detail/face_turns.h"
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/bake/leaf_samples.h"
@@ -134,6 +135,8 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   if (!level.leaves.empty()) result.pyramid.levels.push_back(std::move(level));
   result.summary.refine_seconds = watch.lap();
   Measurement(map, lattice, leaves, options, progress).fully(result.pyramid, result.summary);
+  constexpr double however_thin = 0;
+  result.summary.turned_faces = FaceTurns(map, options, however_thin).turned_faces(result.pyramid).size();
   result.summary.measure_seconds = watch.lap();
   // Asked for this size, it has no finer leaves to mend a fold by.
   result.certificate = certify(result.pyramid, map.affine(), 1, progress);
