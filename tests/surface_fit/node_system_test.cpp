@@ -87,6 +87,36 @@ TEST_F(NodeSystemTest, BendsLessTheMoreItSmooths) {
   EXPECT_LE(last, 0.2 + 1e-9);
 }
 
+TEST_F(NodeSystemTest, BendsByTheAreasThatItHasNow) {
+  // One pole has grown, the other shrunk; a dent is pressed into either.
+  const Points normals = vertex_normals(sphere_);
+  const Eigen::RowVectorXd growth = 1 + 0.4 * sphere_.vertices.row(2).array();
+  const Points lying = sphere_.vertices * growth.transpose().asDiagonal();
+  const double area = vertex_areas(sphere_).sum() / static_cast<double>(sphere_.vertices.cols());
+  const auto pressed = [&](double depth) {
+    constexpr double smoothing = 0.5, leeway = 1;
+    std::vector<PlanePair> planes;
+    for (int i = 0; i < lying.cols(); ++i) {
+      const double press = std::abs(normals(2, i)) > 0.97 ? depth : 0;
+      planes.push_back({i, lying.col(i) - press * normals.col(i), normals.col(i), area, leeway});
+    }
+    NodeSystem nodes = system({});
+    nodes.start_from(lying);
+    return nodes.solve({lying, planes, {}, smoothing, 1});
+  };
+  struct Dents {
+    double grown, shrunk;
+  };
+  const auto dents = [&](double most_growth) -> Dents {
+    settings_.bending.most_growth = most_growth;
+    const Eigen::RowVectorXd sunk = (pressed(0) - pressed(0.1)).row(2);
+    return {sunk.maxCoeff(), -sunk.minCoeff()};
+  };
+  const Dents now = dents(10), at_rest = dents(1);
+  EXPECT_LT(now.grown, 0.95 * at_rest.grown);
+  EXPECT_GT(now.shrunk, 1.05 * at_rest.shrunk);
+}
+
 TEST_F(NodeSystemTest, ASimilarityIsNextToNoStrainAndAStretchAlongOneAxisIs) {
   NodeSystem nodes = system({});
   EXPECT_NEAR(nodes.median_strain(), 0, 1e-12);

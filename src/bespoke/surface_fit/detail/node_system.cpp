@@ -78,8 +78,9 @@ Points NodeSystem::solve(const NodeGoals& goals) {
   add_boundary(goals.boundary);
   add_anchors(goals);
   const double smoothing = goals.smoothing / nodes_.spacing;
-  add_bending(std::pow(smoothing, 4) / std::pow(goals.rigidity, 2));
-  add_local_similarity(std::pow(goals.rigidity * settings_.shape.share * smoothing, 2));
+  const LocalSimilarities similarities = local_similarities();
+  add_bending(std::pow(smoothing, 4) / std::pow(goals.rigidity, 2), similarities);
+  add_local_similarity(std::pow(goals.rigidity * settings_.shape.share * smoothing, 2), similarities);
   displacements_ = system_.solve();
   return moved_vertices();
 }
@@ -144,12 +145,13 @@ void NodeSystem::add_anchors(const NodeGoals& goals) {
   }
 }
 
-void NodeSystem::add_bending(double weight) {
+void NodeSystem::add_bending(double weight, const LocalSimilarities& similarities) {
   const std::vector<BendingStencil> stencils =
       bending_stencils(nodes_, nodes_.rest + displacements_, settings_.bending);
   for (int node = 0; node < nodes_.size(); ++node) {
     const BendingStencil& stencil = stencils[node];
-    const double share = weight * nodes_.areas[node];
+    const double growth = similarities.growth(node, settings_.bending.most_growth);
+    const double share = weight * growth * growth * nodes_.areas[node];
     for (std::size_t a = 0; a < stencil.ids.size(); ++a)
       for (std::size_t b = 0; b < stencil.ids.size(); ++b)
         system_.add(stencil.ids[a], stencil.ids[b],
@@ -178,16 +180,26 @@ NodeSystem::LocalSimilarity NodeSystem::local_similarity(int node) const {
   return {rotation, (rotation.transpose() * covariance).trace() / spread};
 }
 
-void NodeSystem::add_local_similarity(double weight) {
-  std::vector<LocalSimilarity> similarities;
+double NodeSystem::LocalSimilarities::growth(int node, double most) const {
+  if (!(usual_scale > 0)) return 1;
+  return std::clamp(around[static_cast<std::size_t>(node)].scale / usual_scale, 1 / most, most);
+}
+
+NodeSystem::LocalSimilarities NodeSystem::local_similarities() const {
+  LocalSimilarities result;
   std::vector<double> scales;
   for (int node = 0; node < nodes_.size(); ++node) {
-    similarities.push_back(local_similarity(node));
-    scales.push_back(similarities.back().scale);
+    result.around.push_back(local_similarity(node));
+    scales.push_back(result.around.back().scale);
   }
-  const double usual = median(scales);
+  result.usual_scale = median(std::move(scales));
+  return result;
+}
+
+void NodeSystem::add_local_similarity(double weight, const LocalSimilarities& similarities) {
+  const double usual = similarities.usual_scale;
   for (int node = 0; node < nodes_.size(); ++node) {
-    const auto& [rotation, found] = similarities[node];
+    const auto& [rotation, found] = similarities.around[static_cast<std::size_t>(node)];
     const double scale =
         usual > 0 && found > 0 ? usual * std::pow(found / usual, settings_.shape.scale_freedom) : found;
     const double share = weight * nodes_.areas[node] / double(nodes_.neighbours[node].size());

@@ -51,7 +51,7 @@ class NodeSystem {
   /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
   ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ leeway))²)     robust point to plane
   ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
-  ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)²
+  ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)², by the areas that it has now
   ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, turned and scaled as around
   ///   the
   ///     node now; the scale half-way to the median one).
@@ -74,6 +74,13 @@ class NodeSystem {
     Matrix3 rotation = Matrix3::Zero();
     double scale = 0;
   };
+  struct LocalSimilarities {
+    std::vector<LocalSimilarity> around;  // each node
+    double usual_scale = 0;               // their median
+
+    /// Of the node over the median one, within [1 / most, most].
+    double growth(int node, double most) const;
+  };
 
   std::vector<std::vector<int>> adjacency() const;
   template <class Nodes>
@@ -81,11 +88,12 @@ class NodeSystem {
   void add_planes(const NodeGoals& goals);
   void add_boundary(const std::vector<BoundaryMatch>& boundary);
   void add_anchors(const NodeGoals& goals);
-  void add_bending(double weight);
-  void add_local_similarity(double weight);
+  void add_bending(double weight, const LocalSimilarities& similarities);
+  void add_local_similarity(double weight, const LocalSimilarities& similarities);
   Vector3 edge_now(int node, int other) const;
   Vector3 shape_edge(int node, int other) const;
   LocalSimilarity local_similarity(int node) const;
+  LocalSimilarities local_similarities() const;
   Points moved_vertices() const;
 
   NodeSurface surface_;
