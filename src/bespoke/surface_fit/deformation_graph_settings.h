@@ -74,13 +74,14 @@ struct BendingSettings {
   /// Decides slopes across a flat neighbourhood, which no node shows; no unit, beside a Gram matrix of
   /// order 1.
   double slope_penalty = 1e-3;
-  /// Of a local scale over the median one, either way: a node bends by its share of the surface as it lies
-  /// now, which is that of the rest surface times the square. Bounds it where the surface has collapsed; not
-  /// varied. 1, without it: the nine cases x 1.000 / 0.996, with 1 % of noise x 0.996 / 0.996, with five
-  /// anchors x 1.009 / 1.013, the other way round x 0.995 / 0.992, 24 pairs of their bodies, a source of one
-  /// on the target of another, x 1.005 / 1.010, with five anchors x 1.008 / 1.007; 164 flipped faces, not
-  /// 138, and nine with noisy or few anchors on d01 to d07, not none. The fourth power: x 1.001 / 1.001,
-  /// the 24 pairs x 0.997 / 0.995, but 139 flipped faces there, not 96.
+  /// Of a local scale over the median one, either way. A node bends by its area at rest times the square: the
+  /// area that it has now, but where a pose has grown it before, which counts twice. Bounds it where the
+  /// surface has collapsed; not varied. The area now in poses too: d08 and d10 x 0.993 / 0.990, nine posed
+  /// pairs x 1.006 / 1.012, a flipped face of d08. 1, without it: the nine cases x 1.000 / 0.996, with 1 % of
+  /// noise x 0.996 / 0.996, with five anchors x 1.009 / 1.013, the other way round x 0.995 / 0.992, 24 pairs
+  /// of their bodies, a source of one on the target of another, x 1.005 / 1.010, with five anchors x 1.008
+  /// / 1.007; 164 flipped faces, not 138, and three with noisy or few anchors on d01 to d07, not none. The
+  /// fourth power: x 1.001 / 1.001, the 24 pairs x 0.997 / 0.995, but 139 flipped faces there, not 96.
   double most_growth = 10;
 };
 
