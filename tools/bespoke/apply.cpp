@@ -276,7 +276,8 @@ void add_apply_command(CLI::App& app, const TakePlan& take) {
   apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")
       ->type_name("DIR");
   CLI::Option* t = add_time_option(*apply, arguments->t,
-                                   "How far the map goes: 0 is the source, 1 the target (default: 1)");
+                                   "How far the map goes: 0 is the source, 1 the target, others extrapolate: "
+                                   "check --t says whether that folds (default: 1)");
   apply
       ->add_option("--frames", arguments->frames,
                    "Write N+1 files for t = 0, 1/N, …, 1, from one lookup: OUT_000.obj, OUT_001.obj, …")
