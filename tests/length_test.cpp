@@ -21,14 +21,15 @@ TEST(Length, RefusesWhatIsNoLengthOfItsRange) {
   EXPECT_FALSE(parse_length("-1e-9", LengthRange::not_negative));
 }
 
-TEST(OctaveOf, CountsDoublingsAndHalvings) {
-  for (const double same : {0.56, 0.9, 1.0, 1.1, 1.8}) EXPECT_EQ(octave_of(same), 1) << same;
-  for (const double octave : {0.125, 0.25, 0.5, 2.0, 4.0, 8.0})
-    for (const double ratio : {0.98 * octave, octave, 1.02 * octave}) EXPECT_EQ(octave_of(ratio), octave);
-  EXPECT_EQ(octave_of(3.5), 2);
-  EXPECT_EQ(octave_of(0.3), 0.5);
+TEST(PowerOfTwoScale, CountsDoublingsAndHalvings) {
+  for (const double same : {0.56, 0.9, 1.0, 1.1, 1.8}) EXPECT_EQ(power_of_two_scale(same), 1) << same;
+  for (const double size_scale : {0.125, 0.25, 0.5, 2.0, 4.0, 8.0})
+    for (const double ratio : {0.98 * size_scale, size_scale, 1.02 * size_scale})
+      EXPECT_EQ(power_of_two_scale(ratio), size_scale);
+  EXPECT_EQ(power_of_two_scale(3.5), 2);
+  EXPECT_EQ(power_of_two_scale(0.3), 0.5);
   for (const double none : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()})
-    EXPECT_EQ(octave_of(none), 1) << none;
+    EXPECT_EQ(power_of_two_scale(none), 1) << none;
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ constexpr std::string_view part_ending = ".bespoke-part";
 constexpr std::string_view new_ending = ".bespoke-new";
 
 // Others take a name, or a file, away only by doing the same at the same moment.
-constexpr int most_attempts = 1000;
+constexpr int max_attempts = 1000;
 
 fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
@@ -126,7 +126,7 @@ class Temporary {
     remove_abandoned_once(directory_of(target_));
     // Names of other processes may be in the way: their ids repeat over time and between machines that
     // share a disk. And who removes abandoned files may have been faster than the lock.
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
       std::string ending(".");
       ending += std::to_string(::getpid()) + '-' + std::to_string(counter++);
       fs::path name = hidden_neighbour(target_, ending.append(part_ending));
@@ -151,7 +151,7 @@ class Temporary {
   void link_into_place() const {
     if (link_to(target_)) return;
     const fs::path name = hidden_neighbour(target_, std::string(new_ending));
-    for (int attempt = 0; errno == EEXIST && attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; errno == EEXIST && attempt < max_attempts; ++attempt) {
       const bool is_mine = link_to(name);
       if (!is_mine && errno != EEXIST) break;
       const bool renamed = ::rename(name.c_str(), target_.c_str()) == 0 || errno == ENOENT;

@@ -5,10 +5,11 @@
 
 namespace bespoke {
 
-double octave_of(double size_ratio) {
+double power_of_two_scale(double size_ratio) {
   constexpr double reached = 0.125;  // octaves: sizes are told by anchors or areas, never to the bit
-  const double octaves = std::log2(size_ratio);
-  return std::isfinite(octaves) ? std::exp2(std::trunc(octaves + std::copysign(reached, octaves))) : 1;
+  const double log2_scale = std::log2(size_ratio);
+  return std::isfinite(log2_scale) ? std::exp2(std::trunc(log2_scale + std::copysign(reached, log2_scale)))
+                                   : 1;
 }
 
 std::optional<Length> parse_length(std::string_view text, LengthRange range) {

@@ -20,7 +20,7 @@ enum class LengthRange { positive, not_negative };
 /// that is not finite and above 0. Lengths that go with a model's size are scaled by it, which rounds
 /// nothing: a target twice as large has a map twice as large, and on models of about one size lengths stay as
 /// they were asked for.
-double octave_of(double size_ratio);
+double power_of_two_scale(double size_ratio);
 
 /// "0.02" or "10%"; empty unless it is finite and within the range.
 std::optional<Length> parse_length(std::string_view text, LengthRange range = LengthRange::positive);

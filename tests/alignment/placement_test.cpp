@@ -14,30 +14,30 @@ TriangleMesh flattened_ellipsoid() {
   return mesh;
 }
 
-TEST(PlacementJudge, FindsNothingWrongWithASimilarCopy) {
+TEST(PlacementScore, FindsNothingWrongWithASimilarCopy) {
   const TriangleMesh source = flattened_ellipsoid();
   const Matrix3 rotation = Eigen::AngleAxisd(1.2, Vector3(1, -1, 2).normalized()).toRotationMatrix();
   const TriangleMesh target{(3 * rotation * source.vertices).colwise() + Vector3(5, 6, 7), source.faces};
-  const PlacementFigures figures = PlacementJudge(source, target)(target.vertices);
+  const PlacementFigures figures = PlacementScore(source, target)(target.vertices);
   EXPECT_LT(figures.distance, 1e-9);
   EXPECT_LT(figures.distortion, 1e-9);
   EXPECT_NEAR(figures.covered, 1, 1e-12);
 }
 
-TEST(PlacementJudge, MeasuresTheDistanceOfAShiftedPlane) {
+TEST(PlacementScore, MeasuresTheDistanceOfAShiftedPlane) {
   const TriangleMesh plane = shapes::square_grid(10);
   const double offset = 0.002 * diagonal(plane.vertices);
   const Points placed = plane.vertices.colwise() + Vector3(0, 0, offset);
-  const PlacementFigures figures = PlacementJudge(plane, plane)(placed);
+  const PlacementFigures figures = PlacementScore(plane, plane)(placed);
   EXPECT_NEAR(figures.distance, 0.002, 1e-9);
   EXPECT_LT(figures.distortion, 1e-9);
 }
 
-TEST(PlacementJudge, SeesThatHalfOfTheTargetIsLeftOut) {
+TEST(PlacementScore, SeesThatHalfOfTheTargetIsLeftOut) {
   const TriangleMesh plane = shapes::square_grid(40);
   Points half = plane.vertices;
   half.row(0) /= 2;
-  const PlacementFigures figures = PlacementJudge(plane, plane)(half);
+  const PlacementFigures figures = PlacementScore(plane, plane)(half);
   // What lies within 1 % of the diagonal beside the half counts too.
   EXPECT_GT(figures.covered, 0.5);
   EXPECT_LT(figures.covered, 0.55);
@@ -50,9 +50,9 @@ TEST(PlacementFigures, PreferLessDistortionAmongThoseThatMeetTheTarget) {
   EXPECT_LT(crumpled.misfit(), aside.misfit());
 }
 
-TEST(PlacementJudge, RejectsAnotherNumberOfVertices) {
+TEST(PlacementScore, RejectsAnotherNumberOfVertices) {
   const TriangleMesh cube = shapes::cube();
-  EXPECT_THROW(PlacementJudge(cube, cube)(Points::Zero(3, 2)), InvalidInput);
+  EXPECT_THROW(PlacementScore(cube, cube)(Points::Zero(3, 2)), InvalidInput);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/linings.h"
+#include "bespoke/mesh/cavities.h"
 #include "support/pocketed_ball.h"
 #include "support/shapes.h"
 
@@ -79,7 +79,7 @@ TEST(SurfacePatches, RejectMeshesWithoutArea) {
 
 TEST(SurfacePatches, HaveNoOpenAreaInThePocketOfABall) {
   const TriangleMesh mesh = shapes::pocketed_ball(9 * std::numbers::pi / 180);
-  const SurfacePatches patches = make_surface_patches(mesh, 300, linings_of(mesh).contains);
+  const SurfacePatches patches = make_surface_patches(mesh, 300, cavities_of(mesh).contains);
   EXPECT_NEAR(patches.open_areas.sum(), 1, 1e-12);
   for (Eigen::Index i = 0; i < patches.size(); ++i) {
     const double far = patches.points.col(i).norm();

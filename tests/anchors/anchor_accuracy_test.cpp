@@ -34,7 +34,7 @@ struct Pair {
     }
   }
   double size() const { return diagonal(source.vertices); }
-  RatedAnchors rate() const { return rate_anchors(anchors, source, target); }
+  EstimatedAnchors rate() const { return estimate_anchor_sigmas(anchors, source, target); }
 
   void disturb(double sigma) {
     std::mt19937 generator(7);
@@ -44,25 +44,25 @@ struct Pair {
   }
 };
 
-TEST(RateAnchors, TakesAnchorsOnBothSurfacesForExact) {
+TEST(EstimateAnchorSigmas, TakesAnchorsOnBothSurfacesForExact) {
   const Pair pair;
-  const RatedAnchors rated = pair.rate();
-  EXPECT_EQ(rated.accuracy.estimated, pair_count);
-  EXPECT_EQ(rated.accuracy.sigma, 0);
-  EXPECT_THAT(rated.sigmas, Each(0.0));
-  for (const AnchorPair& anchor : rated.anchors.pairs) EXPECT_TRUE(is_exact(anchor));
-  EXPECT_EQ(to_string(rated.accuracy, pair.anchors), "");
+  const EstimatedAnchors estimated = pair.rate();
+  EXPECT_EQ(estimated.accuracy.estimated, pair_count);
+  EXPECT_EQ(estimated.accuracy.sigma, 0);
+  EXPECT_THAT(estimated.sigmas, Each(0.0));
+  for (const AnchorPair& anchor : estimated.anchors.pairs) EXPECT_TRUE(is_exact(anchor));
+  EXPECT_EQ(to_string(estimated.accuracy, pair.anchors), "");
 }
 
-TEST(RateAnchors, FindsTheDeviationOfTheErrors) {
+TEST(EstimateAnchorSigmas, FindsTheDeviationOfTheErrors) {
   for (const double share : {0.003, 0.01}) {
     Pair pair;
     pair.disturb(share * pair.size());
-    const RatedAnchors rated = pair.rate();
+    const EstimatedAnchors estimated = pair.rate();
     // The deviation of 60 squares' mean is 9 % of the root; three of them.
-    EXPECT_NEAR(rated.accuracy.sigma, share * pair.size(), 0.28 * share * pair.size());
-    EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("60 anchors without an accuracy"));
-    EXPECT_TRUE(rated.accuracy.swapped.empty());
+    EXPECT_NEAR(estimated.accuracy.sigma, share * pair.size(), 0.28 * share * pair.size());
+    EXPECT_THAT(to_string(estimated.accuracy, pair.anchors), HasSubstr("60 anchors without an accuracy"));
+    EXPECT_TRUE(estimated.accuracy.swapped.empty());
   }
 }
 
@@ -80,55 +80,55 @@ TEST(OffTarget, AreAnchorsAtRandomInTheTargetsBoxUnlessTheyHaveAnAccuracy) {
   EXPECT_EQ(off_target(pair.rate().accuracy, pair.target), "");
 }
 
-TEST(RateAnchors, LeavesAloneWhatHasAnAccuracyOrIsNoPointOfTheSurface) {
+TEST(EstimateAnchorSigmas, LeavesAloneWhatHasAnAccuracyOrIsNoPointOfTheSurface) {
   Pair pair;
   pair.disturb(0.01 * pair.size());
   pair.anchors.pairs[0].sigma = 0;
   pair.anchors.pairs[1].sigma = 0.5;
   pair.anchors.pairs[2].weight = 3;
   pair.anchors.pairs[3].a *= 1.5;
-  const RatedAnchors rated = pair.rate();
-  EXPECT_EQ(rated.accuracy.estimated, pair_count - 4);
-  EXPECT_EQ(rated.anchors.pairs[0].sigma, 0.0);
-  EXPECT_EQ(rated.anchors.pairs[1].sigma, 0.5);
-  EXPECT_EQ(rated.anchors.pairs[2].sigma, std::nullopt);
-  EXPECT_EQ(rated.anchors.pairs[2].weight, 3);
-  EXPECT_EQ(rated.anchors.pairs[3].sigma, 0.0);
-  EXPECT_EQ(rated.anchors.pairs[4].sigma, rated.accuracy.sigma);
+  const EstimatedAnchors estimated = pair.rate();
+  EXPECT_EQ(estimated.accuracy.estimated, pair_count - 4);
+  EXPECT_EQ(estimated.anchors.pairs[0].sigma, 0.0);
+  EXPECT_EQ(estimated.anchors.pairs[1].sigma, 0.5);
+  EXPECT_EQ(estimated.anchors.pairs[2].sigma, std::nullopt);
+  EXPECT_EQ(estimated.anchors.pairs[2].weight, 3);
+  EXPECT_EQ(estimated.anchors.pairs[3].sigma, 0.0);
+  EXPECT_EQ(estimated.anchors.pairs[4].sigma, estimated.accuracy.sigma);
 }
 
-TEST(RateAnchors, NamesAClickBesideTheTargetAndTrustsItNoFarther) {
+TEST(EstimateAnchorSigmas, NamesAClickBesideTheTargetAndTrustsItNoFarther) {
   Pair pair;
   const double slip = 0.05 * pair.size();
   pair.anchors.pairs[8].b += slip * (pair.anchors.pairs[8].b - Vector3(2, 0, 0)).normalized();
-  const RatedAnchors rated = pair.rate();
-  ASSERT_EQ(rated.accuracy.slipped.size(), 1u);
-  EXPECT_EQ(rated.accuracy.slipped[0].index, 8u);
-  EXPECT_EQ(rated.accuracy.sigma, 0);
-  EXPECT_NEAR(rated.sigmas[8], slip, 0.1 * slip);  // an ellipsoid's normals are not quite its radii
-  EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p8\" lies"));
+  const EstimatedAnchors estimated = pair.rate();
+  ASSERT_EQ(estimated.accuracy.outliers.size(), 1u);
+  EXPECT_EQ(estimated.accuracy.outliers[0].index, 8u);
+  EXPECT_EQ(estimated.accuracy.sigma, 0);
+  EXPECT_NEAR(estimated.sigmas[8], slip, 0.1 * slip);  // an ellipsoid's normals are not quite its radii
+  EXPECT_THAT(to_string(estimated.accuracy, pair.anchors), HasSubstr("\"p8\" lies"));
 }
 
-TEST(RateAnchors, NamesAPairLeftOutAsNothingElse) {
+TEST(EstimateAnchorSigmas, NamesAPairLeftOutAsNothingElse) {
   Pair pair;
   pair.anchors.pairs[8].b += Vector3(0, pair.size(), 0);
-  const RatedAnchors rest = without(pair.rate(), {{8, 1.5}});
+  const EstimatedAnchors rest = without(pair.rate(), {{8, 1.5}});
   EXPECT_EQ(rest.anchors.pairs.size(), pair_count - 1);
   EXPECT_EQ(rest.sigmas[8], 1.5);
-  EXPECT_TRUE(rest.accuracy.slipped.empty());
+  EXPECT_TRUE(rest.accuracy.outliers.empty());
   const std::string text = to_string(rest.accuracy, pair.anchors);
   EXPECT_EQ(text.find("p8"), text.rfind("p8"));
 }
 
-TEST(RateAnchors, LeavesOutASwappedPairAndNamesIt) {
+TEST(EstimateAnchorSigmas, LeavesOutASwappedPairAndNamesIt) {
   Pair pair;
   std::swap(pair.anchors.pairs[3].b, pair.anchors.pairs[40].b);
-  const RatedAnchors rated = pair.rate();
-  ASSERT_EQ(rated.accuracy.swapped.size(), 1u);
-  EXPECT_EQ(rated.anchors.pairs.size(), pair_count - 2);
-  ASSERT_EQ(rated.sigmas.size(), pair_count);
-  EXPECT_EQ(rated.sigmas[3], (pair.anchors.pairs[3].b - pair.anchors.pairs[40].b).norm());
-  EXPECT_THAT(to_string(rated.accuracy, pair.anchors), HasSubstr("\"p3\" and \"p40\" look swapped"));
+  const EstimatedAnchors estimated = pair.rate();
+  ASSERT_EQ(estimated.accuracy.swapped.size(), 1u);
+  EXPECT_EQ(estimated.anchors.pairs.size(), pair_count - 2);
+  ASSERT_EQ(estimated.sigmas.size(), pair_count);
+  EXPECT_EQ(estimated.sigmas[3], (pair.anchors.pairs[3].b - pair.anchors.pairs[40].b).norm());
+  EXPECT_THAT(to_string(estimated.accuracy, pair.anchors), HasSubstr("\"p3\" and \"p40\" look swapped"));
   for (AnchorPair& anchor : pair.anchors.pairs) anchor.sigma = 0;  // somebody stands by them
   EXPECT_TRUE(pair.rate().accuracy.swapped.empty());
 }

@@ -24,7 +24,7 @@ TEST(AnchorPlacement, MeasuresTheDistanceFromTheSurface) {
   EXPECT_THAT(to_string(off), testing::HasSubstr("half of the anchors lie 0.5 or more from the model"));
 }
 
-TEST(AnchorPlacement, TellsOtherUnitsFromAnchorsOffTheSurface) {
+TEST(AnchorPlacement, DistinguishesOtherUnitsFromAnchorsOffTheSurface) {
   const Points anchors = model.vertices.leftCols(40);
   for (const double unit : {0.001, 0.01, 0.1, 1 / 2.54, 2.54, 10.0, 100.0, 1000.0})
     EXPECT_TRUE(anchor_placement(model, unit * anchors).is_far()) << unit;
@@ -43,16 +43,16 @@ TEST(AnchorPlacement, OfASingleAnchorIsMeasuredByTheModel) {
 TEST(ExchangedSides, AreFarFromTheirModelAndAtTheOther) {
   TriangleMesh target = model;
   target.vertices.colwise() += Vector3(5, 0, 0);
-  Anchors right, exchanged, elsewhere;
+  Anchors right, exchanged, displaced;
   for (int i = 0; i < 20; ++i) {
     const Vector3 a = model.vertices.col(i), b = target.vertices.col(i);
     right.pairs.push_back({"", a, b});
     exchanged.pairs.push_back({"", b, a});
-    elsewhere.pairs.push_back({"", b, 2 * b});
+    displaced.pairs.push_back({"", b, 2 * b});
   }
   EXPECT_EQ(exchanged_sides(right, model, target), "");
   EXPECT_THAT(exchanged_sides(exchanged, model, target), testing::HasSubstr("are exchanged"));
-  EXPECT_EQ(exchanged_sides(elsewhere, model, target), "");
+  EXPECT_EQ(exchanged_sides(displaced, model, target), "");
   EXPECT_EQ(exchanged_sides(exchanged, model, model), "");  // nobody can tell
   EXPECT_EQ(exchanged_sides({}, model, target), "");
 }

@@ -45,9 +45,9 @@ TEST(ContradictingAnchors, AreThoseMovedFartherThanTheyAreApart) {
     if (found.empty()) continue;
     EXPECT_EQ(found[0].first, 0u);
     EXPECT_EQ(found[0].second, 20u);
-    EXPECT_NEAR(found[0].apart, 1.7 * near,
+    EXPECT_NEAR(found[0].source_distance, 1.7 * near,
                 0.05 * near);  // one moved pair of 21 moves the similarity a little
-    EXPECT_NEAR(found[0].asked, share * 1.7 * near, 0.05 * near);
+    EXPECT_NEAR(found[0].target_difference, share * 1.7 * near, 0.05 * near);
     EXPECT_NE(to_string(found, anchors).find("\"left\" and \"right\""), std::string::npos);
   }
 }

@@ -50,7 +50,7 @@ TEST(SwappedAnchors, AreFoundWhicheverTheyAre) {
   }
 }
 
-TEST(SwappedAnchors, AreNoneWhereOneAloneSlipped) {
+TEST(SwappedAnchors, AreNoneWhereOneAloneIsAnOutlier) {
   const Points directions = test::random_points(24, 8);
   for (const double length : {0.3, 1.0, 3.0, 1000.0})
     for (std::size_t i = 0; i < 24; ++i) {

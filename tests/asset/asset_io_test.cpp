@@ -73,7 +73,7 @@ TEST_F(AssetIo, HalfPrecisionTakesLessRoomAndComesBackAsItWas) {
     const Certificate before = certify(half.steps.front().pyramid, half.steps.front().affine),
                       after = certify(read.steps.front().pyramid, read.steps.front().affine);
     EXPECT_EQ(after.certified, before.certified);
-    EXPECT_EQ(after.least_determinant, before.least_determinant);
+    EXPECT_EQ(after.min_determinant, before.min_determinant);
   }
 }
 
@@ -214,7 +214,7 @@ TEST_F(AssetIo, RefusesToWriteWhatIsNotValid) {
       },
       "smaller unit");
   refuses([](Asset& a) { a.steps.front().certificate.certified = 0; }, "no cell is certified");
-  refuses([](Asset& a) { a.steps.front().certificate.least_determinant = 0; }, "least determinant");
+  refuses([](Asset& a) { a.steps.front().certificate.min_determinant = 0; }, "least determinant");
   refuses([](Asset& a) { a.steps.front().certificate.affine_determinant = 1; }, "affine determinant");
   refuses([&](Asset& a) { a.record.lambda = nan; }, "lambda");
   refuses([&](Asset& a) { a.record.anchors[0].weight = 0; }, "weight");
@@ -284,7 +284,7 @@ TEST(WholeCertificate, IsABijectionOnlyWhenEveryStepIs) {
   const Certificate whole = whole_certificate(asset);
   EXPECT_TRUE(whole.is_bijection());
   EXPECT_EQ(whole.certified, 2 * asset.steps[0].certificate.certified);
-  EXPECT_NEAR(whole.least_determinant, 0.0625 * 0.0625, 1e-15);
+  EXPECT_NEAR(whole.min_determinant, 0.0625 * 0.0625, 1e-15);
   asset.steps[1].certificate.folded = 1;
   EXPECT_FALSE(whole_certificate(asset).is_bijection());
   asset.steps[1].certificate.folded = 0;

@@ -52,7 +52,7 @@ inline Asset small_asset() {
       wavy_level(asset.steps.front().pyramid.origin, voxel_size, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}}, 0.05),
       wavy_level(asset.steps.front().pyramid.origin, voxel_size / 2, {{0, 1, 0}, {1, 1, 1}}, 0.01)};
   asset.steps.front().certificate.certified = 12345;
-  asset.steps.front().certificate.least_determinant = 0.0625;
+  asset.steps.front().certificate.min_determinant = 0.0625;
   asset.steps.front().certificate.affine_determinant = asset.steps.front().affine.linear.determinant();
   asset.steps.front().certificate.places = {{1, {0.1, 0.2, 0.3}, 1e-3}};
   asset.record.unit = "dm";

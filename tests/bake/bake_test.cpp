@@ -177,9 +177,9 @@ TEST(Bake, RefusesValuesOutOfRange) {
     options.voxel_size = bad;
     EXPECT_THROW(bake(two_bumps(), options), InvalidInput);
     options.voxel_size.reset();
-    options.most_face_turn = bad;
+    options.max_face_turn = bad;
     EXPECT_THROW(bake(two_bumps(), options), InvalidInput);
-    options.most_face_turn = 180;
+    options.max_face_turn = 180;
   }
 }
 
@@ -353,7 +353,7 @@ struct SteepPlace {
     options.surface = &surface;
   }
 
-  std::size_t turned_faces(const Pyramid& pyramid, double degrees) const {
+  std::size_t misoriented_faces(const Pyramid& pyramid, double degrees) const {
     const auto normals = [&](const ElasticMap& by) {
       return face_normals({by(surface.vertices), surface.faces});
     };
@@ -366,29 +366,29 @@ struct SteepPlace {
 // The tolerance alone leaves small faces turned by any angle.
 TEST(Bake, TurnsNoFaceOfTheSurfaceFartherThanAsked) {
   SteepPlace place;
-  place.options.most_face_turn = 180;
+  place.options.max_face_turn = 180;
   const Bake by_tolerance = bake(place.map, place.options);
   ASSERT_TRUE(by_tolerance.summary.tolerance_met);
   for (const double degrees : {15.0, 5.0}) {
-    EXPECT_GT(place.turned_faces(by_tolerance.pyramid, degrees), 0u);
-    place.options.most_face_turn = degrees;
+    EXPECT_GT(place.misoriented_faces(by_tolerance.pyramid, degrees), 0u);
+    place.options.max_face_turn = degrees;
     const Bake baked = bake(place.map, place.options);
-    EXPECT_EQ(place.turned_faces(baked.pyramid, degrees), 0u);
-    EXPECT_EQ(baked.summary.turned_faces, 0u);
+    EXPECT_EQ(place.misoriented_faces(baked.pyramid, degrees), 0u);
+    EXPECT_EQ(baked.summary.misoriented_faces, 0u);
   }
 }
 
 TEST(Bake, CountsTheFacesThatItsLeavesDoNotTurnBack) {
   SteepPlace place;
-  place.options.most_face_turn = 5;
+  place.options.max_face_turn = 5;
   place.options.max_leaves = 40;
   const Bake baked = bake(place.map, place.options);
-  EXPECT_GT(baked.summary.turned_faces, 0u);
-  EXPECT_EQ(baked.summary.turned_faces, place.turned_faces(baked.pyramid, 5));
+  EXPECT_GT(baked.summary.misoriented_faces, 0u);
+  EXPECT_EQ(baked.summary.misoriented_faces, place.misoriented_faces(baked.pyramid, 5));
   place.options.voxel_size = 4e-3;
   const Bake one_level = bake(place.map, place.options);
-  EXPECT_GT(one_level.summary.turned_faces, 0u);
-  EXPECT_EQ(one_level.summary.turned_faces, place.turned_faces(one_level.pyramid, 5));
+  EXPECT_GT(one_level.summary.misoriented_faces, 0u);
+  EXPECT_EQ(one_level.summary.misoriented_faces, place.misoriented_faces(one_level.pyramid, 5));
 }
 
 // No voxel resolves what is thinner than the smallest.
@@ -403,7 +403,7 @@ TEST(Bake, SpendsNoLeafOnFacesThinnerThanItsSmallestVoxel) {
       strips.vertices.middleCols<3>(3 * face) << a, b, (a + b) / 2 + height * inwards;
       strips.faces.col(face) << 3 * face, 3 * face + 1, 3 * face + 2;
     }
-    place.options.most_face_turn = 5;
+    place.options.max_face_turn = 5;
     place.surface = strips;
     place.options.surface = &place.surface;
     return bake(place.map, place.options);
@@ -412,7 +412,7 @@ TEST(Bake, SpendsNoLeafOnFacesThinnerThanItsSmallestVoxel) {
   const double smallest = place.options.tolerance / 2;
   EXPECT_GT(baked(place, 1.1 * smallest).pyramid.leaf_count(),
             baked(place, 0.5 * smallest).pyramid.leaf_count());
-  EXPECT_EQ(baked(place, 0.5 * smallest).summary.turned_faces, 0u);
+  EXPECT_EQ(baked(place, 0.5 * smallest).summary.misoriented_faces, 0u);
 }
 
 // What is kept for folds goes to the tolerance where nothing folds.

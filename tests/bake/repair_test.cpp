@@ -89,7 +89,7 @@ void expect_certificate_of_the_pyramid(const Bake& baked, const AffineMap& affin
   EXPECT_EQ(found.certified, expected.certified);
   EXPECT_EQ(found.folded, expected.folded);
   EXPECT_EQ(found.undecided, expected.undecided);
-  EXPECT_EQ(found.least_determinant, expected.least_determinant);
+  EXPECT_EQ(found.min_determinant, expected.min_determinant);
   EXPECT_EQ(found.affine_determinant, expected.affine_determinant);
   EXPECT_EQ(found.places.size(), expected.places.size());
   EXPECT_EQ(baked.summary.folded_cells, expected.folded + expected.undecided);

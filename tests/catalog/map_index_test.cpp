@@ -20,7 +20,7 @@ MapIndexRow row(const std::string& name, bool bijection) {
   row.map.file = "../maps/x.vdb";
   row.map.unit = "cm";
   row.map.bijection = bijection;
-  row.map.least_determinant = 0.25;
+  row.map.min_determinant = 0.25;
   row.map.folded = 7;
   return row;
 }

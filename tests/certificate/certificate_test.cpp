@@ -31,7 +31,7 @@ Pyramid one_level(const std::vector<LeafCoordinates>& leaves, double voxel_size,
 }
 
 // det ∇((1−t) x + t E) at 9³ points of a cell, by the look-up's gradients: shares no code with the bound.
-double least_sampled_determinant(const BakedMap& map, const Vector3& corner, double voxel_size, double t) {
+double min_sampled_determinant(const BakedMap& map, const Vector3& corner, double voxel_size, double t) {
   Points x(3, 729);
   for (int n = 0; n < 729; ++n)
     // Just inside: gradients on a face belong to the upper cell.
@@ -71,12 +71,12 @@ Comparison compare(const Pyramid& pyramid, const AffineMap& affine, double t) {
     for (int j = 8 * first[1] - 1; j < 8 * first[1] + 8; ++j)
       for (int k = 8 * first[2] - 1; k < 8 * first[2] + 8; ++k) {
         const double sampled =
-            least_sampled_determinant(map, pyramid.origin + voxel_size * Vector3(i, j, k), voxel_size, t);
+            min_sampled_determinant(map, pyramid.origin + voxel_size * Vector3(i, j, k), voxel_size, t);
         const auto place = folded.find({i, j, k});
         if (place == folded.end()) {
           ++seen.certified;
           EXPECT_GT(sampled, 0) << i << ' ' << j << ' ' << k;
-          EXPECT_GE(sampled, certificate.least_determinant - 1e-9);
+          EXPECT_GE(sampled, certificate.min_determinant - 1e-9);
         } else {
           ++seen.folded;
           EXPECT_LE(place->second, 0);
@@ -119,7 +119,7 @@ TEST(Certify, SeesTheCheckerboardThatCentralDifferencesPass) {
   // Every second cell turns over: ∂u/∂x alternates between ±2 a: with three equal components the least det is
   // 1 − 6 a (at a corner).
   EXPECT_EQ(certify(checkerboard(0.16), {}).folded, 0u);
-  EXPECT_GT(certify(checkerboard(0.16), {}).least_determinant, 1 - 6 * 0.1601 - 1e-6);
+  EXPECT_GT(certify(checkerboard(0.16), {}).min_determinant, 1 - 6 * 0.1601 - 1e-6);
   EXPECT_GE(certify(checkerboard(0.17), {}).folded, 171u);
   compare(checkerboard(0.16), {}, 1);
   compare(checkerboard(0.17), {}, 1);
@@ -212,7 +212,7 @@ TEST(Certify, IsTheSameAtAnyNumberOfThreads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     const Certificate found = certify(pyramid, {});
     EXPECT_EQ(found.certified, expected.certified);
-    EXPECT_EQ(found.least_determinant, expected.least_determinant);
+    EXPECT_EQ(found.min_determinant, expected.min_determinant);
     ASSERT_EQ(found.places.size(), expected.places.size());
     for (std::size_t i = 0; i < found.places.size(); ++i)
       EXPECT_EQ(found.places[i].center, expected.places[i].center);

@@ -19,7 +19,7 @@ std::string complaint(const OrientedPoints& cloud) {
 }
 
 TEST(OrientedPoints, OfEnoughPointsWithNormalsOfAnyLengthAreValid) {
-  OrientedPoints cloud = test::sphere_cloud(least_cloud_points);
+  OrientedPoints cloud = test::sphere_cloud(min_cloud_points);
   EXPECT_EQ(complaint(cloud), "accepted");
   cloud.normals *= 1e-200;
   EXPECT_EQ(complaint(cloud), "accepted");

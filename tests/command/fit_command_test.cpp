@@ -202,7 +202,7 @@ TEST_F(FitCommand, StoresHalfFloatsOnRequest) {
   // What is proved is proved of the stored values.
   const ProgramResult check = bespoke({"check", pair_.file("half.vdb"), "--json"});
   EXPECT_EQ(json::parse(check.out)["certified"], half["certificate"]["certified"]);
-  EXPECT_EQ(json::parse(check.out)["least_determinant"], half["certificate"]["least_determinant"]);
+  EXPECT_EQ(json::parse(check.out)["min_determinant"], half["certificate"]["min_determinant"]);
   EXPECT_EQ(bespoke({"invert", pair_.file("half.vdb"), "-o", pair_.file("back.vdb"), "--half"}).exit_code, 0);
   EXPECT_EQ(info("back.vdb")["precision"], "half");
 }
@@ -424,7 +424,7 @@ TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
   EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it, and are the anchors its own?"));
 }
 
-TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesBareUnlessAPatchExcludesIt) {
+TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesUncoveredUnlessAPatchExcludesIt) {
   const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
   EXPECT_THAT(pair_.fit("map.vdb", quick).err, Not(HasSubstr("bare")));
   const TriangleMesh target = read_triangle_mesh(pair_.file("target.obj"));

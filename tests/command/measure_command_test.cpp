@@ -48,7 +48,7 @@ TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {
   EXPECT_LT(printed["source_to_target"]["p99"].get<double>(), off);
   EXPECT_LT(printed["target_to_source"]["p99"].get<double>(), off);
   EXPECT_GE(printed["hausdorff"].get<double>(), printed["source_to_target"]["max"].get<double>());
-  EXPECT_GT(printed["distortion"]["least_determinant"].get<double>(), 0);
+  EXPECT_GT(printed["distortion"]["min_determinant"].get<double>(), 0);
   EXPECT_GE(printed["distortion"]["conformal"]["min"].get<double>(), 1);
   ASSERT_EQ(printed["products"].size(), 2u);
   EXPECT_EQ(printed["products"][0]["name"], "product.obj");

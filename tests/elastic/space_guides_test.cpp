@@ -67,10 +67,10 @@ TEST(SpaceGuides, TurnWithTheirLimb) {
 
 TEST(SpaceGuides, AreNoneBetweenPartsThatAreNear) {
   const TriangleMesh square = shapes::square_grid(20);
-  AffineMap turned_over{Vector3(1, -1, -1).asDiagonal(), Vector3(0, 1, 0)};
+  AffineMap flipped{Vector3(1, -1, -1).asDiagonal(), Vector3(0, 1, 0)};
   const auto plates = [&](double apart) {
-    turned_over.offset.z() = apart;
-    return shapes::joined(square, shapes::moved(square, turned_over));
+    flipped.offset.z() = apart;
+    return shapes::joined(square, shapes::moved(square, flipped));
   };
   const TriangleMesh far = plates(0.5), near = plates(0.15);  // facing each other
   const auto count = [](const TriangleMesh& source, const TriangleMesh& fitted) {

@@ -75,7 +75,7 @@ TEST(ViewScene, FollowsTheStepsOfAChain) {
 TEST(ViewScene, ThinsMeshesToTheTrianglesAllowed) {
   Scenery scenery;
   scenery.source = test::sphere(Vector3(0.2, -0.4, -0.2), 0.6, 5);
-  const UnpackedScene scene = scenery.scene({.most_faces = 4000});
+  const UnpackedScene scene = scenery.scene({.max_faces = 4000});
   const nlohmann::json& source = scene.record["meshes"][0];
   EXPECT_EQ(source["faces_in_file"], 20480);
   EXPECT_LE(source["faces"]["count"].get<int>() / 3, 4000);
@@ -114,7 +114,7 @@ TEST(ViewScene, RefusesFindingsOfAnotherSource) {
   Scenery scenery;
   scenery.findings.confidence = {0.5};
   EXPECT_THROW(scenery.scene(), InvalidInput);
-  EXPECT_THROW(Scenery{}.scene({.most_faces = 0}), InvalidInput);
+  EXPECT_THROW(Scenery{}.scene({.max_faces = 0}), InvalidInput);
 }
 
 }  // namespace

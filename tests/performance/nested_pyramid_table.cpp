@@ -128,15 +128,15 @@ void print_inverses(const BakedMap& map, const RigidTransform& target_from_sourc
 // a to b and then b to a, each fitted for itself: two maps that know nothing of one another.
 void print_composition(const BakedMap& map, const RigidTransform& target_from_source, const Pair& pair,
                        const Points& x, const BakeOptions& options) {
-  const FittedMapping way_back = fit(turned(pair));
-  const BakedMap back(way_back.elastic->affine(), bake(*way_back.elastic, options).pyramid);
+  const FittedMapping inverse_fit = fit(turned(pair));
+  const BakedMap back(inverse_fit.elastic->affine(), bake(*inverse_fit.elastic, options).pyramid);
   Stopwatch watch;
   const ComposedMap exact(map, target_from_source, back);
   const Bake baked = bake(exact, options);
   const std::string time = watch.lap();
   const BakedMap both(exact.affine(), baked.pyramid);
-  const RigidTransform source_from_source = way_back.target_from_source * target_from_source;
-  const Points in_turn = way_back.target_from_source * back(target_from_source * map(x));
+  const RigidTransform source_from_source = inverse_fit.target_from_source * target_from_source;
+  const Points in_turn = inverse_fit.target_from_source * back(target_from_source * map(x));
   std::printf("  composed with the fitted way back: %zu voxels, largest error %.3g (tolerance %.3g), %s\n",
               baked.pyramid.voxel_count(), largest_distance(source_from_source * both(x), in_turn),
               options.tolerance, time.c_str());

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "bespoke/alignment/geodesic_counterparts.h"
+#include "bespoke/mesh/cavities.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/linings.h"
-#include "bespoke/quality/bare_area.h"
 #include "bespoke/quality/surface_strain.h"
+#include "bespoke/quality/uncovered_area.h"
 #include "bespoke/surface_fit/surface_fit.h"
 #include "support/pocketed_ball.h"
 #include "support/shapes.h"
@@ -59,30 +59,30 @@ BENCHMARK_CAPTURE(fit, deformation_graph, SurfaceFitMethod::deformation_graph)
 /// anchors.
 void strain(benchmark::State& state) {
   const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
-  const Points laid = bumpy_sphere(static_cast<int>(state.range(0))).vertices;
+  const Points registered = bumpy_sphere(static_cast<int>(state.range(0))).vertices;
   const ClosestPointTree surface(source);
   std::vector<SurfacePoint> places;
   for (Eigen::Index i = 0; i < 36; ++i) places.push_back(*surface.closest(source.vertices.col(i)));
-  for (auto _ : state) benchmark::DoNotOptimize(strain_around(source, laid, places, 0.07));
+  for (auto _ : state) benchmark::DoNotOptimize(strain_around(source, registered, places, 0.07));
 }
 BENCHMARK(strain)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// The same: what of the target it leaves bare.
-void bare(benchmark::State& state) {
+void uncovered(benchmark::State& state) {
   const TriangleMesh target = shapes::icosphere(static_cast<int>(state.range(0)));
-  const TriangleMesh laid = bumpy_sphere(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(bare_area(target, laid, 0.035));
+  const TriangleMesh registered = bumpy_sphere(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(uncovered_area(target, registered, 0.035));
 }
-BENCHMARK(bare)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(uncovered)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// The same, of either model: what lines cavities. A ball with a pocket, 2,834 vertices, subdivided.
-void linings(benchmark::State& state) {
+void cavities(benchmark::State& state) {
   TriangleMesh mesh = shapes::pocketed_ball();
   for (int level = 0; level < state.range(0); ++level) mesh = shapes::subdivided(mesh);
-  for (auto _ : state) benchmark::DoNotOptimize(linings_of(mesh));
+  for (auto _ : state) benchmark::DoNotOptimize(cavities_of(mesh));
   state.counters["vertices"] = static_cast<double>(mesh.vertices.cols());
 }
-BENCHMARK(linings)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(cavities)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 
 /// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk
 /// over the source that every fit takes.

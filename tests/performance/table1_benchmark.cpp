@@ -144,7 +144,7 @@ void print_paper_way(Models models, const PrintedRow& row) {
   MapRequest request;
   request.paper = true;
   const double source_diagonal = diagonal(models.source.vertices);
-  rate_anchors(models.anchors, request, source_diagonal);
+  estimate_anchor_sigmas(models.anchors, request, source_diagonal);
   MakeMapOptions options = make_options(request, source_diagonal);
   if (row.lambda) options.fit.lambda = *row.lambda;
   std::string seconds;

@@ -38,7 +38,7 @@ TEST(CertifyMap, OfOneStepIsThatOfItsCells) {
     const Certificate found = certify_map(asset, t);
     EXPECT_EQ(found.certified, expected.certified);
     EXPECT_EQ(found.folded, expected.folded);
-    EXPECT_EQ(found.least_determinant, expected.least_determinant);
+    EXPECT_EQ(found.min_determinant, expected.min_determinant);
   }
 }
 

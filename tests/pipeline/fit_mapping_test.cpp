@@ -129,21 +129,21 @@ TEST(FitMapping, FitsAsIfSwappedAnchorsWereNotThere) {
               HasSubstr("\"anchor 2\" and \"anchor 7\" look swapped"));
 }
 
-TEST(FitMapping, FitsAsIfASlippedAnchorWereNotThereUnlessSomebodyStandsByIt) {
-  Pair without, slipped;
+TEST(FitMapping, FitsWithoutAnOutlierUnlessItsSigmaIsGiven) {
+  Pair without, outlier;
   without.anchors.pairs.erase(without.anchors.pairs.begin() + 4);
-  AnchorPair& wrong = slipped.anchors.pairs[4];
-  wrong.b = ClosestPointTree(slipped.target)
-                .closest(wrong.b + 0.7 * (slipped.anchors.pairs[9].b - wrong.b).normalized())
+  AnchorPair& wrong = outlier.anchors.pairs[4];
+  wrong.b = ClosestPointTree(outlier.target)
+                .closest(wrong.b + 0.7 * (outlier.anchors.pairs[9].b - wrong.b).normalized())
                 ->point;
-  const FittedMapping fit = slipped.fit();
+  const FittedMapping fit = outlier.fit();
   EXPECT_EQ(fit.fitted_vertices, without.fit().fitted_vertices);
   ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
   EXPECT_EQ(fit.summary.accuracy.left_out[0].index, 4u);
   EXPECT_NEAR(fit.anchor_residual[4], fit.summary.accuracy.left_out[0].distance, 0.05);
-  EXPECT_THAT(stage_lines(fit.summary, slipped.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
+  EXPECT_THAT(stage_lines(fit.summary, outlier.anchors).front().line, HasSubstr("\"anchor 4\" lies"));
   wrong.sigma = 0;
-  EXPECT_LT(slipped.fit().anchor_residual[4], 1e-3 * fit.anchor_residual[4]);
+  EXPECT_LT(outlier.fit().anchor_residual[4], 1e-3 * fit.anchor_residual[4]);
 }
 
 /// A tube onto the same tube bent at its elbow, with pairs along three of its lines.
@@ -162,21 +162,21 @@ struct BentTube {
       }
   }
 
-  FittedMapping laid() const {
+  FittedMapping registered() const {
     FitOptions options;
     options.lambda = 0.5;
     return fit_source_surface(source, target, anchors, options);
   }
 };
 
-TEST(FitMapping, LeavesOutASlippedAnchorThatABendHidesFromTheOthers) {
+TEST(FitMapping, RejectsAnOutlierThatABendHidesFromTheOthers) {
   BentTube tube;
-  constexpr int slipped = 12;  // ring 64, side 0
-  tube.anchors.pairs[slipped].b = tube.target.vertices.col(70 * shapes::tube_sides + 3);
+  constexpr int outlier = 12;  // ring 64, side 0
+  tube.anchors.pairs[outlier].b = tube.target.vertices.col(70 * shapes::tube_sides + 3);
   EXPECT_TRUE(audit_anchors(tube.anchors).suspicious.empty());
-  const FittedMapping fit = tube.laid();
+  const FittedMapping fit = tube.registered();
   ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
-  EXPECT_EQ(fit.summary.accuracy.left_out[0].index, std::size_t{slipped});
+  EXPECT_EQ(fit.summary.accuracy.left_out[0].index, std::size_t{outlier});
 }
 
 TEST(FitMapping, StepsTakeALooseSleeveAlongWithItsArm) {
@@ -267,7 +267,7 @@ TEST(FitMapping, DoesNotSeeSeams) {
   EXPECT_EQ(fit.summary.seams.target, of_target.size() - 2562);
   EXPECT_EQ(stage_lines(fit.summary, cut.anchors).front().name, "seams");
   EXPECT_FALSE(has_any(expected.summary.seams));
-  cut.options.surface_fit.mend_models = false;
+  cut.options.surface_fit.repair_models = false;
   EXPECT_FALSE(has_any(cut.fit().summary.seams));
 }
 
@@ -283,7 +283,7 @@ TEST(FitMapping, NamesWhatTheAnchorsLack) {
   EXPECT_THAT(pair.message(), HasSubstr("plan"));
 }
 
-TEST(FitMapping, MeetsExactAnchorsWhereTurnedFacesWereMendedToo) {
+TEST(FitMapping, MatchesExactAnchorsWhereFacesWereRepairedToo) {
   const std::filesystem::path pair = std::filesystem::path(BESPOKE_SHARED_DIR) / "cases" / "d04_hand_glove";
   if (!std::filesystem::is_directory(pair)) GTEST_SKIP() << "no shared cases here";
   const TriangleMesh source = read_triangle_mesh(pair / "reference_a.obj");
@@ -292,7 +292,7 @@ TEST(FitMapping, MeetsExactAnchorsWhereTurnedFacesWereMendedToo) {
   options.fit_tolerance = 1e-4 * diagonal(source.vertices);
   const FittedMapping fit = fit_mapping(source, read_triangle_mesh(pair / "reference_b.obj"),
                                         read_anchors(pair / "anchors.json"), options);
-  ASSERT_GT(fit.summary.surface.value().mended_vertices, 0u);
+  ASSERT_GT(fit.summary.surface.value().repaired_vertices, 0u);
   EXPECT_LE(fit.summary.elastic.anchor_residuals.max, options.fit_tolerance);
 }
 
@@ -334,7 +334,7 @@ TEST(FitMapping, RefusesModelsInTwoUnits) {
 }
 
 // A file whose axes are in another order fits nothing, but every anchor has some accuracy.
-TEST(FitMapping, RefusesAnchorsThatAreNotOnTheTargetUnlessSomebodyStandsByThem) {
+TEST(FitMapping, RefusesAnchorsOffTheTargetWithoutAGivenSigma) {
   Pair pair;
   for (AnchorPair& anchor : pair.anchors.pairs) std::swap(anchor.b.x(), anchor.b.z());
   EXPECT_THAT(pair.message(), HasSubstr("as points at random would"));

@@ -79,7 +79,7 @@ struct PatchScene {
 
 /// Where the map takes vertices that lie this much within the patch of the source, or without it: the
 /// smallest margin by which they are on the right side on the target, radians.
-double least_margin(const PatchScene& scene, const FittedMapping& fit, double clear) {
+double min_margin(const PatchScene& scene, const FittedMapping& fit, double clear) {
   const Points mapped = fit.target_from_source * (*fit.elastic)(scene.source.vertices);
   double least = 10;
   for (Eigen::Index i = 0; i < mapped.cols(); ++i) {
@@ -100,13 +100,13 @@ TEST(FitPatches, PutBorderOntoBorderAndInsideInto) {
   ASSERT_EQ(fit.summary.patches.size(), 1u);
   ASSERT_TRUE(fit.summary.patches[0].largest_distance);
   EXPECT_LT(*fit.summary.patches[0].largest_distance, 2 * scene.options.fit_tolerance);
-  EXPECT_GT(least_margin(scene, fit, 0.02), 0);
+  EXPECT_GT(min_margin(scene, fit, 0.02), 0);
   EXPECT_TRUE(fit.summary.curves.empty());
   EXPECT_EQ(fit.anchor_residual.size(), scene.anchors.pairs.size());
 
   PatchScene without;
   without.anchors.patches.clear();
-  EXPECT_LT(least_margin(scene, without.fit(), 0.02), -0.1);
+  EXPECT_LT(min_margin(scene, without.fit(), 0.02), -0.1);
 }
 
 /// Of some faces.

@@ -105,10 +105,10 @@ TEST(FitUnanchored, KeepsAMouthThatTheTargetLacksInsideAndReachesAllOfATargetWit
 
   const UnanchoredFit fit = fit_unanchored(with_mouth, smooth, {});
   const Points placed = fit.target_from_source * fit.surface.vertices;
-  std::vector<int> lining, outside;
+  std::vector<int> cavity, outside;
   for (int i = 0; i < placed.cols(); ++i)
-    (shapes::in_pocket(pocketed.vertices.col(i)) ? lining : outside).push_back(i);
-  EXPECT_LT(farthest_out(smooth, placed(Eigen::all, lining)), 0.005 * unit);
+    (shapes::in_pocket(pocketed.vertices.col(i)) ? cavity : outside).push_back(i);
+  EXPECT_LT(farthest_out(smooth, placed(Eigen::all, cavity)), 0.005 * unit);
   const Points apart = (placed - with_mouth.vertices)(Eigen::all, outside);
   EXPECT_LT(apart.colwise().norm().mean(), 0.01 * unit);
 

@@ -17,7 +17,7 @@ MadeMap made_at(double size, const TriangleMesh& source, Points target,
                 ElasticMethod method = ElasticMethod::diffeomorphic) {
   target *= size;
   const TriangleMesh fitted{std::move(target), source.faces};
-  MakeMapOptions options = default_options(diagonal(source.vertices), octave_of(size));
+  MakeMapOptions options = default_options(diagonal(source.vertices), power_of_two_scale(size));
   options.fit.any_size = true;
   options.fit.elastic = method;
   return make_map({source, fitted, {}, &fitted}, options);
@@ -70,21 +70,21 @@ TEST(ModelSizes, ScaleTheMap) {
 
 TEST(ModelSizes, LeaveTheIterationsOfTheLaplacianFit) {
   const TriangleMesh source = ball();
-  const auto laid_at = [&](double size, bool as_printed) {
+  const auto registered_at = [&](double size, bool as_printed) {
     const TriangleMesh target{size * stretched(source.vertices), source.faces};
     Anchors anchors;
     for (int vertex = 0; vertex < 12; ++vertex)
       anchors.pairs.push_back({"", source.vertices.col(vertex), target.vertices.col(vertex)});
-    FitOptions options = default_options(diagonal(source.vertices), octave_of(size)).fit;
+    FitOptions options = default_options(diagonal(source.vertices), power_of_two_scale(size)).fit;
     options.any_size = true;
     options.surface_fit.method = SurfaceFitMethod::laplacian;
     if (as_printed) options.surface_fit.laplacian = no_additions;
     return fit_source_surface(source, target, anchors, options);
   };
   for (const bool as_printed : {true, false}) {
-    const FittedMapping same = laid_at(1, as_printed);
+    const FittedMapping same = registered_at(1, as_printed);
     for (const double size : {1.0 / 1024, 4.0, 1024.0}) {
-      const FittedMapping scaled = laid_at(size, as_printed);
+      const FittedMapping scaled = registered_at(size, as_printed);
       EXPECT_GT(same.summary.surface->iterations, 0);
       EXPECT_EQ(scaled.summary.surface->iterations, same.summary.surface->iterations) << size;
     }
@@ -122,7 +122,7 @@ TEST(ModelSizes, TakeAnchorsOffTheSurfaceAlong) {
       const Vector3 a = 1.03 * source.vertices.col(vertex);
       anchors.pairs.push_back({"", a, size * a});
     }
-    MakeMapOptions options = default_options(diagonal(source.vertices), octave_of(size));
+    MakeMapOptions options = default_options(diagonal(source.vertices), power_of_two_scale(size));
     options.fit.any_size = true;
     const FittedMapping fit = fit_mapping(source, target, anchors, options.fit);
     EXPECT_EQ(fit.summary.elastic.anchors_off_surface, anchors.pairs.size()) << size;

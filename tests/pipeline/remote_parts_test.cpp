@@ -32,11 +32,11 @@ struct BentTubes {
       }
   }
 
-  FittedMapping lay() const { return fit_source_surface(source, target, anchors, options); }
+  FittedMapping register_models() const { return fit_source_surface(source, target, anchors, options); }
 
   /// Of the vertices beyond the bend, from where they belong: the largest.
-  double beyond_the_bend(const FittedMapping& laid) const {
-    const Points places = laid.target_from_source * laid.fitted_vertices;
+  double beyond_the_bend(const FittedMapping& registered) const {
+    const Points places = registered.target_from_source * registered.fitted_vertices;
     double largest = 0;
     for (Eigen::Index i = 0; i < places.cols(); ++i)
       if (source.vertices(0, i) > 2.5)
@@ -48,28 +48,28 @@ struct BentTubes {
 TEST(RemoteParts, FollowDistancesAlongTheSurfacesWhereNoAnchorIsNear) {
   BentTubes tubes;
   tubes.add_pairs({0, 15, 30});  // up to x = 1.5 of 4
-  const FittedMapping laid = tubes.lay();
-  ASSERT_TRUE(laid.summary.counterparts);
-  EXPECT_TRUE(laid.summary.counterparts->taken);
-  EXPECT_GE(laid.summary.counterparts->elsewhere, 2u);
-  EXPECT_LT(tubes.beyond_the_bend(laid), 0.2);  // the tube's radius
-  EXPECT_EQ(laid.summary.rigid.residuals.count, tubes.anchors.pairs.size());
-  EXPECT_EQ(laid.summary.coarse->residuals.count, tubes.anchors.pairs.size());
+  const FittedMapping registered = tubes.register_models();
+  ASSERT_TRUE(registered.summary.counterparts);
+  EXPECT_TRUE(registered.summary.counterparts->taken);
+  EXPECT_GE(registered.summary.counterparts->displaced, 2u);
+  EXPECT_LT(tubes.beyond_the_bend(registered), 0.2);  // the tube's radius
+  EXPECT_EQ(registered.summary.rigid.residuals.count, tubes.anchors.pairs.size());
+  EXPECT_EQ(registered.summary.coarse->residuals.count, tubes.anchors.pairs.size());
 }
 
-TEST(RemoteParts, AreLaidByAnchorsAloneWhereThoseTell) {
+TEST(RemoteParts, AreRegisteredByAnchorsAloneWhereThoseSuffice) {
   BentTubes tubes;
   tubes.add_pairs({0, 15, 30, 50, 65, 80});
-  const FittedMapping laid = tubes.lay();
-  EXPECT_FALSE(laid.summary.counterparts);
-  EXPECT_LT(tubes.beyond_the_bend(laid), 0.2);
+  const FittedMapping registered = tubes.register_models();
+  EXPECT_FALSE(registered.summary.counterparts);
+  EXPECT_LT(tubes.beyond_the_bend(registered), 0.2);
 }
 
-TEST(RemoteParts, AreLaidByAnchorsAloneInThePrintedMethod) {
+TEST(RemoteParts, AreRegisteredByAnchorsAloneInThePrintedMethod) {
   BentTubes tubes;
   tubes.add_pairs({0, 15, 30});
   tubes.options.surface_fit.method = SurfaceFitMethod::laplacian;
-  EXPECT_FALSE(tubes.lay().summary.counterparts);
+  EXPECT_FALSE(tubes.register_models().summary.counterparts);
 }
 
 }  // namespace

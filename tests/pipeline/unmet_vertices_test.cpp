@@ -12,13 +12,13 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-constexpr double met_within = 1e-3;
+constexpr double satisfied_within = 1e-3;
 
 FittedMapping carried_to(const TriangleMesh& source, const Points& fitted, ElasticMethod method) {
   FitOptions options;
   options.elastic = method;
   options.lambda = 0.4;
-  options.fit_tolerance = met_within;
+  options.fit_tolerance = satisfied_within;
   return fit_mapping_to_fitted(source, {fitted, source.faces}, {}, options);
 }
 
@@ -27,7 +27,7 @@ void expect_complete(const FittedMapping& fit, const TriangleMesh& source) {
   const Points offset = (*fit.elastic)(source.vertices) - fit.fitted_vertices;
   std::size_t listed = 0;
   for (Eigen::Index i = 0; i < offset.cols(); ++i) {
-    if (!(offset.col(i).norm() > met_within)) continue;
+    if (!(offset.col(i).norm() > satisfied_within)) continue;
     ASSERT_LT(listed, fit.summary.elastic.unmet.size());
     EXPECT_EQ(fit.summary.elastic.unmet[listed].vertex, i);
     EXPECT_NEAR(fit.summary.elastic.unmet[listed].residual, offset.col(i).norm(), 1e-12);
@@ -99,7 +99,7 @@ TEST(UnmetVertices, LeaveOutVerticesOfNoFace) {
   source.vertices.col(3) = Vector3(1, 1, 1);
   Points away = source.vertices;
   away.col(3) += Vector3(1, 0, 0);
-  EXPECT_THAT(unmet_vertices(source, source.vertices, away, met_within), IsEmpty());
+  EXPECT_THAT(unmet_vertices(source, source.vertices, away, satisfied_within), IsEmpty());
 }
 
 TEST(UnmetVertices, PrintOneLine) {
@@ -117,8 +117,8 @@ TEST(UnmetVertices, AreTouchingWhereTheTargetTouchesItself) {
   const TriangleMesh source = two_balls(4), touching = two_balls(1.95);
   FitOptions options;
   options.lambda = 0.4;
-  options.fit_tolerance = met_within;
-  options.contact_gap = 0.02;
+  options.fit_tolerance = satisfied_within;
+  options.contact_offset = 0.02;
   const FittedMapping fit = fit_mapping_to_fitted(source, touching, {}, options);
   ASSERT_TRUE(fit.summary.contact.has_value());
   EXPECT_EQ(fit.summary.contact->left, 0u);

@@ -69,7 +69,7 @@ def test_certificate_proves_a_bijection(pair):
         certificate = pair.map.check(t)
         assert certificate.bijection
         assert certificate.folded == certificate.undecided == 0
-        assert certificate.least_determinant > 0
+        assert certificate.min_determinant > 0
 
 
 def test_inverted_and_composed_maps_lead_back(pair, around):

@@ -65,14 +65,14 @@ TEST(MapDistortion, IsThatOfTheSingularValues) {
   EXPECT_NEAR(distortion.area.p1, 6, 1e-12);
   EXPECT_NEAR(distortion.area.p99, 6, 1e-12);
   EXPECT_NEAR(distortion.volume.median, 3, 1e-12);
-  EXPECT_NEAR(distortion.least_determinant, 3, 1e-12);
+  EXPECT_NEAR(distortion.min_determinant, 3, 1e-12);
   EXPECT_EQ(distortion.flips, 0u);
 }
 
 TEST(MapDistortion, SeesWhatIsTurnedInsideOut) {
   const MapDistortion distortion = map_distortion(LinearInBall(diagonal_matrix(-2, 0, 0)), {.samples = 5000});
   EXPECT_EQ(distortion.flips, distortion.samples);
-  EXPECT_NEAR(distortion.least_determinant, -1, 1e-15);
+  EXPECT_NEAR(distortion.min_determinant, -1, 1e-15);
   EXPECT_NEAR(distortion.conformal.max, 1, 1e-15);
 }
 
@@ -89,8 +89,8 @@ TEST(MapDistortion, CoversTheBandEvenly) {
   const AnalyticMap map({{{0.3, -0.2, 0.1}, radius, {amplitude, 0, 0}}});
   const MapDistortion distortion = map_distortion(map);
   const double steepest = 8 * s * std::pow(1 - s * s, 3) * amplitude / radius;
-  EXPECT_NEAR(distortion.least_determinant, 1 - steepest, 3e-3);
-  EXPECT_GE(distortion.least_determinant, 1 - steepest);
+  EXPECT_NEAR(distortion.min_determinant, 1 - steepest, 3e-3);
+  EXPECT_GE(distortion.min_determinant, 1 - steepest);
   EXPECT_NEAR(distortion.volume.max, 1 + steepest, 3e-3);
   EXPECT_NEAR(distortion.volume.median, 1, 1e-3);  // as much is pressed together as is pulled apart
   EXPECT_GT(distortion.samples, 50000u);
@@ -100,7 +100,7 @@ TEST(MapDistortion, OfAnAffineMapHasNoSamples) {
   const AnalyticMap map({}, {diagonal_matrix(2, 3, 4), Vector3::Zero()});
   const MapDistortion distortion = map_distortion(map);
   EXPECT_EQ(distortion.samples, 0u);
-  EXPECT_EQ(distortion.least_determinant, 24);
+  EXPECT_EQ(distortion.min_determinant, 24);
   EXPECT_THROW(map_distortion(map, {.samples = 0}), InvalidInput);
 }
 

@@ -113,7 +113,7 @@ TEST(MappingQuality, OfAnExactMapIsPerfectButForWhatItIsGiven) {
   const MappingQuality quality = Case().measure();
   EXPECT_DOUBLE_EQ(quality.anchor_residuals.max, 0.5);
   EXPECT_LT(quality.surfaces.hausdorff, 1e-14);
-  EXPECT_EQ(quality.distortion.least_determinant, 8);
+  EXPECT_EQ(quality.distortion.min_determinant, 8);
   EXPECT_EQ(quality.flipped_faces, 0u);
   EXPECT_EQ(quality.source_faces, 1280u);
   ASSERT_EQ(quality.products.size(), 1u);

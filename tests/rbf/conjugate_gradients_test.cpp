@@ -27,12 +27,12 @@ struct DenseSystem {
   }
   Vector3 products(const Points& a, const Points& b) const { return a.cwiseProduct(b).rowwise().sum(); }
   bool solved(const Points& residual, const Vector3&, int steps) const {
-    return steps == most_steps || residual.cwiseAbs().maxCoeff() <= 1e-12;
+    return steps == max_steps || residual.cwiseAbs().maxCoeff() <= 1e-12;
   }
 
   Eigen::MatrixXd matrix;
   bool jacobi;
-  int most_steps = 1000;
+  int max_steps = 1000;
 };
 
 TEST(ConjugateGradients, SolveFromAnyStart) {
@@ -67,7 +67,7 @@ TEST(ConjugateGradients, LeaveASolvedRowAsItIs) {
 
 TEST(ConjugateGradients, StopWhenTheSystemSaysSo) {
   DenseSystem system(20, 30, false);
-  system.most_steps = 3;
+  system.max_steps = 3;
   Points solution = Points::Zero(3, 20);
   EXPECT_EQ(conjugate_gradients(system, solution, test::random_points(20, 7)), 3);
 }

@@ -35,7 +35,7 @@ double volume(const TriangleMesh& mesh) {
 }
 
 // Radians.
-double least_angle(const TriangleMesh& mesh) {
+double min_angle(const TriangleMesh& mesh) {
   double least = 4;
   for (Eigen::Index i = 0; i < mesh.faces.cols(); ++i) {
     for (int corner = 0; corner < 3; ++corner) {
@@ -95,7 +95,7 @@ void expect_closed_and_outward(const TriangleMesh& mesh) {
   EXPECT_EQ(found.duplicate_vertices, 0u);
   EXPECT_EQ(mesh.faces.cols(), 2 * mesh.vertices.cols() - 4) << "not of the topology of a sphere";
   EXPECT_GT(volume(mesh), 0);
-  EXPECT_GT(least_angle(mesh), 0.05);
+  EXPECT_GT(min_angle(mesh), 0.05);
   EXPECT_TRUE(found.vertices >= 2000 && found.vertices <= 12500) << found.vertices << " nodes";
 }
 

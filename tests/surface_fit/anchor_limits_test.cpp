@@ -42,15 +42,15 @@ TEST(AnchorLimits, RiseWhileTheAnchorsAreMissedByMoreThanTheirErrors) {
   const double twice = limits.next({missed, pair_distance, smoothness})[0];
   EXPECT_GT(once, base);
   EXPECT_GT(twice, once);
-  EXPECT_LE(once, AnchorSettings{}.most_reinforced * base * (1 + 1e-12));
+  EXPECT_LE(once, AnchorSettings{}.max_reinforced * base * (1 + 1e-12));
   for (int k = 0; k < 3; ++k) limits.next({none, pair_distance, smoothness});
   EXPECT_EQ(limits.next({none, pair_distance, smoothness})[0], base);
 }
 
-TEST(AnchorLimits, FollowTheMedianSoThatOneSlippedAnchorChangesNothing) {
-  AnchorLimits calm = limits_of(all(0.1)), slipped = limits_of(all(0.1));
+TEST(AnchorLimits, FollowTheMedianSoThatOneOutlierChangesNothing) {
+  AnchorLimits calm = limits_of(all(0.1)), outlier = limits_of(all(0.1));
   const Eigen::VectorXd few = all(0.05), one = Vector3(0.05, 30, 0.05);
-  EXPECT_EQ(calm.next({few, pair_distance, smoothness}), slipped.next({one, pair_distance, smoothness}));
+  EXPECT_EQ(calm.next({few, pair_distance, smoothness}), outlier.next({one, pair_distance, smoothness}));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TriangleMesh two_balls(double apart) {
   return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), apart * direction}));
 }
 
-double least_distance_of_balls(const Points& vertices) {
+double min_distance_of_balls(const Points& vertices) {
   const Eigen::Index count = vertices.cols() / 2;
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < count; ++i)
@@ -29,15 +29,15 @@ double least_distance_of_balls(const Points& vertices) {
 
 constexpr ContactOptions contact_options{.gap = 0.02, .reach = 0.2};
 
-TEST(HoldApart, SeparatesPartsThatPassThroughEachOther) {
+TEST(SeparateContacts, SeparatesPartsThatPassThroughEachOther) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
   ASSERT_FALSE(self_intersections(fitted).empty());
-  const ContactFit fit = hold_apart(source, fitted.vertices, contact_options);
+  const ContactFit fit = separate_contacts(source, fitted.vertices, contact_options);
   EXPECT_GT(fit.summary.touching, 0u);
   EXPECT_NEAR(fit.summary.deepest, 0.1, 0.01);
   EXPECT_EQ(fit.summary.left, 0u);
   EXPECT_TRUE(self_intersections({fit.vertices, source.faces}).empty());
-  EXPECT_GE(least_distance_of_balls(fit.vertices), 0.95 * contact_options.gap);
+  EXPECT_GE(min_distance_of_balls(fit.vertices), 0.95 * contact_options.gap);
   // What lies on the far sides stays.
   const Eigen::Index count = source.vertices.cols() / 2;
   for (Eigen::Index i = 0; i < count; ++i)
@@ -46,9 +46,9 @@ TEST(HoldApart, SeparatesPartsThatPassThroughEachOther) {
     }
 }
 
-TEST(HoldApart, ReleasesWhatTouchesAndNothingElse) {
+TEST(SeparateContacts, ReleasesWhatTouchesAndNothingElse) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(2.001);
-  const ContactFit fit = hold_apart(source, fitted.vertices, contact_options);
+  const ContactFit fit = separate_contacts(source, fitted.vertices, contact_options);
   EXPECT_EQ(fit.summary.left, 0u);
   EXPECT_FALSE(fit.summary.released.empty());
   for (const ReleasedVertex& released : fit.summary.released) {
@@ -57,46 +57,46 @@ TEST(HoldApart, ReleasesWhatTouchesAndNothingElse) {
   }
 }
 
-TEST(HoldApart, LeavesPartsThatAreAsNearOnTheSource) {
+TEST(SeparateContacts, LeavesPartsThatAreAsNearOnTheSource) {
   const TriangleMesh source = two_balls(2.01);
-  const ContactFit fit = hold_apart(source, source.vertices, contact_options);
+  const ContactFit fit = separate_contacts(source, source.vertices, contact_options);
   EXPECT_EQ(fit.summary.touching, 0u);
   EXPECT_EQ(fit.vertices, source.vertices);
 }
 
-TEST(HoldApart, LeavesTheTwoSidesOfAThinPart) {
+TEST(SeparateContacts, LeavesTheTwoSidesOfAThinPart) {
   TriangleMesh source = shapes::icosphere(3);
   source.vertices.row(2) *= 0.3;
   TriangleMesh flat = source;
   flat.vertices.row(2) *= 0.03;
-  EXPECT_EQ(hold_apart(source, flat.vertices, contact_options).summary.touching, 0u);
+  EXPECT_EQ(separate_contacts(source, flat.vertices, contact_options).summary.touching, 0u);
 }
 
 // However large the fitted surface: what is near on the source is told by a source as large.
-TEST(HoldApart, GrowsWithTheFittedSurface) {
+TEST(SeparateContacts, GrowsWithTheFittedSurface) {
   const TriangleMesh near = two_balls(2.01), far = two_balls(4);
   const Points touching = two_balls(1.9).vertices;
-  const ContactFit fit = hold_apart(far, touching, contact_options);
+  const ContactFit fit = separate_contacts(far, touching, contact_options);
   ASSERT_FALSE(fit.summary.released.empty());
   for (const double size : {0.125, 8.0}) {
     const ContactOptions options{.gap = size * contact_options.gap, .reach = size * contact_options.reach};
-    EXPECT_EQ(hold_apart(near, size * near.vertices, options).summary.touching, 0u);
-    const ContactFit scaled = hold_apart(far, size * touching, options);
+    EXPECT_EQ(separate_contacts(near, size * near.vertices, options).summary.touching, 0u);
+    const ContactFit scaled = separate_contacts(far, size * touching, options);
     EXPECT_EQ(scaled.summary.touching, fit.summary.touching);
     EXPECT_NEAR((scaled.vertices / size - fit.vertices).cwiseAbs().maxCoeff(), 0, 1e-9);
   }
 }
 
-TEST(HoldApart, DoesNothingWithoutAGap) {
+TEST(SeparateContacts, DoesNothingWithoutAGap) {
   const TriangleMesh source = two_balls(4), fitted = two_balls(1.9);
-  EXPECT_EQ(hold_apart(source, fitted.vertices, {.gap = 0}).vertices, fitted.vertices);
+  EXPECT_EQ(separate_contacts(source, fitted.vertices, {.gap = 0}).vertices, fitted.vertices);
 }
 
-TEST(HoldApart, RefusesWhatCannotBe) {
+TEST(SeparateContacts, RefusesWhatCannotBe) {
   const TriangleMesh source = two_balls(4);
-  EXPECT_THROW(hold_apart(source, Points::Zero(3, 5), contact_options), InvalidInput);
-  EXPECT_THROW(hold_apart(source, source.vertices, {.gap = -1}), InvalidInput);
-  EXPECT_THROW(hold_apart(source, source.vertices, {.gap = 0.1, .reach = 0.05}), InvalidInput);
+  EXPECT_THROW(separate_contacts(source, Points::Zero(3, 5), contact_options), InvalidInput);
+  EXPECT_THROW(separate_contacts(source, source.vertices, {.gap = -1}), InvalidInput);
+  EXPECT_THROW(separate_contacts(source, source.vertices, {.gap = 0.1, .reach = 0.05}), InvalidInput);
 }
 
 }  // namespace

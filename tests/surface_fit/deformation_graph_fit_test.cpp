@@ -280,10 +280,10 @@ TEST(FitSurfaceDeformationGraph, AnchorsWithinANodeSpacingMoveTheirFoot) {
 
 TEST(FitSurfaceDeformationGraph, FitsWhenAllAnchorsLieOffTheSurface) {
   Scene scene = bent_scene();
-  Scene bare{scene.source, scene.target};
-  Scene cornered = bare;
+  Scene uncovered{scene.source, scene.target};
+  Scene cornered = uncovered;
   add_corners(cornered, 2, Vector3::Zero());
-  EXPECT_EQ(cornered.fit().vertices, bare.fit().vertices);
+  EXPECT_EQ(cornered.fit().vertices, uncovered.fit().vertices);
 }
 
 TEST(FitSurfaceDeformationGraph, WorksOnPiecesSingleTrianglesAndLooseVertices) {

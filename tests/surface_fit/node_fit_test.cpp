@@ -61,7 +61,7 @@ TEST(FitNodes, TellsBodiesThatKeepTheirShapeFromOthers) {
     };
   };
   const NodeFitSettings settings;
-  EXPECT_EQ(rigidity([](const Vector3& x) { return x; }), settings.shape.most_rigid);
+  EXPECT_EQ(rigidity([](const Vector3& x) { return x; }), settings.shape.max_rigid);
   const double little = rigidity(twist(0.05)), more = rigidity(twist(0.15));
   EXPECT_GT(little, more);
   EXPECT_GT(more, 1);
@@ -70,7 +70,7 @@ TEST(FitNodes, TellsBodiesThatKeepTheirShapeFromOthers) {
 
 // A sphere with a cap that stands out, as a bent source may where a joint bends at another place than the
 // target's; anchors around the cap are met.
-TEST(FitNodes, ABentSourceSinksWhereItStandsOut) {
+TEST(FitNodes, ABentSourceMovesInwardWhereItIsOutside) {
   const TriangleMesh sphere = shapes::icosphere(4);
   TriangleMesh source = sphere;
   std::vector<int> cap, marked;

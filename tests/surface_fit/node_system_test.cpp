@@ -57,15 +57,15 @@ TEST_F(NodeSystemTest, MovesOntoShiftedPlanesWhateverAFewFarOnesSay) {
   EXPECT_LT((moved.colwise() - shift - sphere_.vertices).colwise().norm().maxCoeff(), 0.1 * shift.norm());
 }
 
-TEST_F(NodeSystemTest, HeedsFarPlanesThatHaveLeeway) {
+TEST_F(NodeSystemTest, CountsFarPlanesWithAScaleGain) {
   const Points normals = vertex_normals(sphere_);
   const double area = vertex_areas(sphere_).sum() / static_cast<double>(sphere_.vertices.cols());
-  const auto reached = [&](double leeway) {
+  const auto reached = [&](double outlier_scale_gain) {
     std::vector<PlanePair> planes;
     for (int i = 0; i < sphere_.vertices.cols(); ++i) {
       const bool far = normals(2, i) > 0.9;
-      planes.push_back(
-          {i, sphere_.vertices.col(i) + (far ? 0.5 : 0.001) * normals.col(i), normals.col(i), area, leeway});
+      planes.push_back({i, sphere_.vertices.col(i) + (far ? 0.5 : 0.001) * normals.col(i), normals.col(i),
+                        area, outlier_scale_gain});
     }
     const double smoothing = 0.2 / diagonal(sphere_.vertices);
     return (solve(system({}), planes, smoothing).row(2).maxCoeff() - 1) / 0.5;
@@ -94,11 +94,11 @@ TEST_F(NodeSystemTest, BendsByTheAreasThatItHasNow) {
   const Points lying = sphere_.vertices * growth.transpose().asDiagonal();
   const double area = vertex_areas(sphere_).sum() / static_cast<double>(sphere_.vertices.cols());
   const auto pressed = [&](double depth) {
-    constexpr double smoothing = 0.5, leeway = 1;
+    constexpr double smoothing = 0.5, outlier_scale_gain = 1;
     std::vector<PlanePair> planes;
     for (int i = 0; i < lying.cols(); ++i) {
       const double press = std::abs(normals(2, i)) > 0.97 ? depth : 0;
-      planes.push_back({i, lying.col(i) - press * normals.col(i), normals.col(i), area, leeway});
+      planes.push_back({i, lying.col(i) - press * normals.col(i), normals.col(i), area, outlier_scale_gain});
     }
     NodeSystem nodes = system({});
     nodes.start_from(lying);
@@ -107,8 +107,8 @@ TEST_F(NodeSystemTest, BendsByTheAreasThatItHasNow) {
   struct Dents {
     double grown, shrunk;
   };
-  const auto dents = [&](double most_growth) -> Dents {
-    settings_.bending.most_growth = most_growth;
+  const auto dents = [&](double max_growth) -> Dents {
+    settings_.bending.max_growth = max_growth;
     const Eigen::RowVectorXd sunk = (pressed(0) - pressed(0.1)).row(2);
     return {sunk.maxCoeff(), -sunk.minCoeff()};
   };

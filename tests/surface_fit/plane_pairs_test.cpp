@@ -48,7 +48,7 @@ TEST(PlanePairs, OfAMovedPlaneAskForTheMoveBothWays) {
   EXPECT_EQ(back, 25u);  // the inner vertices; those on the rim find the other's boundary
 }
 
-TEST(PlanePairs, OfAFewSamplesSpeakForAsMuchAsThoseOfAll) {
+TEST(PlanePairs, OfAFewSamplesWeighAsMuchAsThoseOfAll) {
   const TriangleMesh sphere = shapes::icosphere(4);
   const auto all = pairs_between(sphere, sphere), few = pairs_between(sphere, sphere, {1, 1, 400, 200});
   EXPECT_LE(few.size(), 600u);
@@ -74,7 +74,7 @@ double largest_crease(bool valley_is_source, const TriangleMesh& more = {}) {
   const TriangleMesh bent = more.faces.cols() == 0 ? valley() : shapes::joined(valley(), more);
   double largest = 0;
   for (const PlanePair& pair : valley_is_source ? pairs_between(bent, plate) : pairs_between(plate, bent))
-    largest = std::max(largest, pair.leeway);
+    largest = std::max(largest, pair.outlier_scale_gain);
   return largest;
 }
 
@@ -99,16 +99,16 @@ std::vector<double> leeways(double source_height, double certainty) {
   std::vector<double> found;
   for (const PlanePair& pair :
        find_plane_pairs({from, to, from.areas(), to.areas(), 1.5, &certainties}, every_vertex, {}))
-    found.push_back(pair.leeway);
+    found.push_back(pair.outlier_scale_gain);
   return found;
 }
 
-TEST(PlanePairs, OfABentSourceThatStandsOutHaveTheLeewayOfItsCertainty) {
+TEST(PlanePairs, OfABentSourceOutsideHaveTheScaleGainOfItsCertainty) {
   const std::vector<double> above = leeways(0.05, 0.7), below = leeways(-0.05, 0.7);
   ASSERT_EQ(above.size(), 50u);
   ASSERT_EQ(below.size(), 50u);
-  for (const double leeway : above) EXPECT_NEAR(leeway, 0.7, 1e-12);
-  for (const double leeway : below) EXPECT_NEAR(leeway, 0, 1e-12);
+  for (const double outlier_scale_gain : above) EXPECT_NEAR(outlier_scale_gain, 0.7, 1e-12);
+  for (const double outlier_scale_gain : below) EXPECT_NEAR(outlier_scale_gain, 0, 1e-12);
 }
 
 // Two sheets close to each other, which have changed places on the target.

@@ -59,7 +59,7 @@ TEST(Reciprocity, IsWholeOfAPointOnItsMatch) {
   EXPECT_EQ(reciprocity(1, half_as_far), 1);
 }
 
-TEST(Reciprocity, NeedsNoClaimBeyondMuchNearer) {
+TEST(Reciprocity, NeedsNoReciprocityBeyondMuchNearer) {
   const TargetSurface answering(plane_at(0));
   const Vector3 point = centre + upwards;
   const SurfaceMatch match = *answering.match(point, upwards, within_one);
@@ -72,7 +72,7 @@ TEST(Reciprocity, NeedsNoClaimBeyondMuchNearer) {
   }
 }
 
-TEST(ClaimedShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
+TEST(ReciprocalShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
   const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
   const Vector3 point = centre + upwards;
   const SurfaceMatch match = *answering.match(point, upwards, within_one);
@@ -82,7 +82,7 @@ TEST(ClaimedShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
   EXPECT_EQ(claimed_share(pair, asking, 0.3, half_as_far), 1);
 }
 
-TEST(NearerClaim, IsThePlaceThatIsNearerThanItsShare) {
+TEST(NearerReciprocal, IsThePlaceThatIsNearerThanItsShare) {
   const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
   const Vector3 point = centre + upwards;
   const SurfaceMatch match = *answering.match(point, upwards, within_one);

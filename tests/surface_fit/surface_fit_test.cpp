@@ -49,12 +49,12 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
     options.method = entry.value;
     const SurfaceFit expected = Scene{shapes::icosphere(3), target}.fit(options);
     const SurfaceFit fit = Scene{shapes::icosphere(3), inside_out}.fit(options);
-    EXPECT_FALSE(expected.summary.target_turned_over) << entry.name;
-    EXPECT_TRUE(fit.summary.target_turned_over) << entry.name;
+    EXPECT_FALSE(expected.summary.target_flipped) << entry.name;
+    EXPECT_TRUE(fit.summary.target_flipped) << entry.name;
     EXPECT_EQ(fit.vertices, expected.vertices) << entry.name;
     EXPECT_NE(to_string(fit.summary).find("turned over"), std::string::npos);
-    options.mend_models = false;
-    EXPECT_FALSE((Scene{shapes::icosphere(3), inside_out}.fit(options).summary.target_turned_over));
+    options.repair_models = false;
+    EXPECT_FALSE((Scene{shapes::icosphere(3), inside_out}.fit(options).summary.target_flipped));
   }
 }
 
@@ -62,9 +62,9 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
 TEST(FitSurface, RefusesAMirrorImageButNotASheetThatLooksTheOtherWay) {
   Scene scene{shapes::icosphere(3), shapes::icosphere(3)};
   scene.warped.row(0) *= -1;
-  for (const bool mend_models : {true, false}) {
+  for (const bool repair_models : {true, false}) {
     SurfaceFitOptions options;
-    options.mend_models = mend_models;
+    options.repair_models = repair_models;
     EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(options); }),
                 ::testing::HasSubstr("mirror it back first"));
   }
@@ -72,7 +72,7 @@ TEST(FitSurface, RefusesAMirrorImageButNotASheetThatLooksTheOtherWay) {
   const TriangleMesh sheet = shapes::square_grid(9);
   TriangleMesh other_way = sheet;
   other_way.faces.row(1).swap(other_way.faces.row(2));
-  EXPECT_TRUE((Scene{sheet, other_way}.fit().summary.target_turned_over));
+  EXPECT_TRUE((Scene{sheet, other_way}.fit().summary.target_flipped));
 }
 
 TEST(FitSurface, StopsWhenAsked) {

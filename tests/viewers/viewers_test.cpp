@@ -25,7 +25,7 @@ TEST(VdbView, ShowsAMap) {
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
 }
 
-TEST(Blender, LawsOfTheAddOnHold) {
+TEST(Blender, PropertiesOfTheAddOnHold) {
   if (!is_installed("blender")) GTEST_SKIP() << "blender is not installed";
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
@@ -57,7 +57,7 @@ class ParaView : public ::testing::Test {
   ExamplePair pair_;
 };
 
-TEST_F(ParaView, LawsOfThePluginHold) {
+TEST_F(ParaView, PropertiesOfThePluginHold) {
   const std::string directory = std::filesystem::path(pair_.file("map.vdb")).parent_path();
   const ProgramResult result = run({"pvbatch", laws + "/paraview_laws.py", directory, plugin});
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;

@@ -156,18 +156,18 @@ void audit(const AuditArguments& arguments) {
     std::cout << ", each pair within " << *found.typical_distance << " (median) of where the others put it\n";
   else
     std::cout << ", too few pairs to be judged by each other\n";
-  bool is_doubted = print(to_string(found, anchors));
-  is_doubted |= print(to_string(swapped_anchors(anchors), anchors));
-  is_doubted |= print(to_string(contradicting_anchors(anchors), anchors));
-  is_doubted |= print_far("source", models.source, source_points(anchors));
-  is_doubted |= print_far("target", models.target, target_points(anchors));
+  bool is_suspect = print(to_string(found, anchors));
+  is_suspect |= print(to_string(swapped_anchors(anchors), anchors));
+  is_suspect |= print(to_string(contradicting_anchors(anchors), anchors));
+  is_suspect |= print_far("source", models.source, source_points(anchors));
+  is_suspect |= print_far("target", models.target, target_points(anchors));
   if (models.source && models.target) {
-    const AnchorAccuracy accuracy = rate_anchors(anchors, *models.source, *models.target).accuracy;
-    is_doubted |= print(to_string(accuracy, anchors));
-    is_doubted |= print(off_target(accuracy, *models.target));
-    is_doubted |= print(exchanged_sides(anchors, *models.source, *models.target));
+    const AnchorAccuracy accuracy = estimate_anchor_sigmas(anchors, *models.source, *models.target).accuracy;
+    is_suspect |= print(to_string(accuracy, anchors));
+    is_suspect |= print(off_target(accuracy, *models.target));
+    is_suspect |= print(exchanged_sides(anchors, *models.source, *models.target));
   }
-  if (!is_doubted) std::cout << "nothing is suspicious\n";
+  if (!is_suspect) std::cout << "nothing is suspicious\n";
 }
 
 void add_audit(CLI::App& app) {

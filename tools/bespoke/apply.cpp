@@ -10,7 +10,7 @@
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 #include "catalog_option.h"
 #include "commands.h"
 #include "length_option.h"
@@ -265,7 +265,7 @@ std::optional<fs::path> shared_map(const ApplyArguments& arguments) {
 
 }  // namespace
 
-void add_apply_command(CLI::App& app, const TakePlan& take) {
+void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ApplyArguments>();
   CLI::App* apply = app.add_subcommand("apply", "Carry products across a map");
   apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`; not with --from")->required();
@@ -309,10 +309,10 @@ void add_apply_command(CLI::App& app, const TakePlan& take) {
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
       "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24\n"
       "  bespoke apply dress.obj --from season --source woman.obj -o dress_on_man.obj");
-  apply->callback([arguments, take] {
+  apply->callback([arguments, handle_plan] {
     const ApplyArguments given = taken(*arguments);
-    take({given.run, inputs(given), outputs(given, plan_outputs(given)), shared_map(given),
-          [given](const RunContext& context) { run(given, context); }});
+    handle_plan({given.run, inputs(given), outputs(given, plan_outputs(given)), shared_map(given),
+                 [given](const RunContext& context) { run(given, context); }});
   });
 }
 

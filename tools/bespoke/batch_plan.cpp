@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 #include "commands.h"
 #include "page_output.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 struct JobCommand {
   const char* name;
-  void (*add)(CLI::App&, const TakePlan&);
+  void (*add)(CLI::App&, const PlanHandler&);
 };
 
 constexpr std::array commands{

@@ -53,7 +53,7 @@ void run(const CheckArguments& arguments, const RunContext& context) {
   const Certificate certificate = certify_map(asset, arguments.t, context.progress);
   write_answer(arguments.output, answer(arguments, certificate), context);
   context.findings.figures = {{"bijection", certificate.is_bijection()},
-                              {"least_determinant", certificate.least_determinant},
+                              {"min_determinant", certificate.min_determinant},
                               {"folded", certificate.folded},
                               {"undecided", certificate.undecided}};
   if (!certificate.is_bijection())
@@ -62,7 +62,7 @@ void run(const CheckArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, const TakePlan& take) {
+void add_check_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<CheckArguments>();
   CLI::App* check =
       app.add_subcommand("check", "Prove from the file alone that a map does not fold, or say where it does");
@@ -78,9 +78,10 @@ void add_check_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke check map.vdb\n"
       "  bespoke check map.vdb --t 0.5 --json");
-  check->callback([arguments, take] {
+  check->callback([arguments, handle_plan] {
     const CheckArguments given = std::exchange(*arguments, {});
-    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

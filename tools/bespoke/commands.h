@@ -17,16 +17,16 @@ void add_anchors_command(CLI::App& app);
 
 /// Each adds one subcommand that can be a job of a batch: while the arguments are parsed, its run is planned
 /// and taken. May parse again after that, but not after an error.
-void add_fit_command(CLI::App& app, const TakePlan& take);
-void add_apply_command(CLI::App& app, const TakePlan& take);
-void add_check_command(CLI::App& app, const TakePlan& take);
-void add_invert_command(CLI::App& app, const TakePlan& take);
-void add_compose_command(CLI::App& app, const TakePlan& take);
-void add_measure_command(CLI::App& app, const TakePlan& take);
-void add_diff_command(CLI::App& app, const TakePlan& take);
-void add_export_command(CLI::App& app, const TakePlan& take);
-void add_view_command(CLI::App& app, const TakePlan& take);
-void add_report_command(CLI::App& app, const TakePlan& take);
+void add_fit_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_apply_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_check_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_invert_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_compose_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_measure_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_diff_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_export_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_view_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_report_command(CLI::App& app, const PlanHandler& handle_plan);
 
 /// Help of --half, wherever a map is baked.
 inline constexpr const char* half_help =

@@ -39,7 +39,7 @@ void run(const ComposeArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_compose_command(CLI::App& app, const TakePlan& take) {
+void add_compose_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ComposeArguments>();
   CLI::App* compose = app.add_subcommand("compose", "Join two maps into one: a to c from a to b and b to c");
   compose->add_option("AB", arguments->first, "Asset of the map from a to b")->required();
@@ -55,11 +55,11 @@ void add_compose_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb --tolerance 0.01%");
-  compose->callback([arguments, take] {
+  compose->callback([arguments, handle_plan] {
     const ComposeArguments given = std::exchange(*arguments, {});
-    take({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
-            run(given, context);
-          }});
+    handle_plan({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
+                   run(given, context);
+                 }});
   });
 }
 

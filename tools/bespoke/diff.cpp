@@ -69,7 +69,7 @@ void run(const DiffArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_diff_command(CLI::App& app, const TakePlan& take) {
+void add_diff_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<DiffArguments>();
   CLI::App* diff = app.add_subcommand("diff", "How far two maps take the same points apart, and why");
   diff->add_option("A", arguments->a, "Asset, .vdb")->required();
@@ -93,9 +93,10 @@ void add_diff_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke diff before.vdb after.vdb\n"
       "  bespoke diff before.vdb after.vdb --product dress.obj --within 0.1%");
-  diff->callback([arguments, take] {
+  diff->callback([arguments, handle_plan] {
     const DiffArguments given = std::exchange(*arguments, {});
-    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

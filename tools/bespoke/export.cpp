@@ -29,11 +29,11 @@ struct ExportArguments {
   RunOptions run;
 };
 
-constexpr int most_targets = 1000;
+constexpr int max_targets = 1000;
 constexpr std::size_t error_points = 200'000;
 
 // Of the values, bytes.
-constexpr std::size_t most_memory = std::size_t{8} << 30;
+constexpr std::size_t max_memory = std::size_t{8} << 30;
 
 /// The model's box, and around it what the elastic part reaches.
 Box reached(const Box& model, double lambda) {
@@ -72,7 +72,7 @@ void export_grid(const ExportArguments& arguments, const RunContext& context) {
   };
   const Box box = reached(arguments.pull ? record.target.box : record.source.box, record.lambda);
   const double spacing = arguments.grid->in_mesh_units(record.source.box.diagonal().norm());
-  const DisplacementImage sampled = sample_displacements(image, box, spacing, most_memory, progress);
+  const DisplacementImage sampled = sample_displacements(image, box, spacing, max_memory, progress);
   const Statistics error = sampling_error(sampled, image, box, error_points, progress);
 
   OutputFiles files;
@@ -156,7 +156,7 @@ void run(const ExportArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, const TakePlan& take) {
+void add_export_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* exported = app.add_subcommand(
       "export", "Write a map as a displacement image, or as morph targets of a product, for other programs");
@@ -173,7 +173,7 @@ void add_export_command(CLI::App& app, const TakePlan& take) {
                            ->add_option("--morph", arguments->morph,
                                         "Write a product with N morph targets, at t = 1/N, 2/N, …, 1, and an "
                                         "animation through them, as .glb")
-                           ->check(CLI::Range(1, most_targets))
+                           ->check(CLI::Range(1, max_targets))
                            ->type_name("N");
   exported
       ->add_option(
@@ -200,10 +200,11 @@ void add_export_command(CLI::App& app, const TakePlan& take) {
       "  bespoke export map.vdb --grid 0.5% -o level.vdb\n"
       "  bespoke export map.vdb --grid 2 --pull --space ras -o map.nrrd\n"
       "  bespoke export map.vdb --morph 8 --product dress.obj -o dress.glb");
-  exported->callback([arguments, take] {
+  exported->callback([arguments, handle_plan] {
     const ExportArguments given = std::exchange(*arguments, {});
     require_valid(given);
-    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

@@ -46,9 +46,9 @@ struct FitArguments : MapRequest {
 
 void require_consistent(const FitArguments& arguments) {
   const bool fitted = !arguments.fitted.empty();
-  if (const std::optional<UnheededOption> unheeded =
-          unheeded_option(arguments, {!arguments.anchors.empty(), fitted, arguments.add_corners}))
-    throw CLI::ValidationError("--" + unheeded->name, unheeded->reason);
+  if (const std::optional<InapplicableOption> inapplicable =
+          inapplicable_option(arguments, {!arguments.anchors.empty(), fitted, arguments.add_corners}))
+    throw CLI::ValidationError("--" + inapplicable->name, inapplicable->reason);
   if (fitted && !arguments.confidence_out.empty())
     throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
@@ -171,13 +171,14 @@ void run(const FitArguments& arguments, const RunContext& context) {
         "models in similar pose are aligned by their surfaces");
   require_usable_patches(arguments, anchors, source, target);
   warn_of_input(context, source, target, anchors);
-  const double size = diagonal(source.vertices), octave = octave_of(size_ratio(anchors, source, target));
-  rate_anchors(anchors, arguments, size, octave);
+  const double size = diagonal(source.vertices),
+               size_scale = power_of_two_scale(size_ratio(anchors, source, target));
+  estimate_anchor_sigmas(anchors, arguments, size, size_scale);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
                            target_model.cloud ? &*target_model.cloud : nullptr};
-  const MakeMapOptions options = make_options(arguments, size, octave);
+  const MakeMapOptions options = make_options(arguments, size, size_scale);
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
     throw SolverError("the map is not certified as a bijection: " + to_string(whole_certificate(made.asset)));
@@ -250,7 +251,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_flag(
       "--paper", arguments.paper,
       "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, --path "
-      "euler, --steps 1, --contact-gap 0, --nodes sampled, --as-given, and pairs met exactly that have "
+      "euler, --steps 1, --contact-offset 0, --nodes sampled, --as-given, and pairs met exactly that have "
       "neither a sigma nor a weight");
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "
@@ -286,9 +287,9 @@ void add_length_options(CLI::App& fit, FitArguments& arguments) {
       "estimated from their distance to the target)",
       LengthRange::not_negative);
   add_length_option(
-      fit, "--contact-gap", arguments.contact_gap,
+      fit, "--contact-offset", arguments.contact_offset,
       on_target("Where the target touches itself, the parts are held this far apart; 0 leaves them",
-                default_contact_gap),
+                default_contact_offset),
       LengthRange::not_negative);
   add_length_option(
       fit, "--voxel-size", arguments.voxel_size,
@@ -334,7 +335,7 @@ void add_file_options(CLI::App& fit, FitArguments& arguments) {
 
 }  // namespace
 
-void add_fit_command(CLI::App& app, const TakePlan& take) {
+void add_fit_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* fit = app.add_subcommand("fit", "Compute the map between two reference models and store it");
   add_file_options(*fit, *arguments);
@@ -349,10 +350,11 @@ void add_fit_command(CLI::App& app, const TakePlan& take) {
       "  bespoke fit woman.obj man.obj -o map.vdb\n"
       "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --paper --lambda 5%\n"
       "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb --report report.json");
-  fit->callback([arguments, take] {
+  fit->callback([arguments, handle_plan] {
     const FitArguments given = std::exchange(*arguments, {});
     require_consistent(given);
-    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

@@ -70,9 +70,9 @@ void warn_of_inferred_parts(const RunContext& context, const CounterpartSummary&
                  "; pairs on those parts make the map surer (bespoke anchors suggest says where)");
 }
 
-void warn_of_bare_target(const RunContext& context, const BareArea& bare) {
-  if (bare.is_notable())
-    context.warn(to_string(bare) +
+void warn_of_uncovered_target(const RunContext& context, const UncoveredArea& uncovered) {
+  if (uncovered.is_notable())
+    context.warn(to_string(uncovered) +
                  "; if the source has that part, give pairs on it (bespoke anchors suggest says where), else "
                  "exclude it by a patch");
 }
@@ -103,7 +103,7 @@ void warn_of_misses(const RunContext& context, const TriangleMesh& source, const
   const double size = diagonal(source.vertices);
   if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
   if (summary.counterparts) warn_of_inferred_parts(context, *summary.counterparts);
-  if (summary.bare) warn_of_bare_target(context, *summary.bare);
+  if (summary.uncovered) warn_of_uncovered_target(context, *summary.uncovered);
   warn_of_missed_vertices(context, size, summary.elastic.unmet);
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
 }

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke::command {
 namespace {
@@ -58,7 +58,7 @@ std::vector<std::string> map_key(const GradeSize& size) {
   return key;
 }
 
-std::string digits(double value) { return in_digits(value, 17); }
+std::string digits(double value) { return format_number(value, 17); }
 
 ManifestJob fit_job(const GradeRequest& request, const GradeSize& size) {
   ManifestJob job{size.line,

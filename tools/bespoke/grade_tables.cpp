@@ -9,9 +9,9 @@
 #include "batch_display.h"
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/cloud/target_model.h"
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/grading/grade_table.h"
+#include "bespoke/number_format.h"
 #include "output_files.h"
 #include "planned_run.h"
 
@@ -86,7 +86,7 @@ BatchJob size_job(const GradeRequest& request, const GradeSize& size, const Meas
   const fs::path directory = folder(request, size);
   BatchJob job = job_for(directory);
   job.line = size.line;
-  job.options = {{"size", size.name}, {"t", in_digits(size.t, 17)}};
+  job.options = {{"size", size.name}, {"t", format_number(size.t, 17)}};
   job.inputs = named_files({{"map", size.map.string()},
                             {"source", request.source},
                             {"measures", sheet.measures.string()},

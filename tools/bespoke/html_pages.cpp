@@ -8,8 +8,8 @@
 
 #include "bespoke/catalog/map_index.h"
 #include "bespoke/cloud/target_model.h"
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/page/carried_picture.h"
 #include "bespoke/parallel.h"
 #include "bespoke/product/product_io.h"
@@ -140,7 +140,7 @@ std::vector<BatchJob> HtmlPages::picture_jobs(OpenedMaps& maps) const {
     BatchJob job;
     job.line = row.shown.line;
     job.command = "picture";
-    job.options = {{"t", in_digits(row.shown.t, 17)}};
+    job.options = {{"t", format_number(row.shown.t, 17)}};
     job.inputs = inputs_of(row.shown);
     job.outputs = {{"output", row.picture}};
     job.shared_map = row.shown.map;

@@ -31,7 +31,7 @@ void run(const InvertArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_invert_command(CLI::App& app, const TakePlan& take) {
+void add_invert_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<InvertArguments>();
   CLI::App* invert = app.add_subcommand(
       "invert", "Make the map from the target back to the source (apply --inverse goes back without one)");
@@ -44,11 +44,11 @@ void add_invert_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"
       "  bespoke invert ab.vdb -o ba.vdb --tolerance 0.01%");
-  invert->callback([arguments, take] {
+  invert->callback([arguments, handle_plan] {
     const InvertArguments given = std::exchange(*arguments, {});
-    take({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
-            run(given, context);
-          }});
+    handle_plan({given.options.run, inputs(given), outputs(given), {}, [given](const RunContext& context) {
+                   run(given, context);
+                 }});
   });
 }
 

@@ -84,7 +84,7 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_measure_command(CLI::App& app, const TakePlan& take) {
+void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* measure = app.add_subcommand("measure", "Put numbers on a map, and on what it does to products");
   measure->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
@@ -111,9 +111,10 @@ void add_measure_command(CLI::App& app, const TakePlan& take) {
       "  bespoke measure map.vdb --source woman.obj --target man.obj --product dress.obj --product "
       "shoes.obj\n"
       "  bespoke measure map.vdb --source woman.obj --target man.obj --json | jq .distortion");
-  measure->callback([arguments, take] {
+  measure->callback([arguments, handle_plan] {
     const MeasureArguments given = std::exchange(*arguments, {});
-    take({given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/named.h"
+#include "bespoke/enum_names.h"
 
 namespace bespoke::command {
 
-/// Adds an option whose value is one of the names of an enumeration (named.h).
+/// Adds an option whose value is one of the names of an enumeration (enum_names.h).
 template <class Value, class Table>
 CLI::Option* add_name_option(CLI::App& app, const std::string& name, std::optional<Value>& value,
                              const Table& names, const std::string& description) {

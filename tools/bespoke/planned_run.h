@@ -36,7 +36,7 @@ struct PlannedRun {
 };
 
 /// Takes a run that a subcommand has planned: starts it at once, or keeps it.
-using TakePlan = std::function<void(PlannedRun)>;
+using PlanHandler = std::function<void(PlannedRun)>;
 
 /// Starts it, with progress, warnings and results on the terminal.
 void run_at_once(PlannedRun planned);

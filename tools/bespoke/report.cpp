@@ -54,7 +54,7 @@ void run(const ReportArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, const TakePlan& take) {
+void add_report_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* report =
       app.add_subcommand("report", "Write pictures and measures of a map, to mail or to attach");
@@ -70,12 +70,12 @@ void add_report_command(CLI::App& app, const TakePlan& take) {
       "Examples:\n"
       "  bespoke report dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.md\n"
       "  bespoke report map.vdb --source a.obj --target b.obj -o map.html");
-  report->callback([arguments, take] {
+  report->callback([arguments, handle_plan] {
     const ReportArguments given = std::exchange(*arguments, {});
     require_ending(given);
-    take({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
-            run(given, c);
-          }});
+    handle_plan({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
+                   run(given, c);
+                 }});
   });
 }
 

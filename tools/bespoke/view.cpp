@@ -19,7 +19,7 @@ namespace {
 struct ViewArguments {
   MapModelArguments models;
   std::string output;
-  std::size_t most_faces = ViewOptions{}.most_faces;
+  std::size_t max_faces = ViewOptions{}.max_faces;
   RunOptions run;
 };
 
@@ -32,7 +32,7 @@ void run(const ViewArguments& arguments, const RunContext& context) {
   const std::string scene =
       view_scene({models.asset, models.source, models.target, models.products, models.findings,
                   std::filesystem::path(arguments.models.map).filename().string(), context.command},
-                 {.most_faces = arguments.most_faces}, context.progress);
+                 {.max_faces = arguments.max_faces}, context.progress);
   OutputFiles files;
   files.write_text(arguments.output, whole_page(scene));
   files.keep();
@@ -40,7 +40,7 @@ void run(const ViewArguments& arguments, const RunContext& context) {
 
 }  // namespace
 
-void add_view_command(CLI::App& app, const TakePlan& take) {
+void add_view_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view =
       app.add_subcommand("view", "Write a page that shows a map, to judge it by eye in a browser");
@@ -50,7 +50,7 @@ void add_view_command(CLI::App& app, const TakePlan& take) {
       ->required()
       ->type_name("PAGE.html");
   view->add_option(
-          "--max-triangles", arguments->most_faces,
+          "--max-triangles", arguments->max_faces,
           "Triangles of all meshes together; larger ones are thinned for display, and the page says so")
       ->check(CLI::Range(std::size_t{1000}, std::size_t{5000000}))
       ->capture_default_str();
@@ -60,11 +60,11 @@ void add_view_command(CLI::App& app, const TakePlan& take) {
       "  bespoke view dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.html\n"
       "  bespoke view map.vdb --source a.obj --target b.obj --confidence a.conf --fit-report fit.json -o "
       "map.html");
-  view->callback([arguments, take] {
+  view->callback([arguments, handle_plan] {
     const ViewArguments given = std::exchange(*arguments, {});
-    take({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
-            run(given, c);
-          }});
+    handle_plan({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
+                   run(given, c);
+                 }});
   });
 }
 

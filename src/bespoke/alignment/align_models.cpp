@@ -12,7 +12,7 @@
 #include "bespoke/alignment/detail/similarity_search.h"
 #include "bespoke/alignment/detail/surface_patches.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/linings.h"
+#include "bespoke/mesh/cavities.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -29,7 +29,7 @@ struct Settings {
   double worst_misfit = 0.057;
   // Right alignments of hands, heads and bodies have 0.24 and more. A right foot fits a left one only 0.13 to
   // 0.16 worse than its own side: too little to tell them by.
-  double least_confidence = 0.2;
+  double min_confidence = 0.2;
   double symmetric = 0.02;      // asymmetry of a person who stands straight, of the radius
   double boundary_share = 0.9;  // of the boundary's patches that must find a boundary
 };
@@ -64,7 +64,7 @@ bool boundaries_meet(const SurfacePatches& source, const SurfacePatches& target,
 
 /// Whether a misfit is clearly below that of an alternative, if there is one.
 bool clearly_below(double misfit, const std::optional<double>& other) {
-  return !other || misfit <= (1 - settings.least_confidence) * *other;
+  return !other || misfit <= (1 - settings.min_confidence) * *other;
 }
 
 AlignmentVerdict judge(const AlignmentSummary& summary) {
@@ -132,8 +132,8 @@ Alignment align_models(const TriangleMesh& source, const TriangleMesh& target, c
   progress.step("alignment", 0, 0);
   require_valid(source, "model to align");
   require_valid(target, "model to align");
-  const std::vector<char> source_lined = linings_of(source).contains;
-  const std::vector<char> target_lined = linings_of(target).contains;
+  const std::vector<char> source_lined = cavities_of(source).contains;
+  const std::vector<char> target_lined = cavities_of(target).contains;
   const SurfacePatches coarse_source = make_surface_patches(source, settings.coarse_patches, source_lined);
   const SurfacePatches coarse_target = make_surface_patches(target, settings.coarse_patches, target_lined);
   const auto candidates = search_similarities(coarse_source, coarse_target, covering_rotations());

@@ -133,7 +133,7 @@ class CounterpartSearch {
   GeodesicCounterparts credible() const {
     GeodesicCounterparts result{Points(3, 0), Points(3, 0)};
     for (const Found& found : places_) {
-      if (!(found.misfit <= options_.most_misfit)) continue;
+      if (!(found.misfit <= options_.max_misfit)) continue;
       for (Points* points : {&result.sources, &result.targets})
         points->conservativeResize(3, points->cols() + 1);
       result.sources.rightCols(1) = source_.place(found.source);
@@ -199,7 +199,7 @@ GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const Tri
   Eigen::VectorXd nearest = from_source.distances(feet);
   if (farthest(nearest).second < options.remote * unit) return {Points(3, 0), Points(3, 0)};
 
-  const std::vector<int> pairs = spread_points(sources, options.most_pairs);
+  const std::vector<int> pairs = spread_points(sources, options.max_pairs);
   std::vector<SurfacePoint> spread_feet;
   for (const int pair : pairs) spread_feet.push_back(feet[static_cast<std::size_t>(pair)]);
   MeasuredSurface from_target(target);
@@ -207,7 +207,7 @@ GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const Tri
   from_target.measure_from(from_target.feet(targets(Eigen::all, pairs)));
   CounterpartSearch search(std::move(from_source), std::move(from_target), pairs.size(), options);
   Points taken = sources;
-  while (search.size() < options.most) {
+  while (search.size() < options.max_count) {
     progress.check();
     const auto [place, distance] = farthest(nearest);
     if (distance < options.spacing * unit) break;

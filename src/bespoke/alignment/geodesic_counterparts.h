@@ -18,14 +18,14 @@ struct CounterpartOptions {
   /// Of the source's diagonal: so near to a pair or a place in space none is taken, however far it is along
   /// the surface. Across a seam or where parts touch, a warp of space cannot tell them apart. Not varied.
   double touching = 0.01;
-  int most = 30;   ///< places
+  int max_count = 30;  ///< places
   int sweeps = 2;  ///< in which every counterpart is looked for again by all the others. 3 and 4: the same.
   /// Of the largest distance: added to a distance, so that pairs at hand do not decide alone. 0.05: 0.37 %.
   double softening = 0.02;
-  std::size_t most_pairs = 16;  ///< measured from, those farthest apart: each is two walks over a surface
+  std::size_t max_pairs = 16;  ///< measured from, those farthest apart: each is two walks over a surface
   /// Counterparts with a larger misfit are left out: 0.03 to 0.25 on poses and on other persons, 0.25 to 0.9
   /// on scans that end where the source goes on.
-  double most_misfit = 0.25;
+  double max_misfit = 0.25;
 };
 
 /// Places of the source far from all pairs, and where distances along the surfaces put them on the target.

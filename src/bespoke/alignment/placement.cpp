@@ -7,9 +7,9 @@
 #include "bespoke/alignment/detail/patch_deformation.h"
 #include "bespoke/alignment/detail/surface_patches.h"
 #include "bespoke/error.h"
+#include "bespoke/mesh/cavities.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/edge_refinement.h"
-#include "bespoke/mesh/linings.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -52,13 +52,13 @@ double distortion_of(const TriangleMesh& source, const Points& placed) {
 
 }  // namespace
 
-PlacementJudge::PlacementJudge(const TriangleMesh& source, const TriangleMesh& target)
+PlacementScore::PlacementScore(const TriangleMesh& source, const TriangleMesh& target)
     : source_(source),
       target_(target),
-      source_lined_(linings_of(source).contains),
-      target_areas_(open_areas(target, linings_of(target).contains)) {}
+      source_lined_(cavities_of(source).contains),
+      target_areas_(open_areas(target, cavities_of(target).contains)) {}
 
-PlacementFigures PlacementJudge::operator()(const Points& placed) const {
+PlacementFigures PlacementScore::operator()(const Points& placed) const {
   if (placed.cols() != source_.vertices.cols())
     throw InvalidInput(std::to_string(placed.cols()) + " places for " +
                        std::to_string(source_.vertices.cols()) + " vertices");

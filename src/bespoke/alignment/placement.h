@@ -6,8 +6,8 @@
 
 namespace bespoke {
 
-/// How well a source laid onto a target explains it; to choose among placements of one source by. Linings of
-/// cavities (linings.h) of either have no say in how near the two are.
+/// How well a source laid onto a target explains it; to choose among placements of one source by. Cavities of
+/// cavities (cavities.h) of either have no say in how near the two are.
 struct PlacementFigures {
   double distance =
       0;  ///< mean of both surfaces' distances from the other, fraction of the target's diagonal
@@ -17,17 +17,17 @@ struct PlacementFigures {
   /// Lower is better: as in an alignment's misfit, a likelihood whose variances are not known. Surfaces that
   /// meet are equally near, whatever is left between their facets, so that of two right placements the one
   /// that distorts less is taken.
-  double misfit() const { return (distance + settled) * distortion; }
+  double misfit() const { return (distance + distance_floor) * distortion; }
 
   /// Fraction of the target's diagonal.
-  static constexpr double settled = 1e-3;
+  static constexpr double distance_floor = 1e-3;
 };
 
 /// Judges placements of one source on one target.
-class PlacementJudge {
+class PlacementScore {
  public:
   /// The meshes must outlive it. Throws InvalidInput for unusable meshes.
-  PlacementJudge(const TriangleMesh& source, const TriangleMesh& target);
+  PlacementScore(const TriangleMesh& source, const TriangleMesh& target);
 
   /// `placed`: 3×n, where the source's vertices lie on the target, mesh units. Throws InvalidInput for
   /// another number of vertices.

@@ -11,13 +11,13 @@
 namespace bespoke {
 
 /// A pair that lies much farther beside the target than the others do.
-struct SlippedAnchor {
+struct OutlierAnchor {
   std::size_t index = 0;
   double distance = 0;  ///< mesh units
 };
 
 /// A pair that strains the surfaces, and that surfaces laid without it put elsewhere.
-struct LeftOutAnchor {
+struct RejectedAnchor {
   std::size_t index = 0;
   double distance = 0;  ///< of its target from where they put it, mesh units
 };
@@ -26,13 +26,13 @@ struct LeftOutAnchor {
 struct AnchorAccuracy {
   std::size_t estimated = 0;  ///< pairs whose σ was estimated
   double sigma = 0;           ///< of these, mesh units; 0: nothing speaks against meeting them exactly
-  std::vector<SlippedAnchor> slipped;
+  std::vector<OutlierAnchor> outliers;
   std::vector<SwappedAnchors> swapped;
-  std::vector<LeftOutAnchor> left_out;
+  std::vector<RejectedAnchor> left_out;
 };
 
 /// Anchors as the fit uses them.
-struct RatedAnchors {
+struct EstimatedAnchors {
   Anchors anchors;                ///< without pairs left out; every pair without a weight has its σ
   std::vector<std::size_t> kept;  ///< of the pairs given, ascending: those that `anchors` has
   std::vector<double> sigmas;  ///< of all pairs given, mesh units; a swapped one's is the way to the other's
@@ -50,10 +50,11 @@ inline constexpr double near_surface = 0.02;
 /// diagonal it cannot be told from the tessellation, and the pairs count as exact. A pair left out has its
 /// own distance as σ; beyond four times the others' it is listed as slipped. Swapped pairs
 /// (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for unusable meshes.
-RatedAnchors rate_anchors(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target);
+EstimatedAnchors estimate_anchor_sigmas(const Anchors& anchors, const TriangleMesh& source,
+                                        const TriangleMesh& target);
 
 /// The same without these pairs too, which `accuracy` then lists as left out alone.
-RatedAnchors without(RatedAnchors rated, const std::vector<LeftOutAnchor>& left_out);
+EstimatedAnchors without(EstimatedAnchors estimated, const std::vector<RejectedAnchor>& left_out);
 
 /// One line, empty unless σ was estimated at more than 8 % of the target's diagonal: points at random in its
 /// bounding box would lie no farther off. No fit follows from such anchors.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t min_audited_pairs = 8;
 constexpr double typical_factor = 4;
-constexpr double least_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
+constexpr double min_share = 0.04;  // of the targets' diagonal: proportions of bodies differ that much
 
 }  // namespace
 
@@ -28,7 +28,7 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
   if (trusted.size() < min_audited_pairs) return audit;
 
   const std::size_t must_stay = std::max(trusted.size() - trusted.size() / 3, min_audited_pairs - 2);
-  std::vector<Eigen::Index> doubted;
+  std::vector<Eigen::Index> suspects;
   for (;;) {
     const Points trusted_targets = targets(Eigen::all, trusted);
     const BiharmonicWarp warp(sources(Eigen::all, trusted), trusted_targets);
@@ -38,16 +38,16 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
     audit.typical_distance = median(distances);
     const auto worst = std::max_element(distances.begin(), distances.end());
     const double limit =
-        std::max(least_share * diagonal(trusted_targets), typical_factor * *audit.typical_distance);
+        std::max(min_share * diagonal(trusted_targets), typical_factor * *audit.typical_distance);
     if (!(*worst > limit) || trusted.size() <= must_stay) {
-      for (const Eigen::Index i : doubted) {
+      for (const Eigen::Index i : suspects) {
         const double distance = (warp(sources.col(i)) - targets.col(i)).norm();
         // Set aside beside a worse pair that had bent the warp around it.
         if (!(distance > limit)) continue;
         SuspiciousAnchor suspicious{static_cast<std::size_t>(i),
                                     anchors.pairs[static_cast<std::size_t>(i)].name, distance, std::nullopt};
         double best = 0.5 * distance;
-        for (const Eigen::Index j : doubted) {
+        for (const Eigen::Index j : suspects) {
           const double mine = (warp(sources.col(i)) - targets.col(j)).norm();
           const double other = (warp(sources.col(j)) - targets.col(i)).norm();
           if (j == i || !(mine < best) || !(other < 0.5 * (warp(sources.col(j)) - targets.col(j)).norm()))
@@ -60,7 +60,7 @@ AnchorAudit audit_anchors(const Anchors& anchors) {
       break;
     }
     const auto position = trusted.begin() + (worst - distances.begin());
-    doubted.push_back(*position);
+    suspects.push_back(*position);
     trusted.erase(position);
   }
   std::stable_sort(

@@ -22,7 +22,7 @@ constexpr double too_near = 0.5;
 
 /// Of their even spacing on the target: no nearer do neighbours slide together. Where the surfaces disagree
 /// with a curve, nearest places bunch and change their order, which no surface follows without folds.
-constexpr double least_gap = 0.25;
+constexpr double min_gap = 0.25;
 
 Eigen::Index segments(const Points& polyline, bool closed) { return polyline.cols() - (closed ? 0 : 1); }
 
@@ -135,10 +135,11 @@ constexpr double steepest = 0.25;
 /// What is asked at places[i], made gentle: each component is the mean of the largest and the least function
 /// of that steepness below and above all that is asked (McShane 1934), which leaves what is gentle as it is;
 /// near held places no more than their distance allows.
-Vector3 gentle_displacement(const Points& asked, const Points& places, const Points& held, Eigen::Index i) {
+Vector3 gentle_displacement(const Points& required, const Points& places, const Points& held,
+                            Eigen::Index i) {
   const Eigen::RowVectorXd reach = steepest * (places.colwise() - places.col(i)).colwise().norm();
-  const Vector3 most = (asked.rowwise() + reach).rowwise().minCoeff();
-  const Vector3 least = (asked.rowwise() - reach).rowwise().maxCoeff();
+  const Vector3 most = (required.rowwise() + reach).rowwise().minCoeff();
+  const Vector3 least = (required.rowwise() - reach).rowwise().maxCoeff();
   double allowed = std::numeric_limits<double>::infinity();
   if (held.cols() > 0) allowed = steepest * (held.colwise() - places.col(i)).colwise().norm().minCoeff();
   return ((most + least) / 2).cwiseMin(allowed).cwiseMax(-allowed);
@@ -244,26 +245,26 @@ void CurvePairs::slide_along(std::span<Sample> samples, const Points& places, do
     const double share = sample.is_fixed ? sample.share
                                          : nearest_share(curve.b, curve.closed,
                                                          places.col(static_cast<Eigen::Index>(i)), low, high);
-    values.push_back({direction * (share - least_gap * sample.share), sample.is_fixed});
+    values.push_back({direction * (share - min_gap * sample.share), sample.is_fixed});
   }
   // What follows the end of a closed curve is its beginning, one turn on.
-  const std::vector<double> rising = curve.closed ? nearest_rising_round(values, 1 - least_gap)
-                                                  : nearest_rising(values, -least_gap * samples.front().share,
-                                                                   1 - least_gap * samples.back().share);
+  const std::vector<double> rising = curve.closed ? nearest_rising_round(values, 1 - min_gap)
+                                                  : nearest_rising(values, -min_gap * samples.front().share,
+                                                                   1 - min_gap * samples.back().share);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     Sample& sample = samples[i];
     if (sample.is_fixed) continue;
-    sample.pair.b = place_at(curve.b, curve.closed, direction * rising[i] + least_gap * sample.share);
+    sample.pair.b = place_at(curve.b, curve.closed, direction * rising[i] + min_gap * sample.share);
   }
 }
 
 void CurvePairs::give_way(const Points& places, const Points& held) {
-  Points asked(3, places.cols());
+  Points required(3, places.cols());
   for (Eigen::Index i = 0; i < places.cols(); ++i)
-    asked.col(i) = samples_[static_cast<std::size_t>(i)].pair.b - places.col(i);
+    required.col(i) = samples_[static_cast<std::size_t>(i)].pair.b - places.col(i);
   for (Eigen::Index i = 0; i < places.cols(); ++i) {
     Sample& sample = samples_[static_cast<std::size_t>(i)];
-    if (!sample.is_fixed) sample.pair.b = places.col(i) + gentle_displacement(asked, places, held, i);
+    if (!sample.is_fixed) sample.pair.b = places.col(i) + gentle_displacement(required, places, held, i);
   }
 }
 

@@ -13,7 +13,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

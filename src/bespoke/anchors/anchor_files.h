@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bespoke/anchors/anchors.h"
+#include "bespoke/enum_names.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/named.h"
 
 namespace bespoke {
 

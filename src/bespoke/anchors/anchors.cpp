@@ -14,7 +14,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/rigid_alignment.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {
@@ -183,7 +183,7 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
 
 bool is_exact(const AnchorPair& pair) { return std::isinf(pair.weight) && !(pair.sigma.value_or(0) > 0); }
 
-bool is_unrated(const AnchorPair& pair) { return !pair.sigma && std::isinf(pair.weight); }
+bool has_no_given_sigma(const AnchorPair& pair) { return !pair.sigma && std::isinf(pair.weight); }
 
 Points source_points(const Anchors& anchors) { return points(anchors, &AnchorPair::a); }
 

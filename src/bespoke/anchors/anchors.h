@@ -83,7 +83,7 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
 bool is_exact(const AnchorPair& pair);
 
 /// Whether nobody said how accurate a pair is: it came without weight and σ.
-bool is_unrated(const AnchorPair& pair);
+bool has_no_given_sigma(const AnchorPair& pair);
 
 /// 3×n each, n and n: the pairs as matrices; a σ that is not given is 0.
 Points source_points(const Anchors& anchors);

@@ -15,8 +15,8 @@ namespace {
 // a fist's little finger still contradicts itself. Of 312 contradictions by noise of 2 % on 31 pairs of
 // models 4 leaves 281 and 6 leaves 271; both leave all 127 by anchors exchanged for a neighbour.
 constexpr double power = 6;
-constexpr double least_distance = 0.01;  // of the farthest anchor's: nearer ones weigh no more
-constexpr std::size_t least_others = 4;  // fewer tell no turn
+constexpr double min_distance = 0.01;  // of the farthest anchor's: nearer ones weigh no more
+constexpr std::size_t min_others = 4;  // fewer tell no turn
 
 /// By least squares of all pairs but two, the nearer to these the more they count; none where these others
 /// are few or at one place.
@@ -26,11 +26,10 @@ std::optional<Similarity> similarity_around(const Points& sources, const Points&
   for (Eigen::Index k = 0; k < sources.cols(); ++k)
     if (k != i && k != j) others.push_back(k);
   const Points from = sources(Eigen::all, others), to = targets(Eigen::all, others);
-  if (others.size() < least_others || !(diagonal(from) > 0) || !(diagonal(to) > 0)) return std::nullopt;
+  if (others.size() < min_others || !(diagonal(from) > 0) || !(diagonal(to) > 0)) return std::nullopt;
   const Vector3 middle = 0.5 * (sources.col(i) + sources.col(j));
   const Eigen::ArrayXd distances = (from.colwise() - middle).colwise().norm().transpose();
-  return align_similarly(from, to,
-                         (distances / distances.maxCoeff()).max(least_distance).pow(-power).matrix());
+  return align_similarly(from, to, (distances / distances.maxCoeff()).max(min_distance).pow(-power).matrix());
 }
 
 }  // namespace
@@ -44,7 +43,9 @@ std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) 
   if (!(diagonal(sources) > 0)) return found;  // the rigid part says so
   const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
   const double reach = near * diagonal(targets);
-  const auto contradicts = [](const ContradictingAnchors& pair) { return pair.asked > pair.apart; };
+  const auto contradicts = [](const ContradictingAnchors& pair) {
+    return pair.target_difference > pair.source_distance;
+  };
   for (std::size_t first = 0; first < anchors.pairs.size(); ++first)
     for (std::size_t second = first + 1; second < anchors.pairs.size(); ++second) {
       if (!(is_exact(anchors.pairs[first]) && is_exact(anchors.pairs[second]))) continue;
@@ -54,29 +55,30 @@ std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) 
         return {first, second, arm.norm(), (targets.col(j) - targets.col(i) - arm).norm()};
       };
       const ContradictingAnchors pair = under(similarity);
-      if (!(pair.apart < reach && contradicts(pair))) continue;
+      if (!(pair.source_distance < reach && contradicts(pair))) continue;
       const std::optional<Similarity> around = similarity_around(sources, targets, i, j);
       if (!around || contradicts(under(*around))) found.push_back(pair);
     }
   std::stable_sort(found.begin(), found.end(),
                    [](const ContradictingAnchors& a, const ContradictingAnchors& b) {
-                     return a.asked * b.apart > b.asked * a.apart;
+                     return a.target_difference * b.source_distance > b.target_difference * a.source_distance;
                    });
   return found;
 }
 
 std::string to_string(const std::vector<ContradictingAnchors>& contradicting, const Anchors& anchors) {
-  constexpr std::size_t most_named = 5;
+  constexpr std::size_t max_named = 5;
   std::string text;
-  for (std::size_t k = 0; k < std::min(contradicting.size(), most_named); ++k) {
+  for (std::size_t k = 0; k < std::min(contradicting.size(), max_named); ++k) {
     const ContradictingAnchors& pair = contradicting[k];
     char distances[120];
-    std::snprintf(distances, sizeof distances, " (%.3g apart, targets off by %.3g)", pair.apart, pair.asked);
+    std::snprintf(distances, sizeof distances, " (%.3g apart, targets off by %.3g)", pair.source_distance,
+                  pair.target_difference);
     text += (text.empty() ? "anchors " : "; ") + label(anchors, pair.first) + " and " +
             label(anchors, pair.second) + distances;
   }
-  if (contradicting.size() > most_named)
-    text += " and " + std::to_string(contradicting.size() - most_named) + " more";
+  if (contradicting.size() > max_named)
+    text += " and " + std::to_string(contradicting.size() - max_named) + " more";
   if (!text.empty()) text += " contradict each other; give those that are not exact a sigma";
   return text;
 }

@@ -11,8 +11,8 @@ namespace bespoke {
 /// Two exact pairs so close that no smooth map meets both.
 struct ContradictingAnchors {
   std::size_t first = 0, second = 0;  ///< indices of the pairs
-  double apart = 0;                   ///< the two sources, as large as the target is, mesh units
-  double asked = 0;  ///< how much more or less their targets are apart, as vectors, mesh units
+  double source_distance = 0;         ///< the two sources, as large as the target is, mesh units
+  double target_difference = 0;  ///< how much more or less their targets are apart, as vectors, mesh units
 };
 
 /// Pairs of exact anchors within 5 % of the targets' diagonal whose targets differ from what the one

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/equal_positions.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke {
 namespace {
 
 // A round divides a chord error by about four.
-constexpr int most_rounds = 20;
+constexpr int max_rounds = 20;
 
 /// A corner of a polygon: its vertex, and its number as FaceSplits counts them.
 struct Corner {
@@ -239,12 +239,12 @@ double expected_vertices(Eigen::Index vertices, const Eigen::VectorXd& errors, d
          (errors.array() > length).select((errors / length).cwiseSqrt().array() - 1, 0).sum();
 }
 
-std::string in_short(double value) { return in_digits(value, 4); }
+std::string in_short(double value) { return format_number(value, 4); }
 
 }  // namespace
 
 RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length, VertexParts parts,
-                              std::size_t most_vertices) {
+                              std::size_t max_vertices) {
   if (!(length > 0))
     throw InvalidInput("a product cannot be refined to a chord error of " + in_short(length) +
                        "; it must be positive");
@@ -256,15 +256,15 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
     const Eigen::VectorXd errors = chord_errors(vertices, edges, is_stiff, image);
     const Middles middles = chosen_edges(splitting.faces(), edges, errors, length);
     if (middles.size() == 0) break;
-    if (round == most_rounds)
+    if (round == max_rounds)
       throw InvalidInput("a chord error of " + in_short(length) + " is not met after " +
-                         std::to_string(most_rounds) + " halvings of edges; " + in_short(errors.maxCoeff()) +
+                         std::to_string(max_rounds) + " halvings of edges; " + in_short(errors.maxCoeff()) +
                          " is left, ask for less");
     const double needed = std::max(static_cast<double>(vertices.cols()) + static_cast<double>(middles.size()),
                                    expected_vertices(vertices.cols(), errors, length));
-    if (needed > static_cast<double>(most_vertices))
+    if (needed > static_cast<double>(max_vertices))
       throw InvalidInput("a chord error of " + in_short(length) + " would take more than " +
-                         std::to_string(most_vertices) + " vertices; the largest is " +
+                         std::to_string(max_vertices) + " vertices; the largest is " +
                          in_short(errors.maxCoeff()) + ", ask for less");
     if (!parts.empty()) add_parts_of_middles(edges, is_stiff, middles, parts);
     splitting.split(middles);

@@ -20,7 +20,7 @@ constexpr double rotation_tolerance = 1e-9;
 constexpr double determinant_tolerance = 1e-12;
 
 // Some four full turns of a limb. A file that claims more is damaged.
-constexpr std::size_t most_steps = 100;
+constexpr std::size_t max_steps = 100;
 
 void require(bool holds, const std::string& what) {
   if (!holds) throw InvalidInput(what);
@@ -61,11 +61,11 @@ void require_valid(const AssetRecord& record) {
 /// Refuses a certificate of bijection that the stored step contradicts.
 void require_consistent(const MapStep& step) {
   const Certificate& certificate = step.certificate;
-  require(std::isfinite(certificate.least_determinant) && std::isfinite(certificate.affine_determinant),
+  require(std::isfinite(certificate.min_determinant) && std::isfinite(certificate.affine_determinant),
           "the certificate's determinants are not finite");
   if (!certificate.is_bijection()) return;
-  require(certificate.least_determinant > 0, "the certificate claims a bijection with least determinant " +
-                                                 std::to_string(certificate.least_determinant));
+  require(certificate.min_determinant > 0, "the certificate claims a bijection with least determinant " +
+                                               std::to_string(certificate.min_determinant));
   require(step.pyramid.levels.empty() || certificate.certified > 0,
           "the certificate claims a bijection but no cell is certified");
   const double scale = step.affine.linear.cwiseAbs().maxCoeff();
@@ -104,7 +104,7 @@ Certificate whole_certificate(const Asset& asset) {
     whole.certified += step.certified;
     whole.undecided += step.undecided;
     whole.folded += step.folded;
-    whole.least_determinant *= step.least_determinant;
+    whole.min_determinant *= step.min_determinant;
     // Two reflections are none together, but neither step is a bijection.
     whole.affine_determinant = whole.affine_determinant > 0 && step.affine_determinant > 0
                                    ? whole.affine_determinant * step.affine_determinant
@@ -124,7 +124,7 @@ std::size_t voxel_count(const Asset& asset) {
 void require_valid(const Asset& asset) {
   require_valid(asset.target_from_source);
   require(!asset.steps.empty(), "the map has no steps");
-  require(asset.steps.size() <= most_steps,
+  require(asset.steps.size() <= max_steps,
           "the map has " + std::to_string(asset.steps.size()) + " steps, more than any chain needs");
   for (const MapStep& step : asset.steps) {
     require_valid(step);

@@ -35,10 +35,10 @@ std::string to_string(const BakeSummary& summary) {
       summary.levels.size(), summary.levels.empty() ? 0.0 : summary.levels.back().voxel_size, leaves, voxels,
       summary.error.p99, summary.error.max, summary.error.count, summary.tolerance_met ? "met" : "not met",
       summary.refined_folds, summary.repaired_cells, summary.repair_cost, summary.folded_cells,
-      summary.seconds, summary.refine_seconds, summary.measure_seconds, summary.mend_seconds);
+      summary.seconds, summary.refine_seconds, summary.measure_seconds, summary.repair_seconds);
   std::string line = text;
-  if (summary.turned_faces > 0)
-    line += "; " + std::to_string(summary.turned_faces) + " faces turned against the map";
+  if (summary.misoriented_faces > 0)
+    line += "; " + std::to_string(summary.misoriented_faces) + " faces turned against the map";
   if (summary.relaxed.empty()) return line;
   std::snprintf(text, sizeof text, "; relaxed to %.4g in %zu regions, the worst around (%.4g, %.4g, %.4g)",
                 summary.relaxed.front().error, summary.relaxed.size(),
@@ -53,8 +53,8 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
     throw InvalidInput("bake tolerance " + std::to_string(options.tolerance) + " is not positive and finite");
   if (options.voxel_size && !(*options.voxel_size > 0 && std::isfinite(*options.voxel_size)))
     throw InvalidInput("voxel size " + std::to_string(*options.voxel_size) + " is not positive and finite");
-  if (!(options.most_face_turn > 0 && options.most_face_turn <= 180))
-    throw InvalidInput("a largest turn of faces of " + std::to_string(options.most_face_turn) +
+  if (!(options.max_face_turn > 0 && options.max_face_turn <= 180))
+    throw InvalidInput("a largest turn of faces of " + std::to_string(options.max_face_turn) +
                        " degrees is not above 0 and at most 180");
   Bake result;
   if (is_empty(map.support()))

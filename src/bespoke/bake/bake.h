@@ -33,10 +33,10 @@ struct BakeOptions {
   /// Degrees: leaves are added where the baked map turns a face of `surface` farther against the map. The
   /// shared cases take files x 0.98 to 1.02 (10: 0.99 to 1.05). Where leaves are few, these places need them:
   /// d08's vertices end 0.0083 % of the diagonal from where the map itself takes them, not 0.0100 %.
-  double most_face_turn = 15;
+  double max_face_turn = 15;
   /// What follows the map, where it is a step of a chain: errors are measured where it takes them. Must
   /// outlive the call.
-  const ElasticMap* then = nullptr;
+  const ElasticMap* downstream_map = nullptr;
   /// Half precision stores 16 bits a number. Error, certificate and all decisions are about the rounded
   /// values.
   ValuePrecision precision = ValuePrecision::single;
@@ -57,17 +57,17 @@ struct RelaxedRegion {
 
 struct BakeSummary {
   std::vector<BakeLevelSummary> levels;
-  /// |baked − exact| (after BakeOptions::then), mesh units, over a random sample: no decision of the bake
-  /// used its points.
+  /// |baked − exact| (after BakeOptions::downstream_map), mesh units, over a random sample: no decision of
+  /// the bake used its points.
   Statistics error;
   std::size_t error_random_points = 0;   ///< of the sample, anywhere in the band
   std::size_t error_surface_points = 0;  ///< of the sample, in finest cells on the surface
   std::size_t surface_cells = 0;         ///< finest cells on the surface
   bool tolerance_met = false;            ///< error.max ≤ tolerance
   std::vector<RelaxedRegion> relaxed;    ///< to stay within max_leaves; the worst first
-  /// Of the surface, by more than most_face_turn, but for those thinner than the smallest voxel that a nested
+  /// Of the surface, by more than max_face_turn, but for those thinner than the smallest voxel that a nested
   /// pyramid may have; of a chain, over its steps.
-  std::size_t turned_faces = 0;
+  std::size_t misoriented_faces = 0;
   std::size_t refined_folds = 0;   ///< cells that folded though the map does not, mended by finer leaves
   std::size_t repaired_cells = 0;  ///< cells that folded as the map does, mended by moving nodes
   double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
@@ -76,7 +76,7 @@ struct BakeSummary {
   std::size_t peak_bytes = 0;  ///< estimate that was held against max_memory
   double refine_seconds = 0;   ///< evaluating the map and growing the pyramid
   double measure_seconds = 0;  ///< evaluating the map at other points
-  double mend_seconds = 0;     ///< certifying, refining and repairing folds
+  double repair_seconds = 0;   ///< certifying, refining and repairing folds
   double seconds = 0;
 };
 
@@ -85,7 +85,7 @@ std::string to_string(const BakeSummary& summary);
 
 struct Bake {
   Pyramid pyramid;
-  Certificate certificate;  ///< of the pyramid, at t = 1; its seconds are among mend_seconds
+  Certificate certificate;  ///< of the pyramid, at t = 1; its seconds are among repair_seconds
   BakeSummary summary;
 };
 

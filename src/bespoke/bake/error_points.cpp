@@ -191,14 +191,15 @@ Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& ce
 }
 
 std::vector<double> displacement_errors(const ElasticMap& baked, const ElasticMap& exact, const Points& x,
-                                        const Progress& progress, const ElasticMap* then) {
+                                        const Progress& progress, const ElasticMap* downstream_map) {
   std::vector<double> errors(static_cast<std::size_t>(x.cols()));
   for (std::size_t first = 0; first < errors.size(); first += points_per_call) {
     progress.step("measure", first, errors.size());
     const auto count = static_cast<Eigen::Index>(std::min(points_per_call, errors.size() - first));
     const Points part = x.middleCols(static_cast<Eigen::Index>(first), count);
-    const Points difference = then ? Points((*then)(baked(part)) - (*then)(exact(part)))
-                                   : Points(baked.displacement(part) - exact.displacement(part));
+    const Points difference = downstream_map
+                                  ? Points((*downstream_map)(baked(part)) - (*downstream_map)(exact(part)))
+                                  : Points(baked.displacement(part) - exact.displacement(part));
     for (Eigen::Index i = 0; i < count; ++i)
       errors[first + static_cast<std::size_t>(i)] = difference.col(i).norm();
   }

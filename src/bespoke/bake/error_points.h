@@ -41,6 +41,6 @@ Points points_in_cells(const Pyramid& pyramid, const std::vector<FinestCell>& ce
 /// |baked(x) − exact(x)| at each column of x, mesh units; both must have the same affine part. With `then`,
 /// of where it takes the two.
 std::vector<double> displacement_errors(const ElasticMap& baked, const ElasticMap& exact, const Points& x,
-                                        const Progress& progress, const ElasticMap* then = nullptr);
+                                        const Progress& progress, const ElasticMap* downstream_map = nullptr);
 
 }  // namespace bespoke

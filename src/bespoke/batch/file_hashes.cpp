@@ -25,7 +25,7 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path) {
                    status.st_mtim.tv_sec * nanoseconds + status.st_mtim.tv_nsec};
 }
 
-bool is_too_fresh(const FileStamp& stamp) {
+bool is_within_timestamp_resolution(const FileStamp& stamp) {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count() - stamp.modified < tick;
 }
@@ -38,9 +38,9 @@ FileHashes::HashedFile FileHashes::of(const std::filesystem::path& path) {
     const auto known = known_.find(path.native());
     if (known != known_.end() && known->second.stamp == *stamp) return known->second;
   }
-  const bool is_fresh = is_too_fresh(*stamp);
-  HashedFile read{*stamp, is_fresh, sha256_of_file(path)};
-  if (is_fresh) return read;
+  const bool is_recent = is_within_timestamp_resolution(*stamp);
+  HashedFile read{*stamp, is_recent, sha256_of_file(path)};
+  if (is_recent) return read;
   const std::lock_guard lock(mutex_);
   return known_[path.native()] = std::move(read);
 }

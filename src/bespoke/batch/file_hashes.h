@@ -22,14 +22,14 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
 /// Whether a file with this stamp may change without getting another one, because it changed just now: file
 /// systems tick in some milliseconds.
-bool is_too_fresh(const FileStamp& stamp);
+bool is_within_timestamp_resolution(const FileStamp& stamp);
 
 /// SHA-256 of files, each read once as long as its stamp stays. Thread-safe.
 class FileHashes {
  public:
   struct HashedFile {
     FileStamp stamp;  ///< as it was before the file was read
-    bool was_fresh;   ///< is_too_fresh then: the stamp vouches for nothing
+    bool was_recent;  ///< is_within_timestamp_resolution then: the stamp vouches for nothing
     std::string hash;
   };
 

@@ -80,7 +80,7 @@ std::vector<RecordedFile> recorded_inputs(const BatchJob& job, FileHashes& hashe
   for (const JobFile& input : job.inputs) {
     inputs.push_back(recorded(input, record_directory(job), hashes));
     FileHashes::HashedFile& content = inputs.back().content;
-    if (content.was_fresh) content.stamp.modified = 0;
+    if (content.was_recent) content.stamp.modified = 0;
   }
   return inputs;
 }

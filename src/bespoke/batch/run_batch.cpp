@@ -26,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of a job's forecast seconds; what a shorter one takes is lost among what the process holds anyway.
-constexpr double least_seconds_to_measure_memory = 0.5;
+constexpr double min_seconds_to_measure_memory = 0.5;
 
 /// From now on peak_memory counts anew. Where Linux does not allow it, the figure is that of the process.
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
@@ -181,7 +181,7 @@ class Scheduler {
     }
     threads_ += result.threads;
     seconds_left_ -= forecasts_[job].seconds;
-    if (running_++ == 0 && forecasts_[job].seconds > least_seconds_to_measure_memory) reset_peak_memory();
+    if (running_++ == 0 && forecasts_[job].seconds > min_seconds_to_measure_memory) reset_peak_memory();
     ++busy_;
     if (events_.started) events_.started(job);
     lock.unlock();

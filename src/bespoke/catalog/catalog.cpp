@@ -54,7 +54,7 @@ CatalogEntry entry_of(const fs::path& path, const Asset& asset) {
   entry.error_p99 = asset.record.bake_error.p99;
   entry.error_max = asset.record.bake_error.max;
   entry.bijection = certificate.is_bijection();
-  entry.least_determinant = certificate.least_determinant;
+  entry.min_determinant = certificate.min_determinant;
   entry.undecided = certificate.undecided;
   entry.folded = certificate.folded;
   entry.steps = asset.steps.size();

@@ -26,7 +26,7 @@ struct CatalogEntry {
   double error_p99 = 0;
   double error_max = 0;
   bool bijection = false;
-  double least_determinant = 0;
+  double min_determinant = 0;
   std::size_t undecided = 0;
   std::size_t folded = 0;
   std::size_t steps = 0;

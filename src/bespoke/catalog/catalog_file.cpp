@@ -28,7 +28,7 @@ Json entry_json(const CatalogEntry& entry) {
           {"error", {{"p99", entry.error_p99}, {"max", entry.error_max}}},
           {"certificate",
            {{"bijection", entry.bijection},
-            {"least_determinant", entry.least_determinant},
+            {"least_determinant", entry.min_determinant},
             {"undecided", entry.undecided},
             {"folded", entry.folded}}},
           {"steps", entry.steps},

@@ -5,7 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t printed_anchors = 10;  // JSON has all
 
-std::string figure(double value) { return in_digits(value, 4); }
+std::string figure(double value) { return format_number(value, 4); }
 
-std::string tuple(const Vector3& v) { return in_digits(v, 6); }
+std::string tuple(const Vector3& v) { return format_number(v, 6); }
 
 struct NearAnchor {
   std::string name;
@@ -74,7 +74,7 @@ std::string map_text(const Asset& asset) {
   const Certificate certificate = whole_certificate(asset);
   const std::string proof =
       certificate.is_bijection()
-          ? "proved a bijection, least determinant " + figure(certificate.least_determinant)
+          ? "proved a bijection, least determinant " + figure(certificate.min_determinant)
           : "not proved: " + std::to_string(certificate.folded) + " cells fold, " +
                 std::to_string(certificate.undecided) + " are undecided";
   return proof + "; bake error p99 " + figure(asset.record.bake_error.p99) + ", max " +
@@ -97,7 +97,7 @@ Json difference_json(const ComparedMaps& compared, const PointDifference& differ
 Json map_json(const Asset& asset) {
   const Certificate certificate = whole_certificate(asset);
   return {{"bijection", certificate.is_bijection()},
-          {"least_determinant", certificate.least_determinant},
+          {"min_determinant", certificate.min_determinant},
           {"undecided", certificate.undecided},
           {"folded", certificate.folded},
           {"bake_error", to_json(asset.record.bake_error)},

@@ -5,29 +5,29 @@
 #include <vector>
 
 #include "bespoke/error.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {
 
 // Of 16 million values: two models of a catalogue of a thousand agree in them with a chance of 3 %, and then
 // both are named.
-constexpr std::size_t least_digits = 6;
+constexpr std::size_t min_digits = 6;
 constexpr std::size_t named_maps = 10;
 
 void require_digits(const std::string& hash, const char* role) {
   const bool are_digits =
       std::all_of(hash.begin(), hash.end(), [](unsigned char c) { return std::isxdigit(c) != 0; });
-  if (!are_digits || hash.size() < least_digits)
+  if (!are_digits || hash.size() < min_digits)
     throw InvalidInput(std::string("the ") + role + "'s hash \"" + hash + "\" is not of " +
-                       std::to_string(least_digits) + " hexadecimal digits or more");
+                       std::to_string(min_digits) + " hexadecimal digits or more");
 }
 
 std::string listed(const std::vector<const CatalogEntry*>& entries) {
   std::string text;
   for (std::size_t i = 0; i < std::min(named_maps, entries.size()); ++i)
     text += (i == 0 ? "" : ", ") + entries[i]->file + " (target " +
-            entries[i]->target.hash.substr(0, 2 * least_digits) + ")";
+            entries[i]->target.hash.substr(0, 2 * min_digits) + ")";
   if (entries.size() > named_maps) text += " and " + std::to_string(entries.size() - named_maps) + " more";
   return text;
 }

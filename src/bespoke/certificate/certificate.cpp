@@ -45,7 +45,7 @@ std::string to_string(const Certificate& certificate) {
       text, sizeof text,
       "%zu cells certified, %zu undecided, %zu folded; least determinant %.4g, of the affine part %.4g%s; "
       "%.2f s",
-      certificate.certified, certificate.undecided, certificate.folded, certificate.least_determinant,
+      certificate.certified, certificate.undecided, certificate.folded, certificate.min_determinant,
       certificate.affine_determinant, certificate.is_bijection() ? "; a bijection of space" : "",
       certificate.seconds);
   return text;
@@ -78,7 +78,7 @@ Certificate certify_listing_all(const Pyramid& pyramid, const AffineMap& affine,
   certificate.undecided = found.undecided;
   certificate.folded = found.folded;
   certificate.affine_determinant = linear.determinant();
-  certificate.least_determinant = std::min(found.least, certificate.affine_determinant);
+  certificate.min_determinant = std::min(found.least, certificate.affine_determinant);
   certificate.places = found.places;
   certificate.seconds = watch.seconds();
   return certificate;

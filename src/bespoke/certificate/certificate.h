@@ -21,7 +21,7 @@ struct Certificate {
   std::size_t certified = 0;       ///< finest cells with det > 0 proved
   std::size_t undecided = 0;       ///< cells that the subdivision limit left open
   std::size_t folded = 0;          ///< cells with a point of det ≤ 0
-  double least_determinant = 0;    ///< lower bound over certified cells and the affine part, no unit
+  double min_determinant = 0;      ///< lower bound over certified cells and the affine part, no unit
   double affine_determinant = 0;   ///< det of the affine part
   std::vector<FoldedCell> places;  ///< of folded and undecided cells, at most 1000, in lattice order
   double seconds = 0;

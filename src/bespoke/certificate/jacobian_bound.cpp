@@ -171,7 +171,7 @@ std::array<BezierDeterminant, 2> halves(const BezierDeterminant& whole, int stri
   return parts;
 }
 
-double least_corner(const BezierDeterminant& coefficients) {
+double min_corner(const BezierDeterminant& coefficients) {
   double least = std::numeric_limits<double>::infinity();
   for (const int corner : {0, 2, 6, 8, 18, 20, 24, 26}) least = std::min(least, coefficients[corner]);
   return least;
@@ -201,7 +201,7 @@ DeterminantRange decide_cell(const BezierDeterminant& coefficients, double margi
     const Part part = parts.back();
     parts.pop_back();
     // A value within the margin of zero is no proof of a fold; one below it is.
-    const double value = least_corner(part.coefficients);
+    const double value = min_corner(part.coefficients);
     range.value = std::min(range.value, value);
     // Each halving along three axes rounds six times.
     const double rounding = margin + 8 * part.depth * unit_roundoff * largest;

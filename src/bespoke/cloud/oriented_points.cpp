@@ -34,9 +34,9 @@ void require_valid(const OrientedPoints& cloud, const std::string& what) {
   if (cloud.normals.cols() != cloud.points.cols())
     throw InvalidInput(what + ": " + std::to_string(cloud.points.cols()) + " points, but " +
                        std::to_string(cloud.normals.cols()) + " normals");
-  if (!(cloud.points.cols() >= least_cloud_points))
+  if (!(cloud.points.cols() >= min_cloud_points))
     throw InvalidInput(what + ": a point cloud of " + std::to_string(cloud.points.cols()) +
-                       " points shows no surface; it needs at least " + std::to_string(least_cloud_points));
+                       " points shows no surface; it needs at least " + std::to_string(min_cloud_points));
   for (Eigen::Index i = 0; i < cloud.points.cols(); ++i)
     if (!cloud.points.col(i).allFinite())
       throw InvalidInput(what + ": point " + std::to_string(i) + " has a coordinate that is not finite");

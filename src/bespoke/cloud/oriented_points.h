@@ -13,10 +13,10 @@ struct OrientedPoints {
 };
 
 /// A cloud of fewer points shows no surface: a few neighbourhoods, most of them cut off by the rim.
-inline constexpr Eigen::Index least_cloud_points = 100;
+inline constexpr Eigen::Index min_cloud_points = 100;
 
 /// Throws InvalidInput, naming `what` (for instance "target scan.ply"), unless there are at least
-/// least_cloud_points, not all at one place, with finite coordinates, and normals that are finite and longer
+/// min_cloud_points, not all at one place, with finite coordinates, and normals that are finite and longer
 /// than 0.
 void require_valid(const OrientedPoints& cloud, const std::string& what);
 

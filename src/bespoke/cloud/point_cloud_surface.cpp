@@ -27,16 +27,16 @@ struct CloudSettings {
   /// third; more reduce it as their root, and blur what is smaller than they reach.
   std::size_t neighbours = 20;
   /// Points whose neighbours are farther than this many medians are left out: one such is no surface.
-  double most_sparse = 4;
+  double max_sparse = 4;
   /// A surface ends where the mean of the points lies aside by this share of their reach h: 1.5 standard
   /// deviations h/√8 of the weight. Inside of randomly spread points that happens once in 10⁷ places, …
   double off_centre = 0.53;
   /// … and where no point lies within this share, two spacings, so that holes are not filled from all sides:
   /// once in 3 · 10⁵ places.
   double emptiest = 0.8;
-  double most_contradicting = 0.05;  ///< of the points: thin parts have some, normals without an order half
-  int most_steps = 10;               ///< towards the surface; three are usual
-  double step_tolerance = 0.0001;    ///< of a cell: far below the noise of any scan
+  double max_contradicting = 0.05;  ///< of the points: thin parts have some, normals without an order half
+  int max_steps = 10;               ///< towards the surface; three are usual
+  double step_tolerance = 0.0001;   ///< of a cell: far below the noise of any scan
   double steepest = 2;  ///< slope of the distance along the normal, or its inverse; 1 without noise
 };
 constexpr CloudSettings settings;
@@ -76,7 +76,7 @@ double set_reaches(PreparedCloud& cloud) {
   std::vector<int> kept;
   std::vector<SurfaceElement> elements;
   for (std::size_t i = 0; i < distances.size(); ++i)
-    if (distances[i] <= settings.most_sparse * usual) {
+    if (distances[i] <= settings.max_sparse * usual) {
       kept.push_back(static_cast<int>(i));
       elements.push_back({cloud.elements[i].point, cloud.elements[i].normal, std::max(distances[i], usual)});
     }
@@ -107,7 +107,7 @@ std::size_t contradicting_points(const PreparedCloud& cloud, const MovingSurface
 void require_agreement(const PointCloudSummary& summary, const std::string& what) {
   const auto kept = static_cast<double>(summary.points - summary.duplicates - summary.isolated);
   const auto against = static_cast<double>(summary.contradicting);
-  if (against <= settings.most_contradicting * kept) return;
+  if (against <= settings.max_contradicting * kept) return;
   char share[32];
   std::snprintf(share, sizeof share, "%.0f %%", 100 * against / kept);
   throw InvalidInput(what + ": " + share +
@@ -149,9 +149,9 @@ void fill_octant(const MovingSurface& surface, const LatticeCoordinates& first, 
 SparseField sampled(const MovingSurface& surface, const PreparedCloud& cloud, double cell,
                     const std::string& what) {
   // Beyond that many cells along an axis a node has no number.
-  constexpr double most_cells = 1 << 28;
+  constexpr double max_cells = 1 << 28;
   const Box box = bounding_box(cloud.points);
-  if (!(box.sizes().maxCoeff() < most_cells * cell))
+  if (!(box.sizes().maxCoeff() < max_cells * cell))
     throw InvalidInput(what + ": the points lie in heaps too far apart for their spacing");
   SparseField field{box.min(), cell, {}, {}};
   field.leaves = leaves_near(cloud, field);
@@ -173,15 +173,15 @@ bool is_inside_of_the_cloud(const SurfaceEstimate& estimate) {
 /// The surface's point near a place, by the secant method along the normals; empty where there is none, and
 /// where the cloud has ended.
 std::optional<Vector3> placed_vertex(const MovingSurface& surface, const Vector3& start, double cell) {
-  const double most_moved = cell;  // beyond, another cell is in charge
+  const double max_moved = cell;  // beyond, another cell is in charge
   std::vector<int> near;
-  surface.gather(start, most_moved, near);
+  surface.gather(start, max_moved, near);
   Vector3 x = start;
   double slope = 1;
   std::optional<double> last;
-  for (int step = 0; step < settings.most_steps; ++step) {
+  for (int step = 0; step < settings.max_steps; ++step) {
     const std::optional<SurfaceEstimate> estimate = surface.estimate(x, near);
-    if (!estimate || !((x - start).norm() <= most_moved)) return std::nullopt;
+    if (!estimate || !((x - start).norm() <= max_moved)) return std::nullopt;
     const double distance = estimate->distance;
     if (std::abs(distance) <= settings.step_tolerance * cell)
       return is_inside_of_the_cloud(*estimate) ? std::optional(x) : std::nullopt;

@@ -103,8 +103,8 @@ class Estimator {
  private:
   /// Exact for the rows counted: all, or an even sample of them.
   double entries_per_row(double lambda) const {
-    constexpr Eigen::Index most_rows = 1000;
-    const Eigen::Index stride = (sources_.cols() + most_rows - 1) / most_rows;
+    constexpr Eigen::Index max_rows = 1000;
+    const Eigen::Index stride = (sources_.cols() + max_rows - 1) / max_rows;
     const PointGrid grid(sources_, lambda);
     const auto rows = static_cast<std::size_t>((sources_.cols() + stride - 1) / stride);
     const auto count = [&](std::size_t begin, std::size_t end) {

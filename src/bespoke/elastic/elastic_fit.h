@@ -6,8 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "bespoke/enum_names.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/named.h"
 
 namespace bespoke {
 

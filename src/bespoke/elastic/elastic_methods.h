@@ -12,7 +12,7 @@
 #include "bespoke/elastic/multiscale.h"
 #include "bespoke/elastic/pffd.h"
 #include "bespoke/elastic/pffd_smooth.h"
-#include "bespoke/named.h"
+#include "bespoke/enum_names.h"
 
 namespace bespoke {
 

@@ -23,9 +23,9 @@ constexpr double largest_step = 0.3;
 // … its gradient is held below this bound, …
 constexpr double largest_gradient = 0.9;
 // … and a scale takes so many layers at most while clipping or damping keeps one from finishing.
-constexpr int most_layers_per_scale = 6;
+constexpr int max_layers_per_scale = 6;
 // λ_k in tolerances below which a layer could repair next to nothing.
-constexpr double least_radius = 4;
+constexpr double min_radius = 4;
 // Of a guide's offset: how far it may be missed. Not varied.
 constexpr double guide_tolerance = 0.05;
 
@@ -114,13 +114,13 @@ class Fitter {
         options_(options),
         progress_(progress),
         affine_(upright_affine(sources, targets, options.affine_part)),
-        growth_(options.composed ? 1 : octave_of(affine_)),
+        growth_(options.composed ? 1 : power_of_two_scale(affine_)),
         images_(affine_ * sources_) {}
 
   MultiscaleFit run() {
     double lambda = options_.lambda;
     for (int level = 0; level < options_.max_levels && worst() > options_.tolerance &&
-                        lambda > least_radius * options_.tolerance / growth_;
+                        lambda > min_radius * options_.tolerance / growth_;
          ++level, lambda /= 2) {
       progress_.step("elastic", std::size_t(level), std::size_t(options_.max_levels));
       if (options_.composed)
@@ -153,7 +153,7 @@ class Fitter {
   }
 
   void compose_scale(double lambda) {
-    for (int count = 0; count < most_layers_per_scale; ++count) {
+    for (int count = 0; count < max_layers_per_scale; ++count) {
       progress_.check();
       const double before = (targets_ - images_).leftCols(pairs_).squaredNorm();
       const Points centers = centers_at(lambda);
@@ -169,9 +169,9 @@ class Fitter {
       if (!limited.untouched) finished = false;
       summary_.gradient_bounds.push_back(limited.bound);
       add(std::move(layer));
-      constexpr double least_progress = 0.9;
+      constexpr double min_progress = 0.9;
       if (finished || worst() <= options_.tolerance) return;
-      if ((targets_ - images_).leftCols(pairs_).squaredNorm() > least_progress * before) return;
+      if ((targets_ - images_).leftCols(pairs_).squaredNorm() > min_progress * before) return;
     }
   }
 

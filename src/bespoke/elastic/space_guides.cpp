@@ -18,10 +18,10 @@ namespace {
 // on the surface. Besides 0.4: 0.3 changes products by 5 % either way; both 0.4 and 0.2 halve the change of
 // clearance at up to twice the time of a chain.
 constexpr double offset_share = 0.4;
-constexpr double least_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
+constexpr double min_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
 // By which guides may part or come together: 3 leaves folds to mend on an adult and a toddler, 1.5 drops
 // three times as many for the same products.
-constexpr double most_strain = 2;
+constexpr double max_strain = 2;
 
 struct Guide {
   Vector3 source, target;
@@ -68,7 +68,7 @@ class Guiding {
       const auto compare = [&](Eigen::Index other, double) {
         const double source = (guides.sources.col(other) - guides.sources.col(k)).norm();
         const double target = (targets.col(other) - targets.col(k)).norm();
-        if (target > most_strain * source || source > most_strain * target) is_in_accord = false;
+        if (target > max_strain * source || source > max_strain * target) is_in_accord = false;
       };
       before.for_each_within(guides.sources.col(k), guides.offset, compare);
       after.for_each_within(targets.col(k), guides.offset, compare);
@@ -105,8 +105,8 @@ class Guiding {
     const Vector3 arm = distance * normal.normalized();
     const Guide guide{here + arm,
                       fitted_.col(vertex) + scale_ * (nearest_rotation(covariance).rotation * arm)};
-    if (here_.closest(guide.source, {.max_distance = least_clearance * distance}) ||
-        there_.closest(guide.target, {.max_distance = least_clearance * scale_ * distance}))
+    if (here_.closest(guide.source, {.max_distance = min_clearance * distance}) ||
+        there_.closest(guide.target, {.max_distance = min_clearance * scale_ * distance}))
       return std::nullopt;
     return guide;
   }

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "bespoke/enum_names.h"
 #include "bespoke/exchange/displacement_image.h"
-#include "bespoke/named.h"
 
 namespace bespoke {
 

@@ -25,7 +25,7 @@ constexpr double turn_per_step = 30 * degree;
 constexpr double stretch_per_step = 1.5;
 
 // Regions squeezed flat say nothing about the number of steps: none is enough.
-constexpr double least_stretch = 0.1;
+constexpr double min_stretch = 0.1;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ RegionalMotion regional_motion(const TriangleMesh& source, const Points& fitted)
       [&](const Matrix3& mean) {
         motion.turn = std::max(motion.turn, Eigen::AngleAxisd(nearest_rotation(mean).rotation).angle());
         const Vector3 factors = Eigen::JacobiSVD<Matrix3>(mean / whole).singularValues();
-        motion.stretch = std::max({motion.stretch, factors[0], 1 / std::max(factors[2], least_stretch)});
+        motion.stretch = std::max({motion.stretch, factors[0], 1 / std::max(factors[2], min_stretch)});
       });
   return motion;
 }

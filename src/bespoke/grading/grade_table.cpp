@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "bespoke/apply/apply_mapping.h"
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke {
 namespace {
@@ -17,7 +17,7 @@ std::string fixed(double value, int decimals, const char* format = "%.*f") {
 }
 
 /// Digits that programs read: more than a float of a model's file has.
-std::string number(double value) { return in_digits(value, 9); }
+std::string number(double value) { return format_number(value, 9); }
 
 /// A name as a cell of a table whose cells end at commas.
 std::string csv_cell(const std::string& text) {

@@ -11,7 +11,7 @@ namespace {
 
 // Halvings of a piece: a model's diagonal becomes a millionth of itself. A piece that is longer than the
 // spacing after that crosses a gap: the middle of the gap is closest to one of its sides again and again.
-constexpr int most_halvings = 20;
+constexpr int max_halvings = 20;
 
 // Sweeps that shorten the line before it is halved further: the middle of a long chord lies deep below the
 // surface and is projected beside the shortest line. Over the shoulders of a body the line is 0.2 % too long
@@ -85,7 +85,7 @@ Points surface_line(const ClosestPointTree& surface, const Points& points,
   for (int halvings = 0;; ++halvings) {
     Line finer = halved(surface, line, options);
     if (finer.size() == line.size()) break;
-    if (halvings == most_halvings) fail_at_gap(line, options.closed, points.cols());
+    if (halvings == max_halvings) fail_at_gap(line, options.closed, points.cols());
     line = std::move(finer);
     for (int sweep = 0; sweep < sweeps; ++sweep) shorten(surface, line);
   }

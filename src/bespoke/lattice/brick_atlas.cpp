@@ -23,7 +23,7 @@ constexpr int octants_of_a_whole = static_cast<int>((whole_floats + octant_float
 // Of the values' bytes: what the grid of the table may take, and what it may always take. A finer grid saves
 // steps of the walk and takes room in the cache.
 constexpr double grid_share = 1.0 / 32;
-constexpr double least_grid_bytes = 1 << 14;
+constexpr double min_grid_bytes = 1 << 14;
 
 constexpr double largest_place = 1 << 30;
 
@@ -187,7 +187,7 @@ class AtlasMaker {
       low[axis] *= leaf_places;
       high[axis] = (high[axis] + 1) * leaf_places;
     }
-    const double grid_bytes = std::max(least_grid_bytes, grid_share * static_cast<double>(value_bytes));
+    const double grid_bytes = std::max(min_grid_bytes, grid_share * static_cast<double>(value_bytes));
     atlas_.table =
         BrickTable(low, high, static_cast<std::size_t>(grid_bytes / sizeof(BrickTable::Reference)));
     std::copy_n(atlas_.table.low().begin(), 3, atlas_.low.begin());
@@ -262,7 +262,7 @@ std::optional<BrickAtlas> made_of(const Pyramid& pyramid, const PyramidIndex& in
 }
 
 bool has_levels(const Pyramid& pyramid) {
-  return !pyramid.levels.empty() && pyramid.levels.size() <= BrickAtlas::most_levels;
+  return !pyramid.levels.empty() && pyramid.levels.size() <= BrickAtlas::max_levels;
 }
 
 }  // namespace

@@ -33,15 +33,15 @@ struct BrickAtlas {
   /// Reference of a brick: its number among those of its kind, and above that the number of its shape.
   static constexpr int number_bits = 25;
   static constexpr int shape_bits = 6;
-  static constexpr int most_levels = 1 << (shape_bits - 1);
+  static constexpr int max_levels = 1 << (shape_bits - 1);
   static constexpr int octant_edge = leaf_edge / 2;
 
   Vector3 origin = Vector3::Zero();     ///< mesh units
   double places_per_unit = 0;           ///< places along a mesh unit
   std::array<double, 3> low{}, high{};  ///< box of the table, in places; `high` is not part of it
   BrickTable table;                     ///< by place; 0 is the brick of zeros, for where u is zero
-  std::array<BrickShape, 2 * most_levels> shapes{};  ///< 2·level, plus one for bricks of a whole leaf
-  std::unique_ptr<float[]> values;                   ///< three a node, mesh units
+  std::array<BrickShape, 2 * max_levels> shapes{};  ///< 2·level, plus one for bricks of a whole leaf
+  std::unique_ptr<float[]> values;                  ///< three a node, mesh units
   std::size_t value_count = 0;
 
   std::size_t byte_count() const { return sizeof(float) * value_count + table.byte_count(); }

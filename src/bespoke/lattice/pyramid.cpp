@@ -14,11 +14,11 @@ const char* name_of(ValuePrecision precision) {
 }
 
 float rounded_to_half(float value) {
-  constexpr int least_exponent = -14;  // below it halves are evenly spaced
+  constexpr int min_exponent = -14;  // below it halves are evenly spaced
   constexpr int stored_bits = 10;
   constexpr float largest = 65504;
   if (!std::isfinite(value) || value == 0) return value;
-  const float spacing = std::ldexp(1.0f, std::max(std::ilogb(value), least_exponent) - stored_bits);
+  const float spacing = std::ldexp(1.0f, std::max(std::ilogb(value), min_exponent) - stored_bits);
   const float rounded = std::nearbyint(value / spacing) * spacing;
   return std::abs(rounded) <= largest ? rounded
                                       : std::copysign(std::numeric_limits<float>::infinity(), value);

@@ -21,7 +21,7 @@ AffineMap inverse(const AffineMap& map) {
 
 double size_ratio(const AffineMap& map) { return std::cbrt(std::abs(map.linear.determinant())); }
 
-double octave_of(const AffineMap& map) { return octave_of(size_ratio(map)); }
+double power_of_two_scale(const AffineMap& map) { return power_of_two_scale(size_ratio(map)); }
 
 AffineMap as_affine(const RigidTransform& transform) { return {transform.rotation, transform.translation}; }
 

@@ -15,7 +15,7 @@ AffineMap inverse(const AffineMap& map);
 double size_ratio(const AffineMap& map);
 
 /// The same in octaves (length.h): what sizes before and after the map are compared by.
-double octave_of(const AffineMap& map);
+double power_of_two_scale(const AffineMap& map);
 
 AffineMap as_affine(const RigidTransform& transform);
 

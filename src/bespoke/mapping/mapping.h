@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "bespoke/enum_names.h"
 #include "bespoke/mapping/elastic_map.h"
-#include "bespoke/named.h"
 #include "bespoke/rigid/rigid_transform.h"
 
 namespace bespoke {

@@ -40,9 +40,9 @@ double signed_volume(const TriangleMesh& mesh) {
 std::optional<bool> faces_outward(const TriangleMesh& mesh) {
   // Of the largest volume that so much area can enclose, squared: a ball's is 1, that of a wire 200 times as
   // long as it is thick .01, of a sheet that leaves its plane by a hundredth of its width .001.
-  constexpr double least_quotient = 1e-3;
+  constexpr double min_quotient = 1e-3;
   const double volume = signed_volume(mesh), area = vertex_areas(mesh).sum();
-  if (!(36 * std::numbers::pi * volume * volume > least_quotient * area * area * area)) return std::nullopt;
+  if (!(36 * std::numbers::pi * volume * volume > min_quotient * area * area * area)) return std::nullopt;
   return volume > 0;
 }
 

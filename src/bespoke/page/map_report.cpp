@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 #include "bespoke/page/detail/base64.h"
 #include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/picture.h"
@@ -22,7 +22,7 @@ constexpr int picture_size = 560;       // pixels: two beside each other fit a m
 constexpr double largest_shown = 0.99;  // quantile where the colours end
 const Vector3 source_colour(0.73, 0.64, 0.55), target_colour(0.62, 0.70, 0.78);  // as the page's
 
-std::string number(double value) { return in_digits(value, 3); }
+std::string number(double value) { return format_number(value, 3); }
 
 /// Where the colours of a field end, on both sides of 0 for changes.
 double reach_of(const VertexField& field) {

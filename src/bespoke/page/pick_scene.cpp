@@ -12,7 +12,7 @@ std::string pick_scene(const PickInput& input, const PickOptions& options) {
   Json meshes = Json::array();
   for (const PickModel* model : {&input.source, &input.target}) {
     require_valid(model->mesh, model->path);
-    const DisplayMesh display = display_mesh(model->mesh, std::max<std::size_t>(1, options.most_faces / 2));
+    const DisplayMesh display = display_mesh(model->mesh, std::max<std::size_t>(1, options.max_faces / 2));
     const std::string name = std::filesystem::path(model->path).filename().string();
     meshes.push_back(mesh_record({model == &input.source ? "source" : "target",
                                   name,

@@ -24,7 +24,7 @@ struct PickInput {
 };
 
 struct PickOptions {
-  std::size_t most_faces = 200000;  ///< triangles of both models together, > 0; more are thinned for display
+  std::size_t max_faces = 200000;  ///< triangles of both models together, > 0; more are thinned for display
 };
 
 /// The scene of the page `pick` (README.md, "The scene"). A picked point lies on the mesh as shown: within

@@ -25,7 +25,7 @@ namespace {
 constexpr double space_margin = 1.0 / 6;
 
 // Below a millionth of the diagonal nothing is worth a triangle's place: meshes get at least this many.
-constexpr std::size_t least_faces = 1000;
+constexpr std::size_t min_faces = 1000;
 
 /// Times between which the motion's elastic part is straight.
 std::vector<double> knots_of(const Asset& asset) {
@@ -91,8 +91,8 @@ class SceneMaker {
   std::size_t faces_for(const TriangleMesh& mesh) const {
     auto all = static_cast<double>(input_.source.faces.cols() + input_.target.faces.cols());
     for (const NamedProduct& product : input_.products) all += static_cast<double>(product.mesh.faces.cols());
-    const double share = std::min(1.0, static_cast<double>(options_.most_faces) / all);
-    return std::max(least_faces,
+    const double share = std::min(1.0, static_cast<double>(options_.max_faces) / all);
+    return std::max(min_faces,
                     static_cast<std::size_t>(std::ceil(share * static_cast<double>(mesh.faces.cols()))));
   }
 
@@ -248,8 +248,8 @@ class SceneMaker {
 std::string view_scene(const ViewInput& input, const ViewOptions& options, const Progress& progress) {
   require_valid(input.source, "source");
   require_valid(input.target, "target");
-  if (options.most_faces == 0 || options.space_samples < 8)
-    throw InvalidInput("a scene of " + std::to_string(options.most_faces) + " faces and " +
+  if (options.max_faces == 0 || options.space_samples < 8)
+    throw InvalidInput("a scene of " + std::to_string(options.max_faces) + " faces and " +
                        std::to_string(options.space_samples) + " samples of space: at least 1 and 8");
   return SceneMaker(input, options).make(progress);
 }

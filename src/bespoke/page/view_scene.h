@@ -24,7 +24,7 @@ struct ViewInput {
 
 struct ViewOptions {
   /// Triangles of all meshes together, > 0. Software rendering turns so many at some 30 frames a second.
-  std::size_t most_faces = 200000;
+  std::size_t max_faces = 200000;
   /// Samples of the map over space, all knots together, ≥ 8: what slices are drawn from.
   std::size_t space_samples = 60000;
 };

@@ -26,7 +26,7 @@ constexpr std::size_t neighbours = 7;
 /// maps reach by default, so that thirty pairs or so cover a body.
 constexpr double suggestion_reach = 0.05;
 /// Of the diagonal: no pair is taken for more accurate, as for those that people pick.
-constexpr double least_sigma = 1e-3;
+constexpr double min_sigma = 1e-3;
 
 /// Of every candidate.
 struct Uncertainty {
@@ -68,15 +68,15 @@ Uncertainty find_uncertainty(const TriangleMesh& source, const TriangleMesh& tar
                              const FittedMapping& there, const FittedMapping& back) {
   Uncertainty found;
   found.vertices = spread_vertices(source, candidates);
-  const Points laid = there.target_from_source * there.fitted_vertices;
-  const TwoWayPoints points =
-      two_way_points(source, laid, target, back.target_from_source * back.fitted_vertices, found.vertices);
+  const Points registered = there.target_from_source * there.fitted_vertices;
+  const TwoWayPoints points = two_way_points(source, registered, target,
+                                             back.target_from_source * back.fitted_vertices, found.vertices);
   const ClosestPointTree surface(target);
-  const double least = least_sigma * diagonal(target.vertices);
+  const double least = min_sigma * diagonal(target.vertices);
   Eigen::VectorXd errors(points.apart.size());
   found.places.resize(3, points.apart.size());
   for (Eigen::Index k = 0; k < points.apart.size(); ++k) {
-    const Vector3 place = laid.col(found.vertices[static_cast<std::size_t>(k)]);
+    const Vector3 place = registered.col(found.vertices[static_cast<std::size_t>(k)]);
     errors[k] = std::hypot(points.apart[k], std::sqrt(surface.closest(place)->squared_distance));
     found.places.col(k) = surface.closest(points.middles.col(k))->point;
     // Two guesses of variance σ² a coordinate differ by 6 σ² in the mean square.

@@ -13,7 +13,7 @@ namespace {
 constexpr int halvings_on_path = 3, halvings_by_layers = 2;
 
 // Of a plan; most have cost a bake that folded.
-constexpr std::size_t most_halved_steps = 16;
+constexpr std::size_t max_halved_steps = 16;
 
 /// Bakes a chain of planned steps, the last one first. A step that folds, or is foreseen to, is halved, as
 /// are its halves, and the steps after it are kept. But halves share what their step had to say, and later
@@ -34,7 +34,7 @@ class BakeOfAPlan {
         progress_(progress),
         has_layers_(bool{elastic_method(options.elastic).composition}) {
     if (fit.plan || may_become_chain())
-      most_halvings_ = halvings_on_path + (has_layers_ ? halvings_by_layers : 0);
+      max_halvings_ = halvings_on_path + (has_layers_ ? halvings_by_layers : 0);
     begin_plan();
   }
 
@@ -66,13 +66,13 @@ class BakeOfAPlan {
   void begin_plan() {
     planned_ = steps();
     halved_ = 0;
-    halvings_left_.assign(planned_, most_halvings_);
+    halvings_left_.assign(planned_, max_halvings_);
   }
 
   std::vector<bool> divisible_steps() const {
     std::vector<bool> divisible;
     for (std::size_t k = 0; k < steps(); ++k)
-      divisible.push_back(halvings_left_[k] > 0 && halved_ < most_halved_steps && is_divisible(fit_, k));
+      divisible.push_back(halvings_left_[k] > 0 && halved_ < max_halved_steps && is_divisible(fit_, k));
     return divisible;
   }
 
@@ -104,7 +104,7 @@ class BakeOfAPlan {
     if (steps() == 1 || 2 * with_one_more < 3 * planned_) return false;
     std::size_t count = planned_;
     while (count < with_one_more) count *= 2;
-    if (count > most_planned_steps || count == refused_) return false;
+    if (count > max_planned_steps || count == refused_) return false;
     std::optional<FittedMapping> planned =
         refitted_in_steps(fit_, source_, anchors_, options_, static_cast<int>(count), progress_);
     if (!planned) {
@@ -131,7 +131,7 @@ class BakeOfAPlan {
   const BakeOptions& bake_;
   const Progress& progress_;
   bool has_layers_;
-  int most_halvings_ = 0;
+  int max_halvings_ = 0;
   std::size_t planned_ = 0;
   std::size_t halved_ = 0;          // of the plan
   std::size_t refused_ = 0;         // steps that would miss their vertices

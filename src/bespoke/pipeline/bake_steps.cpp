@@ -11,7 +11,7 @@
 namespace bespoke {
 namespace {
 
-// Of the whole's tolerance, at the end of the chain, and of its most_face_turn: largest errors of several
+// Of the whole's tolerance, at the end of the chain, and of its max_face_turn: largest errors of several
 // steps rarely meet in one point. And what is aimed at when all are baked again, of the tolerance.
 constexpr double tolerance_of_a_step = 0.5;
 constexpr double aim = 0.9;
@@ -80,8 +80,8 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const Steps
                BakeOptions options, const Progress& progress) {
   options.surface = &surface;
   if (after.empty()) return bake(exact, options, progress);
-  const ElasticChain then(after);
-  options.then = &then;
+  const ElasticChain downstream_map(after);
+  options.downstream_map = &downstream_map;
   return bake(exact, options, progress);
 }
 
@@ -152,7 +152,7 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.error_random_points += step.error_random_points;
   whole.error_surface_points += step.error_surface_points;
   whole.surface_cells += step.surface_cells;
-  whole.turned_faces += step.turned_faces;
+  whole.misoriented_faces += step.misoriented_faces;
   whole.refined_folds += step.refined_folds;
   whole.repaired_cells += step.repaired_cells;
   whole.repair_cost = std::max(whole.repair_cost, step.repair_cost);
@@ -161,7 +161,7 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.peak_bytes = std::max(whole.peak_bytes, step.peak_bytes);
   whole.refine_seconds += step.refine_seconds;
   whole.measure_seconds += step.measure_seconds;
-  whole.mend_seconds += step.mend_seconds;
+  whole.repair_seconds += step.repair_seconds;
 }
 
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
@@ -176,7 +176,7 @@ BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surf
   const bool was_divided = !done.steps.empty();
   BakeOptions step_options = options;
   step_options.tolerance = tolerance_of_a_step * options.tolerance;
-  step_options.most_face_turn = tolerance_of_a_step * options.most_face_turn;
+  step_options.max_face_turn = tolerance_of_a_step * options.max_face_turn;
   step_options.error_points = std::max<std::size_t>(1, options.error_points / share_of_a_step);
   BakedSteps baked;
   for (const bool again : {false, true}) {

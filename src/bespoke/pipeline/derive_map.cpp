@@ -105,7 +105,8 @@ std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const El
   std::size_t used = 0;
   for (const auto& map : exact) {
     growth_after /= size_ratio(map->affine());
-    share.tolerance = options.tolerance / (octave_of(growth_after) * static_cast<double>(exact.size()));
+    share.tolerance =
+        options.tolerance / (power_of_two_scale(growth_after) * static_cast<double>(exact.size()));
     if (options.max_leaves)
       share.max_leaves =
           (*options.max_leaves - std::min(*options.max_leaves, used)) / (exact.size() - steps.size());
@@ -144,14 +145,14 @@ void record_stages(DerivedMap& derived, const char* name) {
 }  // namespace
 
 DerivedTolerance tolerance_of_inverse(const Asset& b_from_a) {
-  const double octave = octave_of(1 / source_growth(b_from_a));
-  return {octave * b_from_a.record.target.box.diagonal().norm(), octave * b_from_a.record.tolerance};
+  const double size_scale = power_of_two_scale(1 / source_growth(b_from_a));
+  return {size_scale * b_from_a.record.target.box.diagonal().norm(), size_scale * b_from_a.record.tolerance};
 }
 
 DerivedTolerance tolerance_of_composed(const Asset& b_from_a, const Asset& c_from_b) {
   const double first = source_growth(b_from_a), second = source_growth(c_from_b);
-  return {octave_of(first * second) * b_from_a.record.source.box.diagonal().norm(),
-          std::max(octave_of(second) * b_from_a.record.tolerance, c_from_b.record.tolerance)};
+  return {power_of_two_scale(first * second) * b_from_a.record.source.box.diagonal().norm(),
+          std::max(power_of_two_scale(second) * b_from_a.record.tolerance, c_from_b.record.tolerance)};
 }
 
 BakeOptions derived_bake(const std::optional<Length>& tolerance, const DerivedTolerance& lengths,
@@ -234,9 +235,9 @@ std::vector<DerivedStep> joined_steps(const Asset& first, const Asset& second, c
   for (const MapStep& step : first.steps) steps.push_back({step, {}});
   steps.front().bake.error = first.record.bake_error;
   const BakedMap at_rest({}, {});
-  const ElasticChain then = baked_chain(second.steps);
+  const ElasticChain downstream_map = baked_chain(second.steps);
   std::vector<std::shared_ptr<const ElasticMap>> moved;
-  for (const auto& step : then.steps())
+  for (const auto& step : downstream_map.steps())
     moved.push_back(std::make_shared<ComposedMap>(at_rest, first.target_from_source, *step));
   const ElasticChain before = baked_chain(first.steps);
   for (DerivedStep& step : bake_in_turn(moved, previewed_source(first, before), options, progress))

@@ -19,7 +19,7 @@ struct DerivedMap {
 
 /// What the tolerance of a derived map is by default, and in percent of what, mesh units. Both are measured
 /// where the map ends, on a model that may be of another size than those that the lengths were of
-/// (octave_of, length.h; sizes by the sources that the maps show).
+/// (power_of_two_scale, length.h; sizes by the sources that the maps show).
 struct DerivedTolerance {
   double diagonal = 0;
   double otherwise = 0;

@@ -97,16 +97,16 @@ StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const Elas
   require_unmirrored(source, fitted);
   StepPlan plan;
   plan.times = equal_times(steps);
-  plan.octave = octave_of(growth(source, fitted));
+  plan.size_scale = power_of_two_scale(growth(source, fitted));
   plan.middle = fitted.rowwise().mean();
   const std::size_t loose = pairs.anchors_off_surface;
   plan.path = std::make_shared<const SurfacePath>(
       TriangleMesh{with_loose(source.vertices, pairs.sources, loose), source.faces},
-      grown(with_loose(fitted, pairs.targets, loose), plan.middle, 1 / plan.octave));
+      grown(with_loose(fitted, pairs.targets, loose), plan.middle, 1 / plan.size_scale));
   return plan;
 }
 
-double StepPlan::size(double t) const { return std::pow(octave, t); }
+double StepPlan::size(double t) const { return std::pow(size_scale, t); }
 
 Points StepPlan::surface(double t) const { return grown(path->at(t), middle, size(t)); }
 

@@ -13,7 +13,7 @@
 namespace bespoke {
 
 /// So many steps are planned at most; those that fold may be halved beyond.
-inline constexpr std::size_t most_planned_steps = 32;
+inline constexpr std::size_t max_planned_steps = 32;
 
 /// A path of surfaces and the times that divide it into the steps of a chain. Every step is as it would be
 /// between models of about one size: the octaves by which the fitted source is larger are left to equal
@@ -22,7 +22,7 @@ struct StepPlan {
   /// Of the source, with anchors off its surface as loose vertices, to the fitted source without its octaves.
   std::shared_ptr<const SurfacePath> path;
   std::vector<double> times;         ///< increasing, 0 first, 1 last: one more than there are steps
-  double octave = 1;                 ///< of the fitted source's growth (octave_of, triangle_mesh.h)
+  double size_scale = 1;             ///< of the fitted source's growth (power_of_two_scale, triangle_mesh.h)
   Vector3 middle = Vector3::Zero();  ///< where growing leaves space in place, mesh units
 
   std::size_t steps() const { return times.size() - 1; }

@@ -24,9 +24,9 @@ namespace {
 ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& source,
                                const Anchors& anchors, const FitOptions& options, ElasticSummary& summary) {
   // A vertex and an anchor closer than this ask an interpolating map for differences of rounding errors.
-  constexpr double least_distance = 1e-6;  // of the source's diagonal
-  const double tolerance = options.fit_tolerance / octave_of(growth(source, fitted.fitted_vertices));
-  const double off_surface = std::max(tolerance, least_distance * diagonal(source.vertices));
+  constexpr double min_distance = 1e-6;  // of the source's diagonal
+  const double tolerance = options.fit_tolerance / power_of_two_scale(growth(source, fitted.fitted_vertices));
+  const double off_surface = std::max(tolerance, min_distance * diagonal(source.vertices));
   const std::vector<std::size_t> off = anchors_off_surface(source, anchors, off_surface);
   ElasticPairs pairs = elastic_pairs(source, fitted.fitted_vertices);
   summary.unreferenced_vertices = pairs.unreferenced;
@@ -38,8 +38,8 @@ ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& 
 }
 
 /// What can be said only with the whole map at hand.
-void judge(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
-           const FitOptions& options) {
+void measure_residuals(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
+                       const FitOptions& options) {
   ElasticSummary& summary = result.summary.elastic;
   const ElasticMap& elastic = *result.elastic;
   const std::vector<int>& referenced = result.pairs.referenced;
@@ -82,13 +82,13 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
                                          elastic_options(options, true), progress));
   } else {
     ElasticOptions whole = elastic_options(options, false);
-    whole.growth = octave_of(growth(source, result.fitted_vertices));
+    whole.growth = power_of_two_scale(growth(source, result.fitted_vertices));
     ElasticFit fit = elastic_method(options.elastic)
                          .fit({source, result.fitted_vertices, result.pairs.sources, result.pairs.targets},
                               whole, progress);
     take_steps(result, {{std::move(fit.map)}, {std::move(fit.found)}, {source.vertices}});
   }
-  judge(result, source, anchors, options);
+  measure_residuals(result, source, anchors, options);
 }
 
 /// Parts that slide along each other neither turn nor stretch, but shear the space between them. Layers that
@@ -97,7 +97,7 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
 void divide_where_missed(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                          const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= most_planned_steps) {
+  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= max_planned_steps) {
     FittedMapping finer = result;
     fit_steps(finer, source, anchors, options, 2 * static_cast<int>(result.elastic->steps().size()),
               progress);
@@ -191,7 +191,7 @@ FittedMapping halved_on_path(const FittedMapping& fitted, const TriangleMesh& so
   put_in_place(result, step,
                fit_halves(source, result.pairs, *result.plan, *result.elastic, step, options.elastic,
                           elastic_options(taken, true), progress));
-  judge(result, source, anchors, options);
+  measure_residuals(result, source, anchors, options);
   return result;
 }
 
@@ -199,7 +199,7 @@ void part_by_layers(FittedMapping& fitted, const TriangleMesh& source, const Anc
                     const FitOptions& options, std::size_t step) {
   put_in_place(fitted, step, in_two_by_layers(fitted, step));
   fitted.plan.reset();
-  judge(fitted, source, anchors, options);
+  measure_residuals(fitted, source, anchors, options);
 }
 
 }  // namespace
@@ -250,14 +250,14 @@ bool is_divisible(const FittedMapping& fitted, std::size_t step) {
 bool is_foreseen_to_fold(const FittedMapping& fitted, std::size_t step) {
   // Of 27 pairs fitted both ways 20 of 21 steps beyond it fold when baked (a scan's loose pieces, taken for a
   // source, do not), and of 385 others 17. Maps of fewer scales are smooth, however many layers they take.
-  constexpr double most_layers_a_scale = 2.5;
+  constexpr double max_layers_a_scale = 2.5;
   constexpr std::size_t usual_scales = 6;
   const CompositionOfMaps& composition = elastic_method(fitted.summary.elastic.method).composition;
   const std::shared_ptr<const ElasticMap>& map = fitted.elastic->steps().at(step);
   if (!composition) return false;
   std::size_t scales = usual_scales;
   for (const auto& each : fitted.elastic->steps()) scales = std::max(scales, composition.scales(*each));
-  return static_cast<double>(composition.parts(*map)) > most_layers_a_scale * static_cast<double>(scales);
+  return static_cast<double>(composition.parts(*map)) > max_layers_a_scale * static_cast<double>(scales);
 }
 
 void divide_step(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,

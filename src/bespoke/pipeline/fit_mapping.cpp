@@ -10,12 +10,12 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/anchors/size_ratio.h"
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/seams.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/fit_elastic_map.h"
-#include "bespoke/pipeline/lay_source.h"
+#include "bespoke/pipeline/register_source.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
 
@@ -42,7 +42,7 @@ constexpr double largest_size_ratio = 8;
 void require_one_unit(double ratio, const std::string& what) {
   if (!(ratio > 0 && std::isfinite(ratio))) return;  // what is wrong with these is told where they are used
   if (ratio <= largest_size_ratio && 1 / ratio <= largest_size_ratio) return;
-  throw InvalidInput("the target is " + in_digits(ratio, 3) + " times as large as the source by " + what +
+  throw InvalidInput("the target is " + format_number(ratio, 3) + " times as large as the source by " + what +
                      ", as if they were in two units; bring one of them, and its anchors, to the unit of the "
                      "other, or ask for any size (--any-size), and the map goes from one unit to the other");
 }
@@ -53,8 +53,9 @@ void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const F
   // Parts that pass through each other more deeply were not laid there by a target's contact.
   constexpr double reach = 20;  // of the gap
   progress.step("contact", 0, 0);
-  ContactFit apart = hold_apart(source, result.fitted_vertices,
-                                {.gap = options.contact_gap, .reach = reach * options.contact_gap}, progress);
+  ContactFit apart =
+      separate_contacts(source, result.fitted_vertices,
+                        {.gap = options.contact_offset, .reach = reach * options.contact_offset}, progress);
   if (apart.summary.touching == 0) return;
   result.fitted_vertices = std::move(apart.vertices);
   result.summary.contact = std::move(apart.summary);
@@ -76,7 +77,7 @@ struct JoinedModels {
 
 JoinedModels joined_models(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
                            const FitOptions& options) {
-  const auto join = options.surface_fit.mend_models ? joined_at_seams : left_open;
+  const auto join = options.surface_fit.repair_models ? joined_at_seams : left_open;
   JoinedModels joined{join(source), join(target)};
   result.summary.seams = {joined.source.joined(), joined.target.joined()};
   return joined;
@@ -109,8 +110,8 @@ double largest_distance(const FittedMapping& result, const AnchorCurve& curve) {
   return distance_from_polyline(curve.b, curve.closed, mapped);
 }
 
-void judge_lines(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                 const Anchors& anchors) {
+void measure_lines(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                   const Anchors& anchors) {
   for (const AnchorCurve& curve : anchors.curves)
     result.summary.curves.push_back({curve.name, largest_distance(result, curve)});
   for (const PatchBorder& border : patch_borders(anchors, source, target)) {
@@ -126,15 +127,15 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   FittedMapping result;
   require_models(source, target, anchors, options);
   const JoinedModels joined = joined_models(result, source, target, options);
-  const Anchors rated =
-      lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
+  const Anchors estimated =
+      register_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
   hold_parts_apart(result, joined.source.mesh, options, progress);
   part_at_seams(result, joined.source);
 
   // IV.D, IV.E: E.
-  fit_elastic_map(result, source, rated, options, progress);
+  fit_elastic_map(result, source, estimated, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
-  judge_lines(result, source, target, anchors);
+  measure_lines(result, source, target, anchors);
   return result;
 }
 
@@ -144,7 +145,7 @@ FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh&
   FittedMapping result;
   require_models(source, target, anchors, options);
   const JoinedModels joined = joined_models(result, source, target, options);
-  lay_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
+  register_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
   part_at_seams(result, joined.source);
   return result;
 }

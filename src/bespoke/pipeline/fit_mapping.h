@@ -22,7 +22,7 @@ struct FitOptions {
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   /// Parts of the fitted source that touch or pass through each other are held this far apart (contact.h),
   /// ≥ 0, mesh units; 0 leaves them.
-  double contact_gap = 0;
+  double contact_offset = 0;
   std::optional<int> steps;  ///< of the chain, > 0; by the largest turn and stretch of a part when empty
   /// Whether models may differ by more than eight times in size: else they are refused, as if in two units.
   bool any_size = false;

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke {
 
@@ -30,7 +30,7 @@ std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
 }
 
 std::string to_string(const CounterpartSummary& summary) {
-  return std::to_string(summary.elsewhere) + " of " + std::to_string(summary.found) +
+  return std::to_string(summary.displaced) + " of " + std::to_string(summary.found) +
          " places far from all anchors lay elsewhere than distances along the surfaces put them; " +
          (summary.taken ? "laid by these too"
                         : "but laid by these too the source explains the target no better");
@@ -89,7 +89,7 @@ std::string to_string(const std::vector<CurveSummary>& curves) {
   for (const CurveSummary& curve : curves) {
     line += (line.empty() ? "" : ", ") +
             (curve.name.empty() ? std::string("a curve") : '"' + curve.name + '"') + " at most " +
-            in_digits(curve.largest_distance, 4) + " off";
+            format_number(curve.largest_distance, 4) + " off";
   }
   return line;
 }
@@ -102,7 +102,8 @@ std::string to_string(const std::vector<PatchSummary>& patches) {
     if (patch.exclude) line += " excluded";
     line += " (" + std::to_string(patch.source_faces) + " faces on the source, " +
             std::to_string(patch.target_faces) + " on the target)";
-    if (patch.largest_distance) line += " border at most " + in_digits(*patch.largest_distance, 4) + " off";
+    if (patch.largest_distance)
+      line += " border at most " + format_number(*patch.largest_distance, 4) + " off";
   }
   return line;
 }
@@ -120,7 +121,8 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   lines.push_back({"surface-fit", summary.surface ? std::string(entry_of(summary.surface_method).name) +
                                                         ": " + to_string(*summary.surface)
                                                   : "given: the fitted mesh as it is"});
-  if (summary.bare && summary.bare->is_notable()) lines.push_back({"bare", to_string(*summary.bare)});
+  if (summary.uncovered && summary.uncovered->is_notable())
+    lines.push_back({"bare", to_string(*summary.uncovered)});
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});

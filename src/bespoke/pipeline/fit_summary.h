@@ -13,7 +13,7 @@
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/fit_unanchored.h"
 #include "bespoke/pipeline/unmet_vertices.h"
-#include "bespoke/quality/bare_area.h"
+#include "bespoke/quality/uncovered_area.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/contact.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -37,7 +37,7 @@ struct CoarseSummary {
 /// Places far from all anchors, by distances along the surfaces (geodesic_counterparts.h).
 struct CounterpartSummary {
   std::size_t found = 0;
-  std::size_t elsewhere = 0;  ///< of them, where the source came to lie elsewhere by the anchors alone
+  std::size_t displaced = 0;  ///< of them, where the source came to lie elsewhere by the anchors alone
   bool taken = false;         ///< the source laid by them too explains the target better
   double seconds = 0;
 };
@@ -94,8 +94,8 @@ struct FitSummary {
   std::optional<CounterpartSummary> counterparts;  ///< empty where nothing spoke against the anchors alone
   std::optional<SurfaceFitSummary> surface;        ///< empty when the fitted source was given
   SurfaceFitMethod surface_method = SurfaceFitMethod::deformation_graph;
-  std::optional<BareArea>
-      bare;  ///< farther than 1 % of the target's diagonal; empty when the fitted source was given
+  std::optional<UncoveredArea>
+      uncovered;  ///< farther than 1 % of the target's diagonal; empty when the fitted source was given
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
   ElasticSummary elastic;
   std::vector<CurveSummary> curves;

@@ -17,12 +17,12 @@ namespace {
 
 /// Of the target's area that the fitted source must reach. Right fits of eleven pairs reach 0.9998 and more;
 /// where fingers or arms were left behind, 0.85 to 0.98 are reached.
-constexpr double least_covered = 0.99;
+constexpr double min_covered = 0.99;
 
 /// Vertices at which the two directions lead: each some tenth of the diagonal from the next.
 constexpr std::size_t leading_vertices = 100;
 /// Of the diagonal: no anchor is taken for more accurate, as for those that people pick.
-constexpr double least_lead_sigma = 1e-3;
+constexpr double min_lead_sigma = 1e-3;
 
 struct Candidate {
   SurfaceFit surface;
@@ -41,7 +41,7 @@ struct Scene {
   const TriangleMesh& target;  // in the source frame
   SurfaceFitOptions options;
   const TriangleMesh& target_in_place;
-  const PlacementJudge& judge;  // in the source frame
+  const PlacementScore& score;  // in the source frame
 };
 
 SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, const TriangleMesh& fixed,
@@ -57,7 +57,7 @@ SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, con
 Candidate fit_from(const Points& start, const Scene& scene, const Leads& leads, const Progress& progress) {
   Candidate candidate;
   candidate.surface = fit_surface_from(start, scene.source, scene.target, leads, scene.options, progress);
-  candidate.placement = scene.judge(candidate.surface.vertices);
+  candidate.placement = scene.score(candidate.surface.vertices);
   return candidate;
 }
 
@@ -68,7 +68,7 @@ Leads leads_of(const Scene& scene, const Points& forward, const Points& back) {
   leads.vertices = spread_vertices(scene.source, leading_vertices);
   TwoWayPoints points = two_way_points(scene.source, forward, scene.target, back, leads.vertices);
   leads.targets = std::move(points.middles);
-  leads.sigmas = (points.apart / 2).cwiseMax(least_lead_sigma * diagonal(scene.source.vertices));
+  leads.sigmas = (points.apart / 2).cwiseMax(min_lead_sigma * diagonal(scene.source.vertices));
   return leads;
 }
 
@@ -100,7 +100,7 @@ Candidate best_fit(const Points& similar, const Points& deformed, const Alignmen
 }
 
 void require_covered(const UnanchoredSummary& summary) {
-  if (summary.placement.covered >= least_covered) return;
+  if (summary.placement.covered >= min_covered) return;
   throw SolverError(
       "without anchors: the source does not reach all of the target, so parts of it went elsewhere; give at "
       "least 4 anchors (--anchors): " +
@@ -137,8 +137,8 @@ UnanchoredFit fit_unanchored(const TriangleMesh& source, const TriangleMesh& tar
     rules.boundaries = alignment.summary.same_boundaries ? BoundaryRule::matched : BoundaryRule::free;
 
   const Points similar = source_from_target * (alignment.target_from_source * source.vertices);
-  const PlacementJudge judge(source, target_in_source);
-  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target, judge},
+  const PlacementScore score(source, target_in_source);
+  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target, score},
                             fit.summary, progress);
   fit.surface = std::move(best.surface);
   fit.summary.alignment = alignment.summary;

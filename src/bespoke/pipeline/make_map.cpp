@@ -14,7 +14,7 @@ namespace {
 void put_surface_fit(const SurfaceFitOptions& options, Json& json) {
   json["surface_fit"] = name_of(surface_fits, options.method);
   json["epsilon"] = options.epsilon;
-  if (!options.mend_models) json["mend_models"] = false;
+  if (!options.repair_models) json["mend_models"] = false;
   if (options.method == SurfaceFitMethod::deformation_graph) {
     json["boundaries"] = name_of(boundary_rules, options.boundaries);
     json["max_stretch"] = options.max_stretch;
@@ -41,7 +41,7 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
     json["guides"] =
         name_of(guided_maps, fit.summary.elastic.left_guides ? GuidedMaps::none : options.fit.guides);
   json["fit_tolerance"] = options.fit.fit_tolerance;
-  json["contact_gap"] = options.fit.contact_gap;
+  json["contact_gap"] = options.fit.contact_offset;
   json["tolerance"] = options.bake.tolerance;
   if (options.bake.max_leaves && !options.bake.voxel_size)
     json["max_voxels"] = *options.bake.max_leaves * leaf_nodes;
@@ -96,12 +96,12 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
 
 }  // namespace
 
-MakeMapOptions default_options(double source_diagonal, double octave) {
-  const double on_target = octave * source_diagonal;
+MakeMapOptions default_options(double source_diagonal, double size_scale) {
+  const double on_target = size_scale * source_diagonal;
   MakeMapOptions options;
   options.fit.lambda = default_lambda * source_diagonal;
   options.fit.fit_tolerance = default_fit_tolerance * on_target;
-  options.fit.contact_gap = default_contact_gap * on_target;
+  options.fit.contact_offset = default_contact_offset * on_target;
   options.bake.tolerance = default_tolerance * on_target;
   options.bake.max_leaves = default_max_leaves;
   return options;

@@ -11,7 +11,7 @@ namespace bespoke {
 inline constexpr double default_lambda = 0.1;
 inline constexpr double default_tolerance = 0.00025;
 inline constexpr double default_fit_tolerance = 0.0001;
-inline constexpr double default_contact_gap = 0.001;
+inline constexpr double default_contact_offset = 0.001;
 
 /// Of the pyramids of a map, all steps together: some 25 MB of file.
 inline constexpr std::size_t default_max_leaves = 8200;
@@ -25,8 +25,8 @@ struct MakeMapOptions {
 
 /// Options whose lengths are the default fractions above of `source_diagonal` (mesh units), but for lambda
 /// `octave` times as much: they are measured on the target, which is about so many times as large
-/// (octave_of, length.h).
-MakeMapOptions default_options(double source_diagonal, double octave = 1);
+/// (power_of_two_scale, length.h).
+MakeMapOptions default_options(double source_diagonal, double size_scale = 1);
 
 struct MakeMapInput {
   const TriangleMesh& source;

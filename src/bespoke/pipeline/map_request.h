@@ -25,7 +25,7 @@ struct MapRequest {
   std::optional<Length> fit_tolerance;
   std::optional<Length> voxel_size;
   std::optional<NodeValues> nodes;
-  std::optional<Length> contact_gap;
+  std::optional<Length> contact_offset;
   std::optional<std::uint64_t> max_memory;  ///< bytes
   bool keep_exact = false;
   bool half = false;
@@ -36,7 +36,7 @@ struct MapRequest {
 };
 
 /// octave: see default_options.
-MakeMapOptions make_options(const MapRequest& request, double source_diagonal, double octave = 1);
+MakeMapOptions make_options(const MapRequest& request, double source_diagonal, double size_scale = 1);
 
 /// What comes with a request.
 struct RequestInputs {
@@ -47,15 +47,16 @@ struct RequestInputs {
 
 /// An option that cannot be heeded: the methods asked for know nothing of it, or what comes with it says
 /// otherwise.
-struct UnheededOption {
+struct InapplicableOption {
   std::string name;  ///< of `bespoke fit`, without dashes in front
   std::string reason;
 };
 
 /// The first that there is.
-std::optional<UnheededOption> unheeded_option(const MapRequest& request, const RequestInputs& inputs);
+std::optional<InapplicableOption> inapplicable_option(const MapRequest& request, const RequestInputs& inputs);
 
 /// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
-void rate_anchors(Anchors& anchors, const MapRequest& request, double source_diagonal, double octave = 1);
+void estimate_anchor_sigmas(Anchors& anchors, const MapRequest& request, double source_diagonal,
+                            double size_scale = 1);
 
 }  // namespace bespoke

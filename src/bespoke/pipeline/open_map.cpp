@@ -15,14 +15,15 @@ std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
   for (const MapStep& step : steps)
     if (!step.certificate.is_bijection())
       throw InvalidInput("the map is not certified as a bijection, so it has no inverse");
-  std::vector<std::shared_ptr<const ElasticMap>> way_back;
+  std::vector<std::shared_ptr<const ElasticMap>> inverse_steps;
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     const auto baked = std::make_shared<BakedMap>(step->affine, std::move(step->pyramid));
     // The inverse refers to the baked map, which therefore goes last.
-    way_back.emplace_back(new InverseMap(*baked, target_from_source),
-                          [baked](const ElasticMap* map) { delete static_cast<const InverseMap*>(map); });
+    inverse_steps.emplace_back(new InverseMap(*baked, target_from_source), [baked](const ElasticMap* map) {
+      delete static_cast<const InverseMap*>(map);
+    });
   }
-  return std::make_shared<ElasticChain>(std::move(way_back));
+  return std::make_shared<ElasticChain>(std::move(inverse_steps));
 }
 
 OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {

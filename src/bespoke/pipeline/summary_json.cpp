@@ -55,7 +55,7 @@ Json to_json(const BakeSummary& summary) {
                {"error_surface_points", summary.error_surface_points},
                {"surface_cells", summary.surface_cells},
                {"tolerance_met", summary.tolerance_met},
-               {"turned_faces", summary.turned_faces},
+               {"turned_faces", summary.misoriented_faces},
                {"refined_folds", summary.refined_folds},
                {"repaired_cells", summary.repaired_cells},
                {"repair_cost", summary.repair_cost},
@@ -76,7 +76,7 @@ Json to_json(const Certificate& certificate) {
           {"certified", certificate.certified},
           {"undecided", certificate.undecided},
           {"folded", certificate.folded},
-          {"least_determinant", certificate.least_determinant},
+          {"min_determinant", certificate.min_determinant},
           {"affine_determinant", certificate.affine_determinant},
           {"places", std::move(places)}};
 }
@@ -111,11 +111,11 @@ Json to_json(const RigidSummary& summary) {
 }
 
 Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
-  Json slipped = Json::array(), swapped = Json::array(), left_out = Json::array();
-  for (const SlippedAnchor& anchor : accuracy.slipped)
-    slipped.push_back(
+  Json outliers = Json::array(), swapped = Json::array(), left_out = Json::array();
+  for (const OutlierAnchor& anchor : accuracy.outliers)
+    outliers.push_back(
         {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
-  for (const LeftOutAnchor& anchor : accuracy.left_out)
+  for (const RejectedAnchor& anchor : accuracy.left_out)
     left_out.push_back(
         {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
   for (const SwappedAnchors& pair : accuracy.swapped)
@@ -124,7 +124,7 @@ Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
                        {"energy_ratio", pair.energy_ratio}});
   return {{"estimated", accuracy.estimated},
           {"sigma", accuracy.sigma},
-          {"slipped_anchors", std::move(slipped)},
+          {"slipped_anchors", std::move(outliers)},
           {"swapped_anchors", std::move(swapped)},
           {"left_out_anchors", std::move(left_out)}};
 }
@@ -140,8 +140,8 @@ Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
   for (const ContradictingAnchors& pair : summary.contradicting)
     contradicting.push_back({{"indices", {pair.first, pair.second}},
                              {"names", {anchors.pairs[pair.first].name, anchors.pairs[pair.second].name}},
-                             {"apart", pair.apart},
-                             {"asked", pair.asked}});
+                             {"apart", pair.source_distance},
+                             {"asked", pair.target_difference}});
   return {{"pairs", summary.residuals.count},
           {"residual", to_json(summary.residuals)},
           {"suspicious_anchors", std::move(suspicious)},
@@ -169,10 +169,10 @@ Json to_json(const SurfaceFitSummary& summary, SurfaceFitMethod method) {
                {"matched_boundaries", summary.matched_boundaries},
                {"cavity_vertices", summary.cavity_vertices},
                {"stretched_vertices", summary.stretched_vertices},
-               {"mended_vertices", summary.mended_vertices}};
+               {"mended_vertices", summary.repaired_vertices}};
   // Only where there are any: the records of all other fits stay as they were.
   if (!summary.excluded_vertices.empty()) json["excluded_vertices"] = summary.excluded_vertices;
-  if (summary.target_turned_over) json["target_turned_over"] = true;
+  if (summary.target_flipped) json["target_turned_over"] = true;
   if (summary.rigidity > 1) json["rigidity"] = summary.rigidity;
   if (summary.posed_by_anchors) json["posed_by_anchors_degrees"] = summary.anchor_turn_degrees;
   return json;
@@ -259,7 +259,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   if (summary.counterparts)
     add("counterparts",
         {{"found", summary.counterparts->found},
-         {"elsewhere", summary.counterparts->elsewhere},
+         {"elsewhere", summary.counterparts->displaced},
          {"taken", summary.counterparts->taken}},
         summary.counterparts->seconds);
   if (summary.surface)
@@ -267,11 +267,11 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   else
     add("surface-fit", {{"method", "given"}}, 0);
   // Only where there is any: the records of all other fits stay as they were.
-  if (summary.bare && summary.bare->is_notable())
+  if (summary.uncovered && summary.uncovered->is_notable())
     add("bare",
-        {{"share", summary.bare->share},
-         {"distance", summary.bare->distance},
-         {"farthest", to_json(summary.bare->farthest)}},
+        {{"share", summary.uncovered->share},
+         {"distance", summary.uncovered->distance},
+         {"farthest", to_json(summary.uncovered->farthest)}},
         0);
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);

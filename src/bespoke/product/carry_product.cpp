@@ -9,7 +9,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/product_io.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <array>
 
-#include "bespoke/digits.h"
+#include "bespoke/enum_names.h"
 #include "bespoke/error.h"
-#include "bespoke/named.h"
+#include "bespoke/number_format.h"
 #include "bespoke/product/detail/threemf_model.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {
@@ -39,7 +39,7 @@ void require_unit_of_format(const std::filesystem::path& model, const std::strin
                         (lower_ending(model) == ".3mf" ? ", as its file says" : ", as every glTF file") +
                         ", but the anchors are in " + unit;
   if (metres)
-    message += "; multiply their coordinates by " + in_digits(*metres / own_metres, 4) +
+    message += "; multiply their coordinates by " + format_number(*metres / own_metres, 4) +
                " and say \"units\": \"" + own + "\"";
   throw InvalidInput(message);
 }

@@ -14,7 +14,7 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

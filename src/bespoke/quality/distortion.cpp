@@ -120,7 +120,7 @@ MapDistortion map_distortion(const ElasticMap& map, const MapDistortionOptions& 
   result.conformal = spread(std::move(all.conformal));
   result.area = spread(std::move(all.area));
   result.volume = spread(std::move(all.volume));
-  result.least_determinant = result.samples > 0 ? result.volume.min : map.affine().linear.determinant();
+  result.min_determinant = result.samples > 0 ? result.volume.min : map.affine().linear.determinant();
   return result;
 }
 

@@ -35,7 +35,7 @@ struct MapDistortion {
   Spread conformal;  ///< s₁ / s₃, 1 where angles are kept; points with s₃ = 0 are left out
   Spread area;       ///< s₁ s₂, the largest factor of an area
   Spread volume;     ///< det ∇E, negative where the map is turned inside out
-  double least_determinant = 0;
+  double min_determinant = 0;
   std::size_t flips = 0;  ///< samples with det ∇E ≤ 0
 };
 

@@ -42,12 +42,12 @@ double squared_strain(const Edges& before, const Edges& after) {
 
 }  // namespace
 
-Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& laid,
+Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& registered,
                               const std::vector<SurfacePoint>& places, double reach) {
-  if (laid.cols() != surface.vertices.cols())
-    throw InvalidInput("strain_around got " + std::to_string(laid.cols()) + " vertices after and " +
+  if (registered.cols() != surface.vertices.cols())
+    throw InvalidInput("strain_around got " + std::to_string(registered.cols()) + " vertices after and " +
                        std::to_string(surface.vertices.cols()) + " before");
-  if (!(reach > 0 && surface.vertices.allFinite() && laid.allFinite()))
+  if (!(reach > 0 && surface.vertices.allFinite() && registered.allFinite()))
     throw InvalidInput("strain_around needs finite points and a reach above 0, got " + std::to_string(reach));
   const Eigen::Index faces = surface.faces.cols();
   Points centers(3, faces);
@@ -57,13 +57,13 @@ Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& laid,
     const Edges before = edges(surface.vertices, surface.faces, face);
     centers.col(face) = surface.vertices.col(surface.faces(0, face)) + before.rowwise().sum() / 3;
     areas[face] = area(before);
-    area_after += area(edges(laid, surface.faces, face));
+    area_after += area(edges(registered, surface.faces, face));
   }
   if (!(areas.sum() > 0 && area_after > 0)) throw InvalidInput("the surface has no area");
   const double usual = std::sqrt(area_after / areas.sum());
   for (Eigen::Index face = 0; face < faces; ++face)
     strains[face] = areas[face] > 0 ? squared_strain(usual * edges(surface.vertices, surface.faces, face),
-                                                     edges(laid, surface.faces, face))
+                                                     edges(registered, surface.faces, face))
                                     : 0;
 
   Eigen::VectorXd around(static_cast<Eigen::Index>(places.size()));

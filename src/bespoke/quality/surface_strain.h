@@ -16,7 +16,7 @@ namespace bespoke {
 /// `laid`: 3×n, the surface's vertices after. `places`: on the surface before; `reach` > 0, mesh units. Faces
 /// without area before do not count. Returns a value a place. Throws InvalidInput when the sizes differ, a
 /// value is not finite, or the surface has no area before or after.
-Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& laid,
+Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& registered,
                               const std::vector<SurfacePoint>& places, double reach);
 
 }  // namespace bespoke

@@ -127,12 +127,12 @@ LayerEvaluator::LayerEvaluator(const Points& centers, const Points& coefficients
 }
 
 void LayerEvaluator::mark_reach(const Points& centers) {
-  constexpr double most_cells = 1 << 22;
+  constexpr double max_cells = 1 << 22;
   const Vector3 low = centers.rowwise().minCoeff();
   const Vector3 high = centers.rowwise().maxCoeff();
   double edge = lambda_;
   const auto cells_along = [&] { return ((high - low).array() / edge).floor() + 3; };
-  while (!(cells_along().prod() <= most_cells)) edge *= 1.25;
+  while (!(cells_along().prod() <= max_cells)) edge *= 1.25;
   // One cell of margin on every side, so that the neighbours of an occupied cell exist.
   reach_origin_ = low - Vector3::Constant(edge);
   reach_inverse_edge_ = 1 / edge;
@@ -165,8 +165,8 @@ bool LayerEvaluator::within_reach(const Bounds& bounds) const {
     last[axis] = static_cast<int>(std::min(to, double(reach_cells_[axis] - 1)));
   }
   // A look at very many cells costs more than it may save.
-  constexpr double most_cells = 256;
-  if (double(last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1) > most_cells)
+  constexpr double max_cells = 256;
+  if (double(last[0] - first[0] + 1) * (last[1] - first[1] + 1) * (last[2] - first[2] + 1) > max_cells)
     return true;
   for (int k = first[2]; k <= last[2]; ++k)
     for (int j = first[1]; j <= last[1]; ++j)

@@ -57,10 +57,10 @@ class KernelSystem {
 
   bool solved(const Points& residual, const Vector3&, int steps) const {
     // Far more than spacing λ/4 needs; a system that wants more is not the one promised.
-    constexpr int most_steps = 1000;
+    constexpr int max_steps = 1000;
     const double left = residual.colwise().norm().maxCoeff();
     if (left <= tolerance_) return true;
-    if (steps < most_steps && std::isfinite(left)) return false;
+    if (steps < max_steps && std::isfinite(left)) return false;
     throw SolverError("radial layer of " + std::to_string(residual.cols()) + " centres: residual " +
                       std::to_string(left) + " after " + std::to_string(steps) +
                       " conjugate gradient iterations");

@@ -6,15 +6,15 @@
 #include <sstream>
 #include <vector>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
 namespace {
 
-std::string number(double value) { return in_digits(value, 6); }
+std::string number(double value) { return format_number(value, 6); }
 
-std::string tuple(const Vector3& v) { return in_digits(v, 6); }
+std::string tuple(const Vector3& v) { return format_number(v, 6); }
 
 std::string rows(const Matrix3& matrix) {
   std::string text;
@@ -54,12 +54,12 @@ std::string certificate_text(const Certificate& certificate, std::size_t steps) 
          << " steps is one, continuous, trilinear in every finest cell with positive det of its gradient in "
             "all "
          << certificate.certified << " of them, and affine outside; det of the whole at least "
-         << number(certificate.least_determinant);
+         << number(certificate.min_determinant);
   } else if (certificate.is_bijection()) {
     text
         << "proved to be a bijection of all of space: continuous, trilinear in every finest cell with det of "
            "its gradient at least "
-        << number(certificate.least_determinant) << " in all " << certificate.certified
+        << number(certificate.min_determinant) << " in all " << certificate.certified
         << " of them, and affine with det " << number(certificate.affine_determinant)
         << " outside; such a map is a local homeomorphism of degree 1";
   } else {

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -36,7 +36,7 @@ Json to_json(const ProductQuality& product) {
           {"self_intersections_after", product.self_intersections_after}};
 }
 
-std::string figure(double value) { return in_digits(value, 4); }
+std::string figure(double value) { return format_number(value, 4); }
 
 std::string penetration_text(const Penetration& penetration) {
   return std::to_string(penetration.vertices) + " vertices, " + figure(100 * penetration.area_share) +
@@ -79,7 +79,7 @@ std::string quality_text(const MappingQuality& quality, const std::vector<std::s
   text += "volume det:          " + to_string(map.volume) + "\n";
   text += "flips: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
           " points of the band, " + std::to_string(quality.flipped_faces) + " of " +
-          std::to_string(quality.source_faces) + " source faces; least det " + figure(map.least_determinant) +
+          std::to_string(quality.source_faces) + " source faces; least det " + figure(map.min_determinant) +
           "\n";
   for (std::size_t i = 0; i < names.size(); ++i) text += product_text(names[i], quality.products[i]);
   return text;
@@ -105,7 +105,7 @@ std::string quality_json(const MappingQuality& quality, const std::vector<std::s
                        {"conformal", to_json(map.conformal)},
                        {"area", to_json(map.area)},
                        {"volume", to_json(map.volume)},
-                       {"least_determinant", map.least_determinant},
+                       {"min_determinant", map.min_determinant},
                        {"flips", map.flips}}},
                      {"source_faces", quality.source_faces},
                      {"flipped_faces", quality.flipped_faces},

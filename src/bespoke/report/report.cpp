@@ -53,7 +53,7 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
   const BakeSummary& bake = *made.fit.summary.bake;
   stages.back()["refine_seconds"] = bake.refine_seconds;
   stages.back()["measure_seconds"] = bake.measure_seconds;
-  stages.back()["mend_seconds"] = bake.mend_seconds;
+  stages.back()["repair_seconds"] = bake.repair_seconds;
   const Certificate certificate = whole_certificate(made.asset);
   Json certified = {{"name", "certificate"}};
   certified.update(to_json(certificate));

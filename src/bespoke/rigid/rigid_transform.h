@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bespoke/named.h"
+#include "bespoke/enum_names.h"
 #include "bespoke/types.h"
 
 namespace bespoke {

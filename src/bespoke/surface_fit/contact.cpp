@@ -180,8 +180,8 @@ std::string to_string(const ContactSummary& summary) {
   return line;
 }
 
-ContactFit hold_apart(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
-                      const Progress& progress) {
+ContactFit separate_contacts(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
+                             const Progress& progress) {
   const Stopwatch watch;
   require_usable(source, fitted, options);
   ContactFit fit{fitted, {}};

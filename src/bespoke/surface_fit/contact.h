@@ -52,7 +52,7 @@ struct ContactFit {
 /// back (the two sides of an ear) are no contact. Where parts are too crumpled to be parted, the step with
 /// the fewest contacts is the result. Throws InvalidInput for sizes that differ or options out of range,
 /// SolverError, Interrupted.
-ContactFit hold_apart(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
-                      const Progress& progress = {});
+ContactFit separate_contacts(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
+                             const Progress& progress = {});
 
 }  // namespace bespoke

@@ -21,11 +21,12 @@ struct SimilaritySettings {
   /// Of the residuals, area by area: so many must be within the tolerance, so that holes and debris do not
   /// decide. Not varied.
   double quantile = 0.9;
-  int max_iterations = 12;     ///< Gauss-Newton steps at most. Not varied.
-  int trial_iterations = 3;    ///< after these a hopeless fit is given up: saves time only. Not varied.
-  double hopeless = 8;         ///< tolerances, of the residual after the trial iterations. Not varied.
-  double max_distance = 0.05;  ///< diagonals: farther points are no counterparts. Not varied.
-  double min_cosine = 0.5;     ///< between the normals of counterparts: within 60 degrees. Not varied.
+  int max_iterations = 12;  ///< Gauss-Newton steps at most. Not varied.
+  int trial_iterations =
+      3;  ///< after these a early_exit_factor fit is given up: saves time only. Not varied.
+  double early_exit_factor = 8;  ///< tolerances, of the residual after the trial iterations. Not varied.
+  double max_distance = 0.05;    ///< diagonals: farther points are no counterparts. Not varied.
+  double min_cosine = 0.5;       ///< between the normals of counterparts: within 60 degrees. Not varied.
   double outlier_medians = 2;  ///< median residuals: there a residual's weight falls to one half. Not varied.
   double outlier_floor = 1e-12;  ///< of the largest distance: keeps the weights finite on an exact copy.
   /// Vertices asked at most: bounds the time; seven unknowns need few. 16,000: the same errors on d00 to d10.
@@ -35,7 +36,8 @@ struct SimilaritySettings {
 /// How far each vertex speaks in a fit of planes (informative_areas.h). Taken for x 0.996 / 0.991.
 struct AreaSettings {
   double length = 0.01;  ///< ℓ, diagonals: bends of this radius count twice. Not varied on its own.
-  double most = 4;  ///< added to 1 at most: bounds the weight that noise in the normals can give. Not varied.
+  double max_weight =
+      4;  ///< added to 1 at most: bounds the weight that noise in the normals can give. Not varied.
   double shortest =
       1e-4;  ///< diagonals: shorter edges count as this long, their normals are rounding. Not varied.
 };
@@ -55,7 +57,7 @@ struct NodeSettings {
   double packing = 0.75;
   /// Of the area: where components large enough for nodes cover less, the mesh is taken for a polygon soup,
   /// and distances are those in space. Not varied.
-  double least_carried_area = 0.5;
+  double min_carried_area = 0.5;
   /// Of the farthest followed node's distance: weights fall to zero there, so that a node fades out before it
   /// is dropped. Not varied.
   double fade_margin = 1.05;
@@ -82,7 +84,7 @@ struct BendingSettings {
   /// of their bodies, a source of one on the target of another, x 1.005 / 1.010, with five anchors x 1.008
   /// / 1.007; 164 flipped faces, not 138, and three with noisy or few anchors on d01 to d07, not none. The
   /// fourth power: x 1.001 / 1.001, the 24 pairs x 0.997 / 0.995, but 139 flipped faces there, not 96.
-  double most_growth = 10;
+  double max_growth = 10;
 };
 
 /// How much the surface keeps its shape, node by node (node_system.h). Besides the shared cases, five bodies
@@ -103,7 +105,7 @@ struct ShapeSettings {
   /// 0.0065. Strain judged region by region: x 1.12 on the bodies, for it is at the joints that the rigid
   /// rest must say what happens.
   double usual_strain = 0.05;
-  double most_rigid = 10;  ///< bounds the ratio, for exact copies. Not varied.
+  double max_rigid = 10;  ///< bounds the ratio, for exact copies. Not varied.
 };
 
 /// Which boundaries are the same cut (boundary_match.h).
@@ -121,7 +123,7 @@ struct AnchorSettings {
   /// mean errors of exact anchors times 1.277, 1.265 and 1.286 with 1 % of noise, 1.175, 1.145 and 1.154 with
   /// 0.3 %.
   double along_surface = 0.001;
-  double most_reinforced = 10;  ///< factor of κ from one iteration to the next. Not varied.
+  double max_reinforced = 10;  ///< factor of κ from one iteration to the next. Not varied.
 };
 
 /// The source bent by its anchors alone (anchor_pose.h). Errors are mean distances from the truth, diagonals.
@@ -141,7 +143,7 @@ struct PoseSettings {
   /// Spacings: expected misfit of an edge; with an anchor's accuracy it weighs anchors against shape. 0.1:
   /// 0.745 % instead of 0.608 %.
   double edge_misfit = 0.5;
-  double least_sigma = 1e-3;          ///< diagonals: no anchor is taken for more accurate. Not varied.
+  double min_sigma = 1e-3;            ///< diagonals: no anchor is taken for more accurate. Not varied.
   double sigma_of_weight_one = 0.01;  ///< diagonals: the accuracy that a soft anchor's weight of 1 stands for
   /// Accuracies: anchors may be so much farther from their targets than closest points reach
   /// (NodeFitSettings::max_distance), before the fit starts from the bent source. Not varied.
@@ -149,7 +151,7 @@ struct PoseSettings {
   /// Degrees: the same of models that are rigid (NodeGoals::rigidity above 1), since what keeps its shape
   /// goes where its anchors say: x 0.846 / 0.982 on bodies in two poses (ShapeSettings), and no flip where
   /// there were 26. Smaller turns are found anyway. Not varied.
-  double least_rigid_turn = 15;
+  double min_rigid_turn = 15;
   NodeSettings node_settings;
 };
 
@@ -162,18 +164,18 @@ struct CavitySettings {
   double much_nearer = 0.7;
 };
 
-/// Linings of cavities that the target lacks (lacking_linings.h). Tried on an avatar's head with a mouth and
-/// sockets, laid onto three that have none, two of them scans of sculptures.
-struct LiningSettings {
+/// Cavities of cavities that the target lacks (unmatched_cavities.h). Tried on an avatar's head with a mouth
+/// and sockets, laid onto three that have none, two of them scans of sculptures.
+struct UnmatchedCavitySettings {
   /// Of a lining's area: where less of the target is enclosed about its middle, the target lacks it. Not
   /// varied.
-  double least_met = 0.25;
+  double min_matched = 0.25;
   double around = 2;         ///< radii of a lining about its middle: so far places speak for its space
   std::size_t places = 300;  ///< at most: a dense system
   /// Of each in the warp (GlobalRbf). Lids lie crumpled on eyes that the target has closed: met exactly, they
   /// threw sockets out of the face; 1,000: less so; 10, or 3 radii: as here.
   double weight = 100;
-  double least_width = 1e-3;  ///< of the largest: thinner, places say nothing of space
+  double min_width = 1e-3;  ///< of the largest: thinner, places say nothing of space
 };
 
 /// Counterparts that belong to another place (reciprocity.h). Taken for scans: nine of the shared targets
@@ -194,7 +196,7 @@ struct ReciprocitySettings {
 /// pairs, twelve of them bent (bodies and hands in strong poses, d08 and d10 among them), with all anchors:
 /// without x 1.027 / 1.029, d10 x 1.08; where the target stands out too (at both levels, everywhere, 0.3 of
 /// the leeway), x 1.02 / 1.03, a squat x 1.13.
-struct SinkingSettings {
+struct OutsideResidualSettings {
   /// Diagonals: r of the certainty. 0.15: x 1.002 / 1.003; 0.25: x 1.000 / 0.998, with five anchors x 1.002 /
   /// 1.000; infinite: x 0.999 / 0.996, but with five anchors x 1.018 / 1.020 and 1,617 flipped faces, not
   /// 1,000.
@@ -211,9 +213,9 @@ struct NodeLevel {
   /// any nearness says little: with it there, scans and the shared cases x 1.000, but hands whose anchors are
   /// off by 1 % go a finger astray more often (d08 over five such noises x 1.06, 64 flipped faces, not 36).
   bool reciprocity = true;
-  /// Whether bent sources sink (SinkingSettings). At the first level too, with an infinite reach: x 1.000 /
-  /// 0.999, with five anchors x 1.011 / 1.012.
-  bool sinking = true;
+  /// Whether bent sources sink (OutsideResidualSettings). At the first level too, with an infinite reach:
+  /// x 1.000 / 0.999, with five anchors x 1.011 / 1.012.
+  bool outside_residuals = true;
 };
 
 /// The smooth deformation (node_fit.h).
@@ -252,8 +254,8 @@ struct NodeFitSettings {
   /// creases, which must unfold: 0: x 1.018 / 1.036 on the shared cases and 22 further pairs, x 1.11 / 1.22
   /// on three whose armpits stay notched; 0.6, 1.6: shared cases x 1.003 / 1.003 and 0.997 / 0.996; at every
   /// pair, creased or not, 0.2: x 0.994 / 0.998 on the shared cases, but d01 x 1.10. Of bent sources that
-  /// stand out of the target, see SinkingSettings.
-  double leeway = 1;
+  /// stand out of the target, see OutsideResidualSettings.
+  double outlier_scale_gain = 1;
   /// Weight of all exact anchors together after the first iteration of a level, times the iteration's number;
   /// the surface's weight is 1. Growing, so that anchors lead and do not dent. Not varied on its own.
   double anchor_growth = 2;
@@ -271,9 +273,9 @@ struct NodeFitSettings {
   BoundarySettings boundaries;
   AnchorSettings anchors;
   CavitySettings cavities;
-  LiningSettings linings;
+  UnmatchedCavitySettings unmatched_cavities;
   ReciprocitySettings reciprocity;
-  SinkingSettings sinking;
+  OutsideResidualSettings outside_residuals;
 };
 
 /// Layers of space (detail_layers.h).
@@ -308,32 +310,32 @@ struct DetailSettings {
   double anchor_radius = 0.03;  ///< diagonals: λ of the last layer, which meets exact anchors. Not varied.
   /// A layer meets them to a thousandth of its moves; where mending has taken one far from its place, another
   /// follows until all are within this many diagonals, so many at most. Not varied.
-  double met = 1e-5;
-  int most_meetings = 4;
+  double tolerance = 1e-5;
+  int max_anchor_passes = 4;
 };
 
-/// Faces taken back (turned_faces.h), but for patches that this would bend farther. Without that exception,
-/// on 41 pairs of bodies, hands, feet and heads made afresh: x 1.006, and 707 flipped faces instead of 281,
-/// on heads whose nostrils and lids the coarse deformation had folded. Edges folded anew, by
+/// Faces taken back (misoriented_faces.h), but for patches that this would bend farther. Without that
+/// exception, on 41 pairs of bodies, hands, feet and heads made afresh: x 1.006, and 707 flipped faces
+/// instead of 281, on heads whose nostrils and lids the coarse deformation had folded. Edges folded anew, by
 /// more than a right angle, are mended as well: flipped faces of the maps of 17 further pairs 49 without
 /// that, 33 with it (a noisy scan 9, 0; a body 6, 3), of the shared ones 1, 0; anchors with 0.3 % noise 3, 1;
 /// five anchors 7, 4. Errors x 1.000, d06 x 1.003. From 60 and 75 degrees on: more faces flipped than
 /// without.
-struct MendingSettings {
+struct FaceRepairSettings {
   /// A face that turned farther against the coarse deformation was drawn to the wrong side of a fold. Flipped
   /// faces at 45, 50, 55, 60, 65 degrees: 9 5 2 2 2 on the shared cases, 47 45 73 99 110 on the further
   /// pairs, where smoothing a crease still counted as turning (d05: 3 flipped faces instead of none, x 1.02).
-  double most_degrees = 55;
+  double max_degrees = 55;
   /// Factor by which a length in a face may grow or shrink against the coarse deformation, which is nearly a
   /// similarity about a face (SurfaceFitOptions::max_stretch). Of the true correspondences 99.9 % of all
   /// faces stay below 6 against one similarity. 10 and infinity: the same errors on d01 to d10; 5: d10 0.341
   /// % instead of 0.318.
-  double most_stretch = 10;
-  int most_rings = 8;  ///< of vertices around a turned face that are released with it. Not varied.
+  double max_stretch = 10;
+  int max_rings = 8;  ///< of vertices around a turned face that are released with it. Not varied.
   /// Of the vertices, and a number for small meshes: where more has turned, anchors contradict each other,
   /// and mending would undo the fit: jittered anchors had a fifth of a foot taken back, and 77 faces flipped,
   /// now none.
-  double most_released = 0.05;
+  double max_released = 0.05;
   std::size_t released_at_least = 100;
   double shortest =
       1e-6;            ///< diagonals: edges shorter than this weigh no more; equal weights left faces turned.
@@ -354,7 +356,7 @@ struct DeformationGraphSettings {
   PoseSettings pose;
   NodeFitSettings nodes;
   DetailSettings details;
-  MendingSettings mending;
+  FaceRepairSettings face_repair;
   ConfidenceSettings confidence;
 };
 

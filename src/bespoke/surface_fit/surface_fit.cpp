@@ -100,7 +100,7 @@ std::string to_string(const SurfaceFitSummary& summary) {
   std::string line = text;
   if (summary.off_surface_anchors > 0)
     line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
-  if (summary.target_turned_over) line += ", the target's faces turned over to face as the source's do";
+  if (summary.target_flipped) line += ", the target's faces turned over to face as the source's do";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.posed_by_anchors) {
     char turn[80];
@@ -123,12 +123,12 @@ std::string to_string(const SurfaceFitSummary& summary) {
             " vertices without counterpart since patches exclude it";
   if (!summary.stretched_vertices.empty())
     line += ", " + std::to_string(summary.stretched_vertices.size()) + " vertices stretched too far";
-  if (summary.mended_vertices > 0)
-    line += ", " + std::to_string(summary.mended_vertices) + " vertices drawn too far taken back";
+  if (summary.repaired_vertices > 0)
+    line += ", " + std::to_string(summary.repaired_vertices) + " vertices drawn too far taken back";
   return line;
 }
 
-double SurfaceFitInput::octave() const { return octave_of(growth(source, warped_vertices)); }
+double SurfaceFitInput::size_scale() const { return power_of_two_scale(growth(source, warped_vertices)); }
 
 SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& options,
                        const Progress& progress) {
@@ -136,13 +136,13 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
   const auto& entry = entry_of(options.method);
   const bool away = faces_away({input.warped_vertices, input.source.faces}, input.target);
   if (away) require_unmirrored(input);
-  if (!away || !options.mend_models) return entry.fit(input, options, progress);
-  const TriangleMesh target = turned_over(input.target);
+  if (!away || !options.repair_models) return entry.fit(input, options, progress);
+  const TriangleMesh target = flipped(input.target);
   SurfaceFit fit =
       entry.fit({input.source, input.warped_vertices, target, input.anchor_sources, input.anchor_targets,
                  input.anchor_weights, input.anchor_sigmas, input.source_patches, input.target_patches},
                 options, progress);
-  fit.summary.target_turned_over = true;
+  fit.summary.target_flipped = true;
   return fit;
 }
 

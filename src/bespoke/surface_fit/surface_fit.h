@@ -7,8 +7,8 @@
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/anchors/patch_faces.h"
+#include "bespoke/enum_names.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/named.h"
 #include "bespoke/progress.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/surface_fit_methods.h"
@@ -48,7 +48,7 @@ struct SurfaceFitOptions {
   SurfaceFitMethod method = SurfaceFitMethod::deformation_graph;
   /// Models are mended first: seams are joined (seams.h, by who calls fit_surface), and a target that is
   /// inside out is turned over. Not part of the printed method.
-  bool mend_models = true;
+  bool repair_models = true;
   int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
   /// ε of the paper, a fraction of the source's bounding-box diagonal, in octaves as large as the target.
   double epsilon = 1e-5;
@@ -83,8 +83,8 @@ struct SurfaceFitSummary {
   StopReason stop_reason = StopReason::iteration_cap;
   std::size_t unmatched_vertices =
       0;  ///< no compatible point in the last iteration: moved by the smoothness term alone
-  bool target_turned_over = false;  ///< its faces, since one of the models is inside out
-  double stiffness = 0;             ///< laplacian: s of Eq. 11
+  bool target_flipped = false;  ///< its faces, since one of the models is inside out
+  double stiffness = 0;         ///< laplacian: s of Eq. 11
   // deformation-graph:
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
   /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn; where they
@@ -95,11 +95,11 @@ struct SurfaceFitSummary {
   double rigidity = 1;
   int matched_boundaries = 0;  ///< open boundaries of the source taken for the target's cut
   /// By index: in cavities that the target lacks, so they follow their neighbours (detail/cavities.h), or the
-  /// space around (detail/lacking_linings.h).
+  /// space around (detail/unmatched_cavities.h).
   std::vector<int> cavity_vertices;
   /// By index: without counterpart since a patch excludes it, or what lies nearest to it on the target.
   std::vector<int> excluded_vertices;
-  std::size_t mended_vertices = 0;  ///< drawn over a fold or stretched, so they follow their neighbours
+  std::size_t repaired_vertices = 0;  ///< drawn over a fold or stretched, so they follow their neighbours
   std::vector<int>
       stretched_vertices;  ///< of those, by index: stretched beyond SurfaceFitOptions::max_stretch
   std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
@@ -133,8 +133,8 @@ struct SurfaceFitInput {
   FacePatches source_patches = {};
   FacePatches target_patches = {};
 
-  /// How many times as large the target is (octave_of, length.h), by the warp.
-  double octave() const;
+  /// How many times as large the target is (power_of_two_scale, length.h), by the warp.
+  double size_scale() const;
 };
 
 /// A target whose faces look the other way than the source's, as of a file that is inside out, is turned over

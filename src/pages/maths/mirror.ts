@@ -48,11 +48,11 @@ class PointGrid {
   }
 }
 
-const most_samples = 1500, refinements = 15;
+const max_samples = 1500, refinements = 15;
 
 /** The plane that a model is best mirrored by: of the coordinate and principal axes the best, then refined on closest points. */
 export function symmetry_plane(vertices: Triple[]): Plane {
-  const step = Math.max(1, Math.floor(vertices.length / most_samples));
+  const step = Math.max(1, Math.floor(vertices.length / max_samples));
   const samples = vertices.filter((_, i) => i % step === 0);
   const centre = mean_of(vertices);
   const size = Math.max(...samples.map((x) => Math.hypot(...x.map((value, axis) => value - centre[axis])))) || 1;

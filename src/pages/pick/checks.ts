@@ -17,7 +17,7 @@ export interface PairChecks {
   suspicions: string[];
 }
 
-const typical_factor = 4, least_share = 0.04; // as in anchor_audit.cpp
+const typical_factor = 4, min_share = 0.04; // as in anchor_audit.cpp
 const same_place = 0.002; // of the diagonal: nobody means two points so near each other
 const flat = 0.02; // least spread over the largest, below which a plane holds the points
 
@@ -74,7 +74,7 @@ function warn_of_outliers(complete: CompletePair[], a: Triple[], b: Triple[], si
   checks.left_out = predicted.map((point, i) => (point === null ? null : distance(point, b[i])));
   const known = checks.left_out.filter((value) => value !== null).sort((x, y) => x - y);
   if (known.length < 6) return; // fewer say nothing about what is usual
-  const limit = Math.max(least_share * box_diagonal(b), typical_factor * known[Math.floor(known.length / 2)]);
+  const limit = Math.max(min_share * box_diagonal(b), typical_factor * known[Math.floor(known.length / 2)]);
   complete.forEach((pair, i) => {
     const off = checks.left_out[i], place = predicted[i];
     if (off === null || place === null || off <= limit) return;

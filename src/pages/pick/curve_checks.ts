@@ -1,6 +1,6 @@
 import { rigid_warp, distance, type Warp } from "../maths/warp";
 import type { Triple } from "../scene/scene";
-import { in_order, is_complete_curve, is_patch, is_whole, least_points, line_length, model_of, needed_sides, polyline, type PickedCurve, type PickedLine } from "./curves";
+import { in_order, is_complete_curve, is_patch, is_whole, min_points, line_length, model_of, needed_sides, polyline, type PickedCurve, type PickedLine } from "./curves";
 import type { CompletePair } from "./history";
 
 export const curve_name = (curve: PickedCurve, i: number): string => (curve.name === "" ? `${is_patch(curve) ? "patch" : "curve"} ${i + 1}` : `“${curve.name}”`);
@@ -26,7 +26,7 @@ export function check_curves(curves: PickedCurve[], pairs: CompletePair[]): stri
 function lacking(curve: PickedCurve): string {
   const missing = needed_sides(curve).filter((side) => !is_whole(curve, side));
   const points = missing.map((side) => {
-    const count = least_points(curve) - curve[side].points.length;
+    const count = min_points(curve) - curve[side].points.length;
     return `${count} ${count === 1 ? "point" : "points"} on the ${model_of[side]}`;
   });
   const one_is_enough = curve.meaning === "exclude" && missing.length === 2 && missing.every((side) => curve[side].points.length === 0);

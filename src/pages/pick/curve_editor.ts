@@ -22,7 +22,7 @@ export class CurveEditor {
   /** The chosen point of the chosen curve on each model, −1 without. */
   point: Record<Side, number> = { a: -1, b: -1 };
   /** The last point was just laid: a click on the first one closes the curve. */
-  private is_laying: Side | null = null;
+  private is_drawing: Side | null = null;
   /** The line of the chosen curve that is being dragged, as it was before: what it encloses is found again at the end. */
   private held: { side: Side; line: PickedLine } | null = null;
 
@@ -39,7 +39,7 @@ export class CurveEditor {
   choose(index: number): void {
     this.chosen = index;
     this.point = { a: -1, b: -1 };
-    this.is_laying = null;
+    this.is_drawing = null;
     this.drag_ended();
   }
 
@@ -68,7 +68,7 @@ export class CurveEditor {
     const is_first = this.curve === null;
     if (is_first) this.begin();
     this.point[side] = at;
-    this.is_laying = piece >= 0 ? null : side;
+    this.is_drawing = piece >= 0 ? null : side;
     // To begin a curve and to lay its first point is one step of undoing.
     this.change((now) => ({ ...now, [side]: line, fixed: renumbered(now.fixed, side, at, 1) }), is_first);
   }
@@ -76,9 +76,9 @@ export class CurveEditor {
   /** A click on a point of the chosen curve. */
   point_clicked(side: Side, number: number): void {
     const curve = this.curve;
-    const closes = this.is_laying === side && number === 0 && curve !== null && !curve.closed && curve[side].points.length >= 3;
+    const closes = this.is_drawing === side && number === 0 && curve !== null && !curve.closed && curve[side].points.length >= 3;
     this.point[side] = number;
-    this.is_laying = null;
+    this.is_drawing = null;
     if (closes) this.set_kind({ ...kind_of(curve), closed: true });
   }
 
@@ -94,7 +94,7 @@ export class CurveEditor {
 
   drag_started(side: Side, number: number): void {
     this.point[side] = number;
-    this.is_laying = null;
+    this.is_drawing = null;
     this.hold(side, number);
     this.history.change(() => undefined);
   }
@@ -117,7 +117,7 @@ export class CurveEditor {
     const line = rejoined(curve[side], curve[side].points.filter((_, i) => i !== number), curve.closed, this.join(side));
     if (line === null) return this.say(separate_pieces);
     this.point[side] = -1;
-    this.is_laying = null;
+    this.is_drawing = null;
     this.change((now) => ({ ...now, [side]: line, fixed: renumbered(now.fixed, side, number, -1) }));
   }
 

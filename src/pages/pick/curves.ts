@@ -57,12 +57,12 @@ export function is_patch(curve: PickedCurve): boolean {
   return curve.meaning !== "line";
 }
 
-export function least_points(curve: PickedCurve): number {
+export function min_points(curve: PickedCurve): number {
   return curve.closed ? 3 : 2;
 }
 
 export function is_whole(curve: PickedCurve, side: Side): boolean {
-  return curve[side].points.length >= least_points(curve);
+  return curve[side].points.length >= min_points(curve);
 }
 
 /** Where it needs a line: what is excluded may be on one model alone. */

@@ -35,7 +35,7 @@ export interface SideMarker {
 }
 
 const grab_radius = 9; // pixels
-const least_lift = 0.004; // of the size: nearer to the surface, lines and faces contend for pixels
+const min_lift = 0.004; // of the size: nearer to the surface, lines and faces contend for pixels
 const marker_lift = 0.02; // discs are wide, and a surface that leans would cut them
 
 type HeldMarker = SideMarker & { number: number };
@@ -68,7 +68,7 @@ export class ModelSide {
     for (let i = 0; i < places.length; i += 3) box.expandByPoint(new Vector3().fromArray(places, i));
     this.size = box.min.distanceTo(box.max);
     this.centre = box.getCenter(new Vector3());
-    const lift = least_lift * this.size;
+    const lift = min_lift * this.size;
     this.markers = new Markers(marker_lift * this.size, 12);
     this.hint = new Markers(marker_lift * this.size, 16);
     this.lines = new Lines(lift);

@@ -93,24 +93,24 @@ class PickPage {
   }
 
   private side(name: Side, model: Model): ModelSide {
-    const lays_curves = (): boolean => this.mode === "curves";
+    const draws_curves = (): boolean => this.mode === "curves";
     const listener: SideListener = {
       clicked: (point, reach) => {
-        if (lays_curves()) this.editor.clicked(name, point, reach);
+        if (draws_curves()) this.editor.clicked(name, point, reach);
         else this.set_point(name, point);
       },
       chosen: (number) => {
-        if (lays_curves()) this.editor.point_clicked(name, number);
+        if (draws_curves()) this.editor.point_clicked(name, number);
         else this.chosen = number;
         this.refresh();
       },
       drag_started: (number) => {
-        if (lays_curves()) return this.editor.drag_started(name, number);
+        if (draws_curves()) return this.editor.drag_started(name, number);
         this.chosen = number;
         this.history.change(() => undefined);
       },
       dragged: (number, point) => {
-        if (lays_curves()) this.editor.dragged(name, number, point);
+        if (draws_curves()) this.editor.dragged(name, number, point);
         else this.history.change_again(({ pairs }) => (pairs[number][name] = point));
       },
       drag_ended: () => {
@@ -120,7 +120,7 @@ class PickPage {
       turned: () => this.follow(name),
       key: (event) => {
         if (event.key !== "Delete" && event.key !== "Backspace") return;
-        if (lays_curves()) this.editor.remove_point(name);
+        if (draws_curves()) this.editor.remove_point(name);
         else this.remove(this.chosen);
       },
     };
@@ -207,9 +207,9 @@ class PickPage {
 
   /** Points of curves stay on the surface; those of pairs may leave it. */
   private set_drag_mode(): void {
-    const lays_curves = this.mode === "curves";
-    this.both((each) => (each.drag_mode = lays_curves ? "surface" : this.drag_mode));
-    for (const button of this.drag_group.querySelectorAll("button")) button.disabled = lays_curves;
+    const draws_curves = this.mode === "curves";
+    this.both((each) => (each.drag_mode = draws_curves ? "surface" : this.drag_mode));
+    for (const button of this.drag_group.querySelectorAll("button")) button.disabled = draws_curves;
   }
 
   // ---- the other side
@@ -290,14 +290,14 @@ class PickPage {
   }
 
   private draw(): void {
-    const lays_curves = this.mode === "curves";
+    const draws_curves = this.mode === "curves";
     const curve = this.editor.curve;
-    const task = !lays_curves ? "" : curve === null ? "a click begins a curve" : `a click adds to ${curve_name(curve, this.editor.chosen)}`;
+    const task = !draws_curves ? "" : curve === null ? "a click begins a curve" : `a click adds to ${curve_name(curve, this.editor.chosen)}`;
     for (const side of sides) {
       const pairs = this.history.pairs.flatMap((pair, i): SideMarker[] =>
-        pair[side] === null ? [] : [{ number: lays_curves ? null : i, point: pair[side], colour: colours[i % colours.length], size: lays_curves ? "small" : i === this.chosen ? "large" : "plain" }],
+        pair[side] === null ? [] : [{ number: draws_curves ? null : i, point: pair[side], colour: colours[i % colours.length], size: draws_curves ? "small" : i === this.chosen ? "large" : "plain" }],
       );
-      this.sides[side].show([...pairs, ...(lays_curves ? this.editor.markers(side) : [])], this.editor.lines(side), this.editor.fills(side));
+      this.sides[side].show([...pairs, ...(draws_curves ? this.editor.markers(side) : [])], this.editor.lines(side), this.editor.fills(side));
       this.sides[side].show_task(task);
     }
   }

@@ -67,9 +67,9 @@ export function add_controls(stage: Stage, listener: ClickListener): void {
 
   const released = (event: PointerEvent): void => {
     if (!fingers.delete(event.pointerId)) return;
-    const most_travel = 5; // pixels that a hand trembles
+    const max_travel = 5; // pixels that a hand trembles
     if (grabbed !== null) grabbed.release();
-    if (event.type === "pointerup" && travelled <= most_travel && event.button === 0 && fingers.size === 0) {
+    if (event.type === "pointerup" && travelled <= max_travel && event.button === 0 && fingers.size === 0) {
       const at = place(event);
       listener.click(at.x, at.y);
     }

@@ -46,7 +46,7 @@ class Certificate:
     certified: int  #: finest cells with a positive determinant, proved
     undecided: int
     folded: int
-    least_determinant: float  #: lower bound over the certified cells
+    min_determinant: float  #: lower bound over the certified cells
     affine_determinant: float
     places: tuple[FoldedCell, ...] = ()
 
@@ -183,7 +183,7 @@ class Quality:
     source_to_target: Statistics  #: from the mapped source to the target's surface
     target_to_source: Statistics
     hausdorff: float
-    least_determinant: float  #: of the Jacobian at the samples
+    min_determinant: float  #: of the Jacobian at the samples
     flipped_faces: int  #: of the source
     json: Mapping[str, Any]  #: all of `bespoke measure --json`, products too
 
@@ -195,7 +195,7 @@ class Quality:
             source_to_target=Statistics._from(found["source_to_target"]),
             target_to_source=Statistics._from(found["target_to_source"]),
             hausdorff=found["hausdorff"],
-            least_determinant=found["distortion"]["least_determinant"],
+            min_determinant=found["distortion"]["min_determinant"],
             flipped_faces=found["flipped_faces"],
             json=found,
         )

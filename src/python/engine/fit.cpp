@@ -46,7 +46,7 @@ class RequestReader {
     take("tolerance", request.tolerance);
     take("fit_tolerance", request.fit_tolerance);
     take("voxel_size", request.voxel_size);
-    take("contact_gap", request.contact_gap, LengthRange::not_negative);
+    take("contact_gap", request.contact_offset, LengthRange::not_negative);
     request.keep_exact = flag("keep_exact");
     request.half = flag("half");
     request.strict = flag("strict");
@@ -83,9 +83,9 @@ void require_usable(const MapRequest& request, const RequestInputs& inputs) {
     throw InvalidInput("max_stretch " + std::to_string(*request.max_stretch) + " must be greater than 1");
   if (request.steps && (*request.steps < 1 || *request.steps > 100))
     throw InvalidInput("steps " + std::to_string(*request.steps) + " must be between 1 and 100");
-  if (std::optional<UnheededOption> unheeded = unheeded_option(request, inputs)) {
-    std::replace(unheeded->name.begin(), unheeded->name.end(), '-', '_');
-    throw InvalidInput(unheeded->name + ": " + unheeded->reason);
+  if (std::optional<InapplicableOption> inapplicable = inapplicable_option(request, inputs)) {
+    std::replace(inapplicable->name.begin(), inapplicable->name.end(), '-', '_');
+    throw InvalidInput(inapplicable->name + ": " + inapplicable->reason);
   }
 }
 
@@ -106,15 +106,16 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   Anchors anchors = to_anchors(anchors_text);
   const bool has_anchors = !anchors.pairs.empty() || !anchors.curves.empty() || !anchors.patches.empty();
   require_usable(request, {has_anchors, fitted.has_value(), add_corners});
-  const double size = diagonal(source.vertices), octave = octave_of(size_ratio(anchors, source, target));
-  rate_anchors(anchors, request, size, octave);
+  const double size = diagonal(source.vertices),
+               size_scale = power_of_two_scale(size_ratio(anchors, source, target));
+  estimate_anchor_sigmas(anchors, request, size, size_scale);
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const Stopwatch watch;
   const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
                            target_cloud ? &*target_cloud : nullptr};
   MadeMap made = released(callback, [&](const Progress& progress) {
-    return make_map(input, make_options(request, size, octave), progress);
+    return make_map(input, make_options(request, size, size_scale), progress);
   });
   const std::string report = fit_report(input, made, watch.seconds());
   const Points laid = made.fit.target_from_source * made.fit.fitted_vertices;

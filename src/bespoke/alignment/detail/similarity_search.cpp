@@ -14,7 +14,7 @@ struct SearchSettings {
   double first_length = 0.5;  // of the target's radius
   double last_length = 0.12;  // of the target's radius: what 5 to 15 % of other shape leave
   int iterations = 20;
-  double least_matched = 0.05;  // share below which a start has lost the target
+  double min_matched = 0.05;    // share below which a start has lost the target
   double same_place = 0.2;      // mean distance, of the target's radius
   double same_rotation = 1e-6;  // norm of the difference of two rotations
 };
@@ -31,7 +31,7 @@ SimilarityCandidate refine(const SurfacePatches& source, const SurfacePatches& t
                           std::pow(search_settings.last_length / search_settings.first_length, progress);
     const Points points = now * source.points;
     const SoftMatches matches = soft_matches(source, points, now.rotation * source.normals, target, length);
-    if (!(matches.matched() > search_settings.least_matched)) return {start, lost};
+    if (!(matches.matched() > search_settings.min_matched)) return {start, lost};
     candidate.misfit = matches.residual(points) / target.radius / matches.matched();
     Similarity next = align_similarly(source.points, matches.targets, matches.weights);
     // Least squares shrink the source where matches are vague; the ratio of the spreads does not.

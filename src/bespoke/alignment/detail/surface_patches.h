@@ -12,7 +12,7 @@ struct SurfacePatches {
   Points points;                             ///< centroids, mesh units
   Points normals;                            ///< mean normals, unit
   Eigen::VectorXd areas;                     ///< shares of the whole, sum 1
-  Eigen::VectorXd open_areas;                ///< shares of what lines no cavity (linings.h), sum 1
+  Eigen::VectorXd open_areas;                ///< shares of what lines no cavity (cavities.h), sum 1
   Eigen::VectorXd curvature;                 ///< mean curvature × `radius`, positive where convex; no unit
   Eigen::VectorXd on_boundary;               ///< 1 where an open boundary of the mesh runs through, else 0
   std::vector<std::vector<int>> neighbours;  ///< across edges of the mesh, ascending, connected as a whole
@@ -30,7 +30,7 @@ struct SurfacePatches {
 double longest_edge_of_patches(const TriangleMesh& mesh, int count);
 
 /// About `count` (≥ 4) patches, seeded one by one at the vertex farthest, in place and normal, from all seeds
-/// so far. `lined`: n, the vertices that line cavities (linings.h), or empty for none. Throws InvalidInput
+/// so far. `lined`: n, the vertices that line cavities (cavities.h), or empty for none. Throws InvalidInput
 /// unless the mesh is valid and has area.
 SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& lined = {});
 

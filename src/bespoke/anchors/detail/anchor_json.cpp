@@ -148,14 +148,14 @@ std::vector<int> json_faces(const ParsedJson& list, const std::string& where) {
 
 /// A last point at the place of the first says once more that the line is closed.
 Points json_border(const ParsedJson& side, const std::string& where) {
-  constexpr Eigen::Index least_points = 3;
+  constexpr Eigen::Index min_points = 3;
   if (const auto closed = side.find("closed"); closed != side.end() && *closed != true)
     throw FormatError(where + ": \"closed\" is " + closed->dump() +
                       ", but a border goes round its patch; leave \"closed\" out and lead the line back to "
                       "its first point, or give \"faces\"");
   Points border = json_polyline(side, "border", where);
   if (border.col(0) == border.col(border.cols() - 1)) border.conservativeResize(3, border.cols() - 1);
-  if (border.cols() < least_points)
+  if (border.cols() < min_points)
     throw FormatError(where + ": \"border\" has " + std::to_string(border.cols()) +
                       " points; a line around a patch has three at least");
   return border;

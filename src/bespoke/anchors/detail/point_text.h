@@ -3,15 +3,15 @@
 #include <cmath>
 #include <string>
 
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke {
 
 /// Numbers in the point files of other programs.
 
 /// So many digits that the same double is read back.
-inline std::string all_digits(double value) { return in_digits(value, 17); }
+inline std::string all_digits(double value) { return format_number(value, 17); }
 
 /// All of the text as a finite number; throws FormatError "where: …" otherwise.
 inline double finite_number(const std::string& text, const std::string& where) {

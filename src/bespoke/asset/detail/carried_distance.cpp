@@ -83,7 +83,7 @@ StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
   grid.metadata["bespoke:meaning"] = std::string(
       "unsigned distance to the source model, carried from the other model's, minus one voxel: a shell");
   const ScalarSampler sample(distance);
-  const double growth = octave_of(grid.voxel_size / distance.voxel_size);
+  const double growth = power_of_two_scale(grid.voxel_size / distance.voxel_size);
   const Lattice lattice{grid.origin, grid.voxel_size};
   const Eigen::Vector3i last = ((box.sizes() / grid.voxel_size).array() / leaf_edge).floor().cast<int>() + 1;
   const int row = last.z() + 2;

@@ -45,7 +45,7 @@ Json to_json(const Certificate& c) {
   return {{"certified", c.certified},
           {"undecided", c.undecided},
           {"folded", c.folded},
-          {"least_determinant", c.least_determinant},
+          {"least_determinant", c.min_determinant},
           {"affine_determinant", c.affine_determinant},
           {"places", std::move(places)}};
 }
@@ -171,7 +171,7 @@ Certificate parse_certificate(const Field& field) {
   certificate.certified = field["certified"].count();
   certificate.undecided = field["undecided"].count();
   certificate.folded = field["folded"].count();
-  certificate.least_determinant = field["least_determinant"].number();
+  certificate.min_determinant = field["least_determinant"].number();
   certificate.affine_determinant = field["affine_determinant"].number();
   for (const Field& place : field["places"].items())
     certificate.places.push_back(
@@ -315,7 +315,7 @@ void add_step(const MapStep& step, std::size_t levels, const std::string& prefix
   metadata[prefix + "cells_certified"] = static_cast<std::int64_t>(step.certificate.certified);
   metadata[prefix + "cells_undecided"] = static_cast<std::int64_t>(step.certificate.undecided);
   metadata[prefix + "cells_folded"] = static_cast<std::int64_t>(step.certificate.folded);
-  metadata[prefix + "least_determinant"] = step.certificate.least_determinant;
+  metadata[prefix + "least_determinant"] = step.certificate.min_determinant;
   metadata[prefix + "affine_determinant"] = step.certificate.affine_determinant;
   metadata[prefix + "levels"] = static_cast<std::int64_t>(levels);
 }

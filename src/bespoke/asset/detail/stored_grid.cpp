@@ -120,10 +120,10 @@ Metadata read_metadata(ByteReader& reader) {
 }  // namespace
 
 void require_storable(double voxel_size, const std::string& what) {
-  if (std::isfinite(voxel_size) && voxel_size >= least_voxel_size) return;
+  if (std::isfinite(voxel_size) && voxel_size >= min_voxel_size) return;
   std::ostringstream message;
   message
-      << what << ": voxel size " << voxel_size << " is below " << least_voxel_size
+      << what << ": voxel size " << voxel_size << " is below " << min_voxel_size
       << ", the least that OpenVDB stores; give the models in a smaller unit, for instance mm instead of m";
   throw InvalidInput(message.str());
 }

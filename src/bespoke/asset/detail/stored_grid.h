@@ -37,7 +37,7 @@ struct StoredGrid {
 };
 
 /// OpenVDB takes a smaller one (its cube below 3e-15) for a degenerate transform. Mesh units.
-inline constexpr double least_voxel_size = 1.5e-5;
+inline constexpr double min_voxel_size = 1.5e-5;
 
 /// Throws InvalidInput, naming `what`, for a voxel size that OpenVDB cannot hold.
 void require_storable(double voxel_size, const std::string& what);

@@ -15,7 +15,7 @@ constexpr std::string_view magic("BESPOKE\n", 8);
 constexpr std::size_t digest_offset = trailer_size - digest_size;
 
 // Of a block. A smaller one would have a table as long as itself, a larger one is no part of a file.
-constexpr std::uint64_t least_block = 1 << 10;
+constexpr std::uint64_t min_block = 1 << 10;
 constexpr std::uint64_t largest_block = 1 << 26;
 
 void append_little_endian(std::string& bytes, std::uint64_t value, int size) {
@@ -108,7 +108,7 @@ Trailer parse_trailer(std::string_view last, std::uint64_t file_size) {
   trailer.form = form_of(little_endian(last.substr(8, 4)));
   const std::uint64_t block = little_endian(last.substr(12, 4));
   require_format(
-      trailer.form == TrailerForm::one_hash ? block == 0 : block >= least_block && block <= largest_block,
+      trailer.form == TrailerForm::one_hash ? block == 0 : block >= min_block && block <= largest_block,
       "trailer is damaged");
   trailer.block_size = block;
   trailer.vdb_size = little_endian(last.substr(16, 8));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bespoke/bake/detail/face_turns.h"
+#include "bespoke/bake/detail/fold_repair.h"
 #include "bespoke/bake/detail/measurement.h"
-#include "bespoke/bake/detail/mend_folds.h"
 #include "bespoke/bake/detail/pyramid_builder.h"
 #include "bespoke/mapping/affine_map.h"
 #include "bespoke/stopwatch.h"
@@ -26,7 +26,7 @@ constexpr int full_rounds = 6;
 constexpr int face_rounds = 8;
 // A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
 // are as small as they get, the worst points stay however often they are found.
-constexpr double most_left_by_a_round = 0.7;
+constexpr double max_left_by_a_round = 0.7;
 // Leaves for folds have rims of their own, at which the tolerance may be missed, and leaves for the tolerance
 // may fold: so often they take turns.
 constexpr int turns = 3;
@@ -39,12 +39,13 @@ class AdaptiveBake {
         progress_(progress),
         builder_(std::make_unique<PyramidBuilder>(
             map,
-            RefinementOptions{options.tolerance, options.max_memory, options.precision, options.nodes,
-                              options.max_leaves, options.surface, options.then, octave_of(map.affine()),
-                              options.then ? octave_of(options.then->affine()) : 1},
+            RefinementOptions{
+                options.tolerance, options.max_memory, options.precision, options.nodes, options.max_leaves,
+                options.surface, options.downstream_map, power_of_two_scale(map.affine()),
+                options.downstream_map ? power_of_two_scale(options.downstream_map->affine()) : 1},
             progress)),
         measurement_(map, builder_->coarsest(), builder_->band(), options, progress),
-        face_turns_(map, options, builder_->least_voxel()) {}
+        face_turns_(map, options, builder_->min_voxel()) {}
 
   Bake run() && {
     refine();
@@ -58,7 +59,7 @@ class AdaptiveBake {
     summary().relaxed = builder_->relaxed();
     builder_.reset();
     repair();
-    summary().turned_faces = face_turns_.turned_faces(result_.pyramid).size();
+    summary().misoriented_faces = face_turns_.misoriented_faces(result_.pyramid).size();
     keep_first_places(result_.certificate);
     return std::move(result_);
   }
@@ -81,7 +82,7 @@ class AdaptiveBake {
   bool turn_faces_back(PyramidBuilder::Purpose purpose) {
     bool refined = false;
     for (int round = 0; round < face_rounds; ++round) {
-      const std::vector<Eigen::Index> turned = face_turns_.turned_faces(result_.pyramid);
+      const std::vector<Eigen::Index> turned = face_turns_.misoriented_faces(result_.pyramid);
       if (!refine_at(face_turns_.places(turned), purpose)) break;
       refined = true;
     }
@@ -121,13 +122,13 @@ class AdaptiveBake {
   void refine_folds() {
     const std::size_t leaves = result_.pyramid.leaf_count();
     bespoke::refine_folds(map_, builder_, result_, progress_);
-    summary().mend_seconds += watch_.lap();
+    summary().repair_seconds += watch_.lap();
     if (result_.pyramid.leaf_count() != leaves) measure();
   }
 
   void repair() {
     repair_all_or_none(map_, result_, progress_);
-    summary().mend_seconds += watch_.lap();
+    summary().repair_seconds += watch_.lap();
     if (summary().repaired_cells > 0) measure();
   }
 
@@ -136,7 +137,7 @@ class AdaptiveBake {
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0; round < local_rounds; ++round) {
       const auto worst = static_cast<double>(measurement_.worst().cols());
-      if (worst == 0 || !(worst < most_left_by_a_round * before) ||
+      if (worst == 0 || !(worst < max_left_by_a_round * before) ||
           !refine_at(measurement_.worst(), PyramidBuilder::Purpose::tolerance))
         return round > 0;
       before = worst;

@@ -30,17 +30,17 @@ FaceTurns::FaceTurns(const ElasticMap& map, const BakeOptions& options, double t
   normals_ = normals(map);
 }
 
-std::vector<Eigen::Index> FaceTurns::turned_faces(Pyramid& pyramid) const {
+std::vector<Eigen::Index> FaceTurns::misoriented_faces(Pyramid& pyramid) const {
   if (faces_.empty()) return {};
   BakedMap baked(map_.affine(), std::move(pyramid));
   const Eigen::VectorXd cosines = normals(baked).cwiseProduct(normals_).colwise().sum();
   pyramid = std::move(baked).release();
-  const double least_cosine = std::cos(options_.most_face_turn * std::numbers::pi / 180);
+  const double min_cosine = std::cos(options_.max_face_turn * std::numbers::pi / 180);
   std::vector<std::pair<double, Eigen::Index>> turned;
   for (std::size_t k = 0; k < faces_.size(); ++k) {
     const auto column = static_cast<Eigen::Index>(k);
     const bool has_normal = normals_.col(column).squaredNorm() > 0;
-    if (has_normal && cosines[column] < least_cosine) turned.emplace_back(cosines[column], faces_[k]);
+    if (has_normal && cosines[column] < min_cosine) turned.emplace_back(cosines[column], faces_[k]);
   }
   std::sort(turned.begin(), turned.end());
   std::vector<Eigen::Index> faces;
@@ -62,7 +62,7 @@ Points FaceTurns::places(const std::vector<Eigen::Index>& faces) const {
 
 Points FaceTurns::normals(const ElasticMap& map) const {
   Points ends = map(options_.surface->vertices);
-  if (options_.then) ends = (*options_.then)(ends);
+  if (options_.downstream_map) ends = (*options_.downstream_map)(ends);
   return face_normals({std::move(ends), options_.surface->faces(Eigen::all, faces_)});
 }
 

@@ -17,9 +17,9 @@ class FaceTurns {
   /// since what is thinner no voxel resolves. Map and options must outlive it.
   FaceTurns(const ElasticMap& map, const BakeOptions& options, double thinnest);
 
-  /// Faces that the pyramid turns by more than BakeOptions::most_face_turn, the farthest first; moves it in
+  /// Faces that the pyramid turns by more than BakeOptions::max_face_turn, the farthest first; moves it in
   /// and out.
-  std::vector<Eigen::Index> turned_faces(Pyramid& pyramid) const;
+  std::vector<Eigen::Index> misoriented_faces(Pyramid& pyramid) const;
 
   /// Corners and middles of faces, 3×4k, mesh units.
   Points places(const std::vector<Eigen::Index>& faces) const;

@@ -126,14 +126,14 @@ std::vector<LeafForecast::Sample> LeafForecast::draw_octants(const std::vector<S
 LeafForecast::LeafForecast(const ElasticMap& map, const Lattice& coarsest,
                            const std::vector<LeafCoordinates>& band, double tolerance, NodeValues nodes,
                            const Progress& progress)
-    : growth_(octave_of(map.affine())) {
+    : growth_(power_of_two_scale(map.affine())) {
   std::mt19937_64 engine(forecast_seed);
   std::vector<Sample> refined;
   for (const LeafCoordinates& leaf : band)
     refined.push_back({leaf, 1, std::numeric_limits<double>::infinity(), coarsest.voxel_size});
   samples_ = refined;
   Lattice fine{coarsest.origin, coarsest.voxel_size / 2};
-  for (; !refined.empty() && fine.voxel_size >= least_voxel(tolerance); fine.voxel_size /= 2) {
+  for (; !refined.empty() && fine.voxel_size >= min_voxel(tolerance); fine.voxel_size /= 2) {
     progress.check();
     std::vector<Sample> octants = draw_octants(refined, engine);
     const std::vector<double> errors = errors_of(map, fine, octants, nodes);
@@ -151,7 +151,7 @@ double LeafForecast::leaves(double tolerance) const {
   for (const Sample& sample : samples_) {
     if (std::isinf(sample.tolerance))
       band += sample.weight;
-    else if (sample.tolerance > tolerance && sample.voxel_size >= least_voxel(tolerance))
+    else if (sample.tolerance > tolerance && sample.voxel_size >= min_voxel(tolerance))
       deeper += sample.weight;
   }
   return band + share_of_rims * deeper;

@@ -13,7 +13,7 @@
 namespace bespoke {
 
 /// Half the tolerance: below it voxels only chase jumps (PyramidBuilder).
-inline constexpr double least_voxel_of_tolerance = 0.5;
+inline constexpr double min_voxel_of_tolerance = 0.5;
 
 /// How many leaves a nested pyramid will take, before they are: a random sample of octants is refined all the
 /// way, a thousand a level, each standing for as many others as were not drawn. What one sample says about
@@ -45,7 +45,7 @@ class LeafForecast {
   std::vector<double> errors_of(const ElasticMap& map, const Lattice& fine,
                                 const std::vector<Sample>& octants, NodeValues nodes);
 
-  double least_voxel(double tolerance) const { return least_voxel_of_tolerance * tolerance / growth_; }
+  double min_voxel(double tolerance) const { return min_voxel_of_tolerance * tolerance / growth_; }
 
   double growth_;  // of the map: tolerances are of its values, voxels of its places
   std::vector<Sample> samples_;

@@ -17,7 +17,7 @@ constexpr double worst_share = 0.75;
 // Of BakeOptions::error_points: points on the surface that the record counts, or that a search takes with
 // several in a cell, and points of a search at most.
 constexpr std::size_t recorded_surface_points = 2;
-constexpr std::size_t most_searched_points = 5;
+constexpr std::size_t max_searched_points = 5;
 
 // Where detail is: as many in a small leaf as in a large one.
 std::vector<FinestCell> cells_in_all_leaves(const Pyramid& pyramid, std::uint64_t seed) {
@@ -102,7 +102,7 @@ const std::vector<FinestCell>& Measurement::surface_cells(const Pyramid& pyramid
 
 double Measurement::search(Pyramid& pyramid, const std::vector<FinestCell>& cells,
                            std::size_t points_per_cell) {
-  const std::size_t one_each = std::min(cells.size(), most_searched_points * options_.error_points);
+  const std::size_t one_each = std::min(cells.size(), max_searched_points * options_.error_points);
   const std::size_t several =
       std::min(points_per_cell * cells.size(), recorded_surface_points * options_.error_points);
   const std::size_t count = std::max(one_each, several);
@@ -111,7 +111,7 @@ double Measurement::search(Pyramid& pyramid, const std::vector<FinestCell>& cell
 
 double Measurement::measure(Pyramid& pyramid, const Points& x) {
   BakedMap baked(map_.affine(), std::move(pyramid));
-  errors_ = displacement_errors(baked, map_, x, progress_, options_.then);
+  errors_ = displacement_errors(baked, map_, x, progress_, options_.downstream_map);
   pyramid = std::move(baked).release();
   std::vector<Eigen::Index> worst;
   for (std::size_t i = 0; i < errors_.size(); ++i)

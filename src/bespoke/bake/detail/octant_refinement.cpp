@@ -122,7 +122,7 @@ LeafTable OctantRefinement::unresolved_leaves(const SampledLevels& levels, std::
   Support unresolved;
   unresolved.frame = support_.frame;
   for (const BallCloud& cloud : support_.clouds)
-    if (cloud.radius < resolving_voxels_per_radius * octave_of(support_.frame) * lattice.voxel_size)
+    if (cloud.radius < resolving_voxels_per_radius * power_of_two_scale(support_.frame) * lattice.voxel_size)
       unresolved.clouds.push_back(cloud);
   return LeafTable(band_leaves(unresolved, lattice));
 }
@@ -153,9 +153,11 @@ double OctantRefinement::error_in(const SampledLevels& levels, std::size_t level
 
 // |found − exact|, or of where what follows the map takes the points with these displacements.
 Eigen::VectorXd OctantRefinement::errors_at(const Points& x, const Points& found, const Points& exact) const {
-  if (!options_.then) return (exact - found).colwise().norm();
+  if (!options_.downstream_map) return (exact - found).colwise().norm();
   const Points images = affine_ * x;
-  return ((*options_.then)(images + exact) - (*options_.then)(images + found)).colwise().norm();
+  return ((*options_.downstream_map)(images + exact) - (*options_.downstream_map)(images + found))
+      .colwise()
+      .norm();
 }
 
 // Rounding error of u as stored where no finer leaf corrects it; that of the quantum is within test_margin.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bespoke/bake/band.h"
-#include "bespoke/bake/detail/rims.h"
+#include "bespoke/bake/detail/level_boundaries.h"
 #include "bespoke/bake/detail/stored_pyramid.h"
 #include "bespoke/bake/leaf_samples.h"
 #include "bespoke/mapping/affine_map.h"
@@ -25,7 +25,7 @@ double largest_radius(const Support& support) {
   double radius = 0;
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0) radius = std::max(radius, cloud.radius);
-  return radius / octave_of(support.frame);
+  return radius / power_of_two_scale(support.frame);
 }
 
 Lattice coarsest_lattice(const Support& support) {
@@ -200,7 +200,7 @@ NodeValues PyramidBuilder::nodes_of(std::size_t level) const {
 }
 
 bool PyramidBuilder::is_finest(std::size_t level) const {
-  return levels_.lattice(level + 1).voxel_size < least_voxel();
+  return levels_.lattice(level + 1).voxel_size < min_voxel();
 }
 
 std::size_t PyramidBuilder::refine_at(const Points& x, Purpose purpose) {

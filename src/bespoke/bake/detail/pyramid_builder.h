@@ -60,7 +60,7 @@ class PyramidBuilder {
   const std::vector<LeafCoordinates>& band() const { return band_; }
   std::size_t evaluated_points() const;
   /// No voxel is smaller, mesh units.
-  double least_voxel() const { return least_voxel_of_tolerance * options_.tolerance_of_places(); }
+  double min_voxel() const { return min_voxel_of_tolerance * options_.tolerance_of_places(); }
   /// What the leaves so far need, values and samples.
   std::size_t byte_count() const { return MemoryBudget::bytes_for(levels_.leaf_count()); }
 

@@ -15,11 +15,11 @@ struct RefinementOptions {
   std::size_t max_memory = 0;  ///< bytes, of all that a bake holds for the leaves at a time
   ValuePrecision precision = ValuePrecision::single;
   NodeValues nodes = NodeValues::balanced;
-  std::optional<std::size_t> max_leaves;  ///< BakeOptions::max_leaves
-  const TriangleMesh* surface = nullptr;  ///< BakeOptions::surface
-  const ElasticMap* then = nullptr;       ///< BakeOptions::then
-  double growth = 1;                      ///< octave_of the map's affine part: sizes grow by it
-  double growth_after = 1;                ///< octave_of that of `then`
+  std::optional<std::size_t> max_leaves;       ///< BakeOptions::max_leaves
+  const TriangleMesh* surface = nullptr;       ///< BakeOptions::surface
+  const ElasticMap* downstream_map = nullptr;  ///< BakeOptions::downstream_map
+  double growth = 1;                           ///< power_of_two_scale the map's affine part: sizes grow by it
+  double growth_after = 1;                     ///< power_of_two_scale that of `then`
 
   /// The tolerance where the map ends, to hold values of u against.
   double tolerance_of_values() const { return tolerance / growth_after; }

@@ -27,7 +27,7 @@ constexpr int levels_upwards = 3;
 constexpr Eigen::Index stencil = 7;
 // A level is given up when so many rounds leave more than this share of its folds.
 constexpr std::size_t patience = 4;
-constexpr double least_left = 0.9;
+constexpr double min_left = 0.9;
 
 using Node = LatticeCoordinates;
 
@@ -146,7 +146,7 @@ RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const std:
       summary.folded = list.places().size();
       left.push_back(summary.folded);
       if (left.size() > patience && static_cast<double>(summary.folded) >
-                                        least_left * static_cast<double>(left[left.size() - 1 - patience]))
+                                        min_left * static_cast<double>(left[left.size() - 1 - patience]))
         break;
     }
   }

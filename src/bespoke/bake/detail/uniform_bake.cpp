@@ -11,9 +11,9 @@
 #include "bespoke/bake/error_points.h"
 #include "bespoke/bake/leaf_samples.h"
 #include "bespoke/certificate/certificate.h"
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
 #include "bespoke/mapping/affine_map.h"
+#include "bespoke/number_format.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -41,7 +41,7 @@ double smallest_radius(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0 && cloud.radius > 0)
       radius = radius > 0 ? std::min(radius, cloud.radius) : cloud.radius;
-  return radius / octave_of(support.frame);
+  return radius / power_of_two_scale(support.frame);
 }
 
 // Too fine a lattice must be refused before its leaves are counted one by one: once a coarser one with the
@@ -77,7 +77,7 @@ double probe_error(const ElasticMap& map, const Points& x, double voxel_size) {
   return error;
 }
 
-std::string short_number(double value) { return in_digits(value, 4); }
+std::string short_number(double value) { return format_number(value, 4); }
 
 UniformEstimate estimate_uniform(const ElasticMap& map, const Lattice& lattice) {
   const Support support = map.support();
@@ -136,11 +136,12 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   result.summary.refine_seconds = watch.lap();
   Measurement(map, lattice, leaves, options, progress).fully(result.pyramid, result.summary);
   constexpr double however_thin = 0;
-  result.summary.turned_faces = FaceTurns(map, options, however_thin).turned_faces(result.pyramid).size();
+  result.summary.misoriented_faces =
+      FaceTurns(map, options, however_thin).misoriented_faces(result.pyramid).size();
   result.summary.measure_seconds = watch.lap();
   // Asked for this size, it has no finer leaves to mend a fold by.
   result.certificate = certify(result.pyramid, map.affine(), 1, progress);
-  result.summary.mend_seconds = watch.lap();
+  result.summary.repair_seconds = watch.lap();
   return result;
 }
 

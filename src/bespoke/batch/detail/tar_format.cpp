@@ -15,9 +15,9 @@ constexpr std::uint64_t block_bytes = 512;
 constexpr std::uint64_t window_bytes = 8192;
 
 // A pax header is read as a whole; a record of a hundred thousand outputs takes 20 MB.
-constexpr std::uint64_t most_pax_bytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t max_pax_bytes = std::uint64_t{1} << 30;
 
-constexpr std::uint64_t most_octal_bytes = (std::uint64_t{1} << 33) - 1;  // eleven digits
+constexpr std::uint64_t max_octal_bytes = (std::uint64_t{1} << 33) - 1;  // eleven digits
 
 // Flags of what a member is.
 constexpr char regular = '0', pax_of_next = 'x', pax_of_all = 'g', gnu_long_name = 'L';
@@ -70,7 +70,7 @@ std::string header_block(const std::string& name, std::uint64_t bytes, std::int6
   put_number(block, mode_field, 0644);
   put_number(block, owner_field, 0);
   put_number(block, group_field, 0);
-  put_number(block, size_field, std::min(bytes, most_octal_bytes));
+  put_number(block, size_field, std::min(bytes, max_octal_bytes));
   put_number(block, time_field, static_cast<std::uint64_t>(std::max<std::int64_t>(modified, 0)));
   block[kind_place] = kind;
   std::memcpy(&block[magic_place], magic.data(), magic.size());
@@ -114,7 +114,7 @@ std::uint64_t padded(std::uint64_t bytes) { return (bytes + block_bytes - 1) / b
 std::string tar_header(const std::string& name, std::uint64_t bytes, std::int64_t modified) {
   std::string records;
   if (name.size() > name_field.bytes) records += pax_record("path", name);
-  if (bytes > most_octal_bytes) records += pax_record("size", std::to_string(bytes));
+  if (bytes > max_octal_bytes) records += pax_record("size", std::to_string(bytes));
   return (records.empty() ? "" : whole_pax(records, pax_of_next)) +
          header_block(name, bytes, modified, regular);
 }
@@ -172,7 +172,7 @@ std::optional<TarMember> TarReader::next() {
     member.end = member.content + padded(member.bytes);
     const bool is_of_next = header->kind == pax_of_next || header->kind == gnu_long_name;
     const bool is_text = is_of_next || header->kind == pax_of_all;
-    if (is_text && member.bytes > most_pax_bytes) return std::nullopt;
+    if (is_text && member.bytes > max_pax_bytes) return std::nullopt;
     const std::string content = is_text ? read(member.content, member.bytes) : std::string();
     if (header->kind == pax_of_next) {
       if (const std::string path = pax_value(content, "path"); !path.empty()) name = path;

@@ -1,6 +1,6 @@
 #include "bespoke/catalog/detail/page_cells.h"
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 #include "bespoke/page/html_text.h"
 
 namespace bespoke {
@@ -25,12 +25,12 @@ std::string table_head(const std::vector<std::string>& headings) {
   return head + "</tr></thead><tbody>\n";
 }
 
-std::string number(double value) { return in_digits(value, 3); }
+std::string number(double value) { return format_number(value, 3); }
 
 std::string number_cell(const std::string& text) { return "<td class=\"n\">" + text + "</td>"; }
 
 std::string proof_cell(const CatalogEntry& entry) {
-  if (entry.bijection) return "<td>bijection, det ≥ " + number(entry.least_determinant) + "</td>";
+  if (entry.bijection) return "<td>bijection, det ≥ " + number(entry.min_determinant) + "</td>";
   return "<td class=\"bad\">" + std::to_string(entry.folded) + " cells fold, " +
          std::to_string(entry.undecided) + " undecided</td>";
 }

@@ -12,7 +12,7 @@ namespace {
 constexpr int largest_number_of_steps = 40;
 constexpr double smallest_step = 1.0 / 64;
 // A step of length s must reduce the residual by this share of s.
-constexpr double least_reduction = 1e-3;
+constexpr double min_reduction = 1e-3;
 // Of an image's coordinates: what its sums and products may round, in units of the last place.
 constexpr double image_rounding = 64 * std::numeric_limits<double>::epsilon();
 
@@ -41,7 +41,7 @@ void advance(Walker& walker, const Image& image, const Vector3& y, double tolera
   if (residual <= std::max(tolerance, image_rounding * image.value.norm())) {
     walker.x = walker.trial();
     walker.state = WalkState::arrived;
-  } else if (residual < (1 - least_reduction * walker.step) * walker.residual) {
+  } else if (residual < (1 - min_reduction * walker.step) * walker.residual) {
     walker.x = walker.trial();
     walker.residual = residual;
     walker.direction = image.jacobian.inverse() * missing;

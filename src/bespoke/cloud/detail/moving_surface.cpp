@@ -10,7 +10,7 @@ namespace {
 // A mean normal shorter than this says nothing: it comes of the middle between sheets that face away from
 // each other, of which the nearer must answer. At 0.5 a single point with a wrong normal outvoted its
 // neighbours.
-constexpr double least_agreement = 0.1;
+constexpr double min_agreement = 0.1;
 
 /// Rational, so that the same cloud gives the same bytes wherever arithmetic is IEEE's; about a Gaussian of
 /// standard deviation h/√8.
@@ -57,7 +57,7 @@ Vector3 MovingSurface::facing(const Vector3& x, const std::vector<int>& near) co
     }
   }
   const double length = sum.norm();
-  return length > least_agreement * weights ? Vector3(sum / length) : nearest;
+  return length > min_agreement * weights ? Vector3(sum / length) : nearest;
 }
 
 std::optional<SurfaceEstimate> MovingSurface::estimate(const Vector3& x, const std::vector<int>& near) const {

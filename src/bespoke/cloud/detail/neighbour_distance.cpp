@@ -23,9 +23,9 @@ double root_of_kth(std::vector<double>& squared, std::size_t k) {
 
 /// The median over some of the points, spread over all of them, each compared with all.
 double usual_distance(const Points& points, std::size_t k) {
-  constexpr std::size_t most_samples = 128;  // the median to a few percent: it only sizes a grid's cells
+  constexpr std::size_t max_samples = 128;  // the median to a few percent: it only sizes a grid's cells
   const auto count = static_cast<std::size_t>(points.cols());
-  const std::size_t samples = std::min(count, most_samples);
+  const std::size_t samples = std::min(count, max_samples);
   std::vector<double> found(samples);
   parallel_for(samples, 1, [&](std::size_t begin, std::size_t end) {
     std::vector<double> squared(count);

@@ -93,8 +93,8 @@ FaceDistances::FaceDistances(const std::vector<Matrix3>& corners, double radius)
   low_ = centers.rowwise().minCoeff();
   const Vector3 extent = centers.rowwise().maxCoeff() - low_;
   // Half the reach leaves rows long enough for the vector unit; the cap bounds the table.
-  constexpr int most_cells_an_axis = 128;
-  cell_ = std::max(reach_ / 2, extent.maxCoeff() / most_cells_an_axis);
+  constexpr int max_cells_an_axis = 128;
+  cell_ = std::max(reach_ / 2, extent.maxCoeff() / max_cells_an_axis);
   for (int axis = 0; axis < 3; ++axis)
     cells_[static_cast<std::size_t>(axis)] = static_cast<int>(extent[axis] / cell_) + 1;
 

@@ -4,14 +4,14 @@
 #include <cstdint>
 #include <ostream>
 
-#include "bespoke/digits.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the headers below say so");
 
-std::string number(double value) { return in_digits(value, 17); }
+std::string number(double value) { return format_number(value, 17); }
 
 std::string numbers(const Vector3& v) { return number(v.x()) + " " + number(v.y()) + " " + number(v.z()); }
 

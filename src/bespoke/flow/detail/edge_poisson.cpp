@@ -12,15 +12,15 @@ namespace {
 
 // Cotangents of obtuse corners are negative, those of needles unbounded. Any positive weight keeps exact what
 // can be met exactly, and the matrix definite.
-constexpr double least_weight = 0.01;
-constexpr double most_weight = 100;
+constexpr double min_weight = 0.01;
+constexpr double max_weight = 100;
 
 /// Of the edge opposite corner k of a face with area.
 double edge_weight(const Points& vertices, const Eigen::Vector3i& face, int k) {
   const Vector3 corner = vertices.col(face[k]);
   const Vector3 a = vertices.col(face[(k + 1) % 3]) - corner;
   const Vector3 b = vertices.col(face[(k + 2) % 3]) - corner;
-  return std::clamp(a.dot(b) / a.cross(b).norm(), least_weight, most_weight);
+  return std::clamp(a.dot(b) / a.cross(b).norm(), min_weight, max_weight);
 }
 
 }  // namespace

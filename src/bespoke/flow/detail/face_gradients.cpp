@@ -10,7 +10,7 @@ namespace bespoke {
 namespace {
 
 // Of the squared bounding-box diagonal: the measure of inspect_mesh for faces without area.
-constexpr double least_area = 1e-14;
+constexpr double min_area = 1e-14;
 
 struct Frame {
   Matrix3 edges;    // two edges and the unit normal, as columns
@@ -32,7 +32,7 @@ Frame frame(const Points& vertices, const Eigen::Vector3i& face) {
 
 FaceGradients face_gradients(const TriangleMesh& source, const Points& fitted) {
   const Eigen::Index count = source.faces.cols();
-  const double threshold = least_area * std::pow(diagonal(source.vertices), 2);
+  const double threshold = min_area * std::pow(diagonal(source.vertices), 2);
   FaceGradients gradients{Points(3, 3 * count), Eigen::VectorXd(count)};
   parallel_for(static_cast<std::size_t>(count), faces_per_chunk, [&](std::size_t begin, std::size_t end) {
     for (auto face = static_cast<Eigen::Index>(begin); face < static_cast<Eigen::Index>(end); ++face) {

@@ -96,11 +96,11 @@ DisplayMesh thinned(const TriangleMesh& mesh, const Cubes& cubes) {
 
 Points DisplayMesh::shown(const Points& of_all) const { return of_all(Eigen::all, original); }
 
-DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t most_faces) {
+DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t max_faces) {
   inspect_mesh(mesh);  // refuses indices out of range
   const bool has_faces = mesh.faces.cols() > 0;
   const auto size = static_cast<std::size_t>(has_faces ? mesh.faces.cols() : mesh.vertices.cols());
-  if (size <= most_faces) {
+  if (size <= max_faces) {
     DisplayMesh whole{std::vector<int>(static_cast<std::size_t>(mesh.vertices.cols())), mesh.faces};
     std::iota(whole.original.begin(), whole.original.end(), 0);
     return whole;
@@ -108,13 +108,13 @@ DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t most_faces) {
   // A surface of n triangles crosses about n / 2 cubes. From there the grid gets coarser until few enough are
   // left.
   const double extent = diagonal(mesh.vertices);
-  double edge = extent / std::sqrt(static_cast<double>(most_faces));
+  double edge = extent / std::sqrt(static_cast<double>(max_faces));
   constexpr double coarser = 1.08;
   for (;; edge *= coarser) {
     const Cubes cubes = cubes_of(mesh.vertices, edge);
     const std::size_t left =
         has_faces ? faces_between(cubes, mesh.faces).size() : static_cast<std::size_t>(cubes.count);
-    if (left <= most_faces) return thinned(mesh, cubes);
+    if (left <= max_faces) return thinned(mesh, cubes);
   }
 }
 

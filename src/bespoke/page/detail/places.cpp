@@ -4,19 +4,19 @@
 #include <map>
 #include <utility>
 
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
 namespace {
 
-constexpr std::size_t most_places = 100;  // of a kind: nobody visits more
-constexpr double group_radius = 0.03;     // of the diagonal: about what a flight to a place shows
+constexpr std::size_t max_places = 100;  // of a kind: nobody visits more
+constexpr double group_radius = 0.03;    // of the diagonal: about what a flight to a place shows
 
 template <class Figure>
 std::string figure(const Figure& value) {
-  return in_digits(value, 4);
+  return format_number(value, 4);
 }
 
 Vector3 nearest_column(const Points& points, const Points& answers, const Vector3& x) {
@@ -32,7 +32,7 @@ void add_folds(const Asset& asset, const TriangleMesh& source, std::vector<Place
     std::vector<FoldedCell> cells = asset.steps[k].certificate.places;
     std::sort(cells.begin(), cells.end(),
               [](const FoldedCell& a, const FoldedCell& b) { return a.determinant < b.determinant; });
-    cells.resize(std::min(cells.size(), most_places));
+    cells.resize(std::min(cells.size(), max_places));
     for (const FoldedCell& cell : cells)
       places.push_back({"folded cells", "det " + figure(cell.determinant) + " at " + figure(cell.center),
                         k == 0 ? cell.center : nearest_column(at_step, source.vertices, cell.center)});
@@ -54,25 +54,25 @@ void add_relaxed(const Json& bake, std::vector<Place>& places) {
   collect(bake);
   for (const Json& step : bake.value("steps", Json::array())) collect(step);
   std::sort(regions.begin(), regions.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  regions.resize(std::min(regions.size(), most_places));
+  regions.resize(std::min(regions.size(), max_places));
   for (const auto& [error, centre] : regions)
     places.push_back(
         {"regions that miss the tolerance", "error " + figure(error) + " around " + figure(centre), centre});
 }
 
-struct RatedVertex {
+struct RankedVertex {
   int vertex = 0;
   double value = 0;
 };
 
 /// Vertices near each other as one place, at the one of the largest value.
-void add_vertices(const std::string& kind, std::vector<RatedVertex> vertices, const TriangleMesh& source,
+void add_vertices(const std::string& kind, std::vector<RankedVertex> vertices, const TriangleMesh& source,
                   bool says_value, std::vector<Place>& places) {
   std::stable_sort(vertices.begin(), vertices.end(),
-                   [](const RatedVertex& a, const RatedVertex& b) { return a.value > b.value; });
+                   [](const RankedVertex& a, const RankedVertex& b) { return a.value > b.value; });
   const double radius = group_radius * diagonal(source.vertices);
-  std::vector<std::pair<RatedVertex, int>> groups;  // and how many vertices
-  for (const RatedVertex& vertex : vertices) {
+  std::vector<std::pair<RankedVertex, int>> groups;  // and how many vertices
+  for (const RankedVertex& vertex : vertices) {
     if (vertex.vertex < 0 || vertex.vertex >= source.vertices.cols())
       throw InvalidInput(kind + ": vertex " + std::to_string(vertex.vertex) + " is not one of the source's " +
                          std::to_string(source.vertices.cols()));
@@ -82,7 +82,7 @@ void add_vertices(const std::string& kind, std::vector<RatedVertex> vertices, co
     });
     if (near != groups.end())
       ++near->second;
-    else if (groups.size() < most_places)
+    else if (groups.size() < max_places)
       groups.push_back({vertex, 1});
   }
   for (const auto& [first, count] : groups) {
@@ -96,7 +96,7 @@ void add_vertices(const std::string& kind, std::vector<RatedVertex> vertices, co
 
 void add_listed(const Json& stage, const char* key, const std::string& kind, const TriangleMesh& source,
                 std::vector<Place>& places) {
-  std::vector<RatedVertex> vertices;
+  std::vector<RankedVertex> vertices;
   for (const Json& vertex : stage.value(key, Json::array())) vertices.push_back({vertex.get<int>(), 0});
   add_vertices(kind, std::move(vertices), source, false, places);
 }
@@ -117,7 +117,7 @@ std::vector<Place> places_to_see(const Asset& asset, const TriangleMesh& source,
     add_listed(stage, "excluded_vertices", "without counterpart: excluded by a patch", source, places);
     add_listed(stage, "stretched_vertices", "stretched too far, following their neighbours", source, places);
   }
-  std::map<std::string, std::vector<RatedVertex>> unmet;
+  std::map<std::string, std::vector<RankedVertex>> unmet;
   if (findings.unmet)
     for (const FitFindings::Unmet& vertex : *findings.unmet)
       unmet[vertex.reason].push_back({vertex.vertex, vertex.residual});

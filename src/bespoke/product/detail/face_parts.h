@@ -36,17 +36,18 @@ class FaceParts {
   std::vector<std::vector<Corner>> parts(std::size_t polygon, const std::vector<Corner>& own,
                                          const Middle& middle) const {
     require_own_corners(polygon, own.size());
-    std::map<int, Corner> said;
+    std::map<int, Corner> vertex_data;
     std::size_t of_file = 0;
     for (const int number : corners(polygon)) {
       const FaceSplits::Corner* const made = between(number);
-      said.emplace(
-          number, made ? middle(said.at(made->before), said.at(made->behind), made->vertex) : own[of_file++]);
+      vertex_data.emplace(
+          number, made ? middle(vertex_data.at(made->before), vertex_data.at(made->behind), made->vertex)
+                       : own[of_file++]);
     }
     std::vector<std::vector<Corner>> result;
     for (int part = first(polygon); part < first(polygon + 1); ++part) {
       result.emplace_back();
-      for (const int number : corners_of_part(part)) result.back().push_back(said.at(number));
+      for (const int number : corners_of_part(part)) result.back().push_back(vertex_data.at(number));
     }
     return result;
   }

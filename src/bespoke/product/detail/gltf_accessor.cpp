@@ -15,7 +15,7 @@ namespace bespoke {
 namespace {
 
 // Without bytes that bound it, a count is taken for a mistake beyond this.
-constexpr std::uint64_t most_zeros = std::uint64_t{1} << 28;
+constexpr std::uint64_t max_zeros = std::uint64_t{1} << 28;
 
 constexpr std::size_t vectors_at_a_time = std::size_t{1} << 16;
 
@@ -92,7 +92,7 @@ class AccessorReader {
     GltfPlace place{accessor.component, accessor.is_normalized, accessor.components, count, 0, 0, 0};
     if (part.has("bufferView"))
       accessor.dense = placed(part, place);
-    else if (count > most_zeros)
+    else if (count > max_zeros)
       part.fail_at("count", "is more than can be without a bufferView");
     accessor.count = count;
     if (part.has("sparse")) accessor.sparse = read_sparse(part.member("sparse"), place);

@@ -19,18 +19,19 @@ bool is_name(const std::string& name, const GltfAccessor& accessor) {
 }
 
 /// The values of the vertices of the file, with room for the others.
-GltfSaid read_said(const GltfPart& list, const std::string& name, const std::vector<GltfAccessor>& accessors,
-                   const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
+GltfVertexData read_vertex_data(const GltfPart& list, const std::string& name,
+                                const std::vector<GltfAccessor>& accessors,
+                                const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
   const GltfAccessor& accessor = accessors[*list.index(name.c_str(), accessors.size())];
   if (accessor.count != middles.own)
     list.fail_at(name.c_str(), "has " + std::to_string(accessor.count) + " values, but there are " +
                                    std::to_string(middles.own) + " positions");
   if (accessor.component == GltfComponent::uint32)
     list.fail_at(name.c_str(), "must be of floats or of 8 or 16 bits, which " + accessor.pointer + " is not");
-  GltfSaid said{read_values(accessor, buffers, 0, accessor.count), accessor.component,
-                accessor.is_normalized};
-  said.values.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(middles.count()));
-  return said;
+  GltfVertexData vertex_data{read_values(accessor, buffers, 0, accessor.count), accessor.component,
+                             accessor.is_normalized};
+  vertex_data.values.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(middles.count()));
+  return vertex_data;
 }
 
 /// Fills what is behind the file's vertices with `middle(a, b)` of the ends' numbers.
@@ -49,15 +50,16 @@ Vector3 direction_at(const GltfValues& values, Eigen::Index i) {
   return values.col(i).head<3>().cast<double>();
 }
 
-void fill_attribute(const std::string& name, bool has_no_middle, GltfSaid& said, const GltfMiddles& middles) {
-  GltfValues& values = said.values;
+void fill_attribute(const std::string& name, bool has_no_middle, GltfVertexData& vertex_data,
+                    const GltfMiddles& middles) {
+  GltfValues& values = vertex_data.values;
   fill(values, middles, [&](Eigen::Index a, Eigen::Index b) -> Eigen::VectorXf {
     if (has_no_middle) return values.col(a);
     if (!is_direction(name)) return mean_of(values, a, b);
     Eigen::VectorXf middle = values.col(a);
     const Vector3 direction = middle_direction(direction_at(values, a), direction_at(values, b));
     // What whole numbers make of a unit vector is not as long, and would be rounded once more.
-    const bool is_rounded = said.component != GltfComponent::real;
+    const bool is_rounded = vertex_data.component != GltfComponent::real;
     middle.head<3>() = (is_rounded ? direction.normalized() : direction).cast<float>();
     return middle;
   });
@@ -66,7 +68,7 @@ void fill_attribute(const std::string& name, bool has_no_middle, GltfSaid& said,
 /// One or several sets of joints and their weights.
 class SkinMiddles {
  public:
-  explicit SkinMiddles(GltfSaidByName& attributes) {
+  explicit SkinMiddles(GltfVertexDataByName& attributes) {
     for (int set = 0;; ++set) {
       const auto joints = attributes.find("JOINTS_" + std::to_string(set));
       const auto weights = attributes.find("WEIGHTS_" + std::to_string(set));
@@ -138,35 +140,36 @@ class SkinMiddles {
     }
   }
 
-  std::vector<GltfSaid*> joints_, weights_;
+  std::vector<GltfVertexData*> joints_, weights_;
 };
 
 }  // namespace
 
-GltfSaidByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
-                                 const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
-  GltfSaidByName result;
+GltfVertexDataByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
+                                       const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
+  GltfVertexDataByName result;
   for (const std::string& name : attributes.names()) {
-    GltfSaid& said = result[name] = read_said(attributes, name, accessors, buffers, middles);
+    GltfVertexData& vertex_data = result[name] =
+        read_vertex_data(attributes, name, accessors, buffers, middles);
     const GltfAccessor& accessor = accessors[*attributes.index(name.c_str(), accessors.size())];
-    fill_attribute(name, is_name(name, accessor), said, middles);
-    if (name == "POSITION") said.component = GltfComponent::real;
+    fill_attribute(name, is_name(name, accessor), vertex_data, middles);
+    if (name == "POSITION") vertex_data.component = GltfComponent::real;
   }
   SkinMiddles(result).fill(middles);
   return result;
 }
 
-GltfSaidByName middle_differences(const GltfPart& target, const GltfSaidByName& attributes,
-                                  const std::vector<GltfAccessor>& accessors,
-                                  const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
-  GltfSaidByName result;
+GltfVertexDataByName middle_differences(const GltfPart& target, const GltfVertexDataByName& attributes,
+                                        const std::vector<GltfAccessor>& accessors,
+                                        const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
+  GltfVertexDataByName result;
   for (const std::string& name : target.names()) {
-    GltfSaid& said = result[name] = read_said(target, name, accessors, buffers, middles);
-    said.component = GltfComponent::real;
-    GltfValues& values = said.values;
+    GltfVertexData& vertex_data = result[name] = read_vertex_data(target, name, accessors, buffers, middles);
+    vertex_data.component = GltfComponent::real;
+    GltfValues& values = vertex_data.values;
     const auto base = attributes.find(name);
     if (!is_direction(name) || base == attributes.end()) {
-      fill_attribute({}, false, said, middles);
+      fill_attribute({}, false, vertex_data, middles);
       continue;
     }
     const GltfValues& own = base->second.values;

@@ -21,24 +21,24 @@ struct GltfMiddles {
 };
 
 /// What a list of a primitive says of every vertex under a name, and how it is stored.
-struct GltfSaid {
+struct GltfVertexData {
   GltfValues values;
   GltfComponent component = GltfComponent::real;
   bool is_normalized = false;
 };
-using GltfSaidByName = std::map<std::string, GltfSaid>;
+using GltfVertexDataByName = std::map<std::string, GltfVertexData>;
 
 /// The attributes of all vertices. In the middle stand means: of directions as long as the ends are, with the
 /// first end's sign of a tangent's frame; of joints and weights those of both ends, of which the largest that
 /// there is room for keep the sum. Whole numbers that are no shares are names, of which one has no middle but
 /// its first end's. Types of components stay, but positions become floats. Throws FormatError naming the JSON
 /// pointer of an attribute that has not one value a vertex.
-GltfSaidByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
-                                 const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
+GltfVertexDataByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
+                                       const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
 
 /// The same of a morph target, whose differences from these attributes become floats.
-GltfSaidByName middle_differences(const GltfPart& target, const GltfSaidByName& attributes,
-                                  const std::vector<GltfAccessor>& accessors,
-                                  const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
+GltfVertexDataByName middle_differences(const GltfPart& target, const GltfVertexDataByName& attributes,
+                                        const std::vector<GltfAccessor>& accessors,
+                                        const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
 
 }  // namespace bespoke

@@ -237,33 +237,34 @@ class GltfSplitter {
   /// The attributes and morph targets with values of the middles as well.
   GltfJson stored_lists(const GltfPart& primitive, const GltfMiddles& middles) {
     const GltfPart attributes = primitive.member("attributes");
-    const GltfSaidByName said = middle_attributes(attributes, accessors_, file_.buffers, middles);
+    const GltfVertexDataByName vertex_data =
+        middle_attributes(attributes, accessors_, file_.buffers, middles);
     GltfJson lists;
-    lists["attributes"] = stored_list(attributes, said);
+    lists["attributes"] = stored_list(attributes, vertex_data);
     for (const GltfPart& target : primitive.elements("targets"))
       lists["targets"].push_back(
-          stored_list(target, middle_differences(target, said, accessors_, file_.buffers, middles)));
+          stored_list(target, middle_differences(target, vertex_data, accessors_, file_.buffers, middles)));
     return lists;
   }
 
-  GltfJson stored_list(const GltfPart& list, const GltfSaidByName& said) {
+  GltfJson stored_list(const GltfPart& list, const GltfVertexDataByName& vertex_data) {
     GltfJson result = GltfJson::object();
     for (const std::string& name : list.names())
-      result[name] = store(*list.index(name.c_str(), accessors_.size()), said.at(name));
+      result[name] = store(*list.index(name.c_str(), accessors_.size()), vertex_data.at(name));
     return result;
   }
 
   /// As the accessor `source` but for its values.
-  std::size_t store(std::size_t source, const GltfSaid& said) {
-    const bool is_normalized = said.is_normalized && said.component != GltfComponent::real;
+  std::size_t store(std::size_t source, const GltfVertexData& vertex_data) {
+    const bool is_normalized = vertex_data.is_normalized && vertex_data.component != GltfComponent::real;
     const GltfPlace place = add_view(json_, file_.buffers,
-                                     {said.component, is_normalized, accessors_[source].components,
-                                      static_cast<std::size_t>(said.values.cols()), buffer()},
+                                     {vertex_data.component, is_normalized, accessors_[source].components,
+                                      static_cast<std::size_t>(vertex_data.values.cols()), buffer()},
                                      GltfTarget::vertices);
-    file_.buffers[place.buffer].replace(rows_of_values(place, said.values));
+    file_.buffers[place.buffer].replace(rows_of_values(place, vertex_data.values));
     GltfJson accessor = file_.json["accessors"][source];
     if (!is_normalized) accessor.erase("normalized");
-    update_bounds(accessor, said.component, is_normalized, said.values);
+    update_bounds(accessor, vertex_data.component, is_normalized, vertex_data.values);
     return store(source, std::move(accessor), place);
   }
 

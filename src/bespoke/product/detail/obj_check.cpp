@@ -123,11 +123,11 @@ void sort_unique(Uses& uses) {
 class UseTable {
  public:
   /// A number that no file of so many bytes can have a normal for takes no memory: it is refused at the end.
-  explicit UseTable(std::uint64_t bytes) : most_normals_(bytes / std::string_view("vn 0 0 0").size()) {}
+  explicit UseTable(std::uint64_t bytes) : max_normals_(bytes / std::string_view("vn 0 0 0").size()) {}
 
   void add(const Uses& uses, ObjContent& content) {
     for (const auto& [normal, position] : uses) {
-      if (normal >= most_normals_) continue;
+      if (normal >= max_normals_) continue;
       if (normal >= content.first_use.size()) content.first_use.resize(normal + 1, ObjContent::unused);
       std::uint32_t& first = content.first_use[normal];
       if (first == ObjContent::unused)
@@ -141,7 +141,7 @@ class UseTable {
   }
 
  private:
-  std::uint64_t most_normals_;
+  std::uint64_t max_normals_;
   std::size_t unique_ = 0;
 };
 

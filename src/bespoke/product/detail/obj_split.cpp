@@ -18,7 +18,7 @@ namespace bespoke {
 namespace {
 
 constexpr std::array<const char*, obj_kinds> kind_keywords{"v", "vt", "vn"};
-constexpr int least_decimals = 6;  // of new numbers that are no position
+constexpr int min_decimals = 6;  // of new numbers that are no position
 
 /// The mean of two; of normals as long as they are in the mean.
 std::vector<ObjVertexData::Number> middle_numbers(std::size_t kind,
@@ -124,7 +124,7 @@ class Writer {
         obj_(obj),
         parts_(parts),
         position_decimals_(position_decimals(found.box, found.position_decimals)),
-        normal_decimals_(std::max(least_decimals, found.normal_decimals.decimals())) {}
+        normal_decimals_(std::max(min_decimals, found.normal_decimals.decimals())) {}
 
   std::string run() const {
     std::vector<TextEdit> edits;
@@ -166,7 +166,7 @@ class Writer {
 
   int decimals(std::size_t kind, std::size_t k, const ObjVertexData::Number& number) const {
     if (kind == obj_position && k < 3) return position_decimals_;
-    return kind == obj_normal ? normal_decimals_ : std::max(least_decimals, number.decimals);
+    return kind == obj_normal ? normal_decimals_ : std::max(min_decimals, number.decimals);
   }
 
   void renumber(const ObjElement& element, std::vector<TextEdit>& edits) const {

@@ -95,7 +95,7 @@ void count_obj(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
 }
 
 std::optional<ObjCorner> read_corner(std::string_view word) {
-  constexpr std::ptrdiff_t most_digits = 18;  // which a long long holds
+  constexpr std::ptrdiff_t max_digits = 18;  // which a long long holds
   ObjCorner corner;
   const char* at = word.data();
   const char* const end = at + word.size();
@@ -106,7 +106,7 @@ std::optional<ObjCorner> read_corner(std::string_view word) {
     const char* const digits = at;
     long long& index = corner.index[kind];
     for (; at != end && *at >= '0' && *at <= '9'; ++at) {
-      if (at - digits == most_digits) return std::nullopt;
+      if (at - digits == max_digits) return std::nullopt;
       index = 10 * index + (*at - '0');
     }
     if (counts_back) index = -index;

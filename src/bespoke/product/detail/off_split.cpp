@@ -42,7 +42,7 @@ class OffSplitter {
     std::vector<TextEdit> faces;
     for (std::size_t face = 0; face < header_.faces; ++face)
       add_face(lines_[header_.vertices + face], face, faces);
-    std::vector<TextEdit> edits = mended_counts();
+    std::vector<TextEdit> edits = repaired_counts();
     edits.push_back({{vertices_end_, 0}, made_vertices()});
     edits.insert(edits.end(), faces.begin(), faces.end());
     return edited(text_, {}, std::move(edits));
@@ -134,7 +134,7 @@ class OffSplitter {
   }
 
   /// The number of edges may be missing, or 0 where nobody counted them.
-  std::vector<TextEdit> mended_counts() {
+  std::vector<TextEdit> repaired_counts() {
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
     const std::array<std::size_t, off_counts> now{

@@ -15,7 +15,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t most_names = 100;  // that a message lists
+constexpr std::size_t max_names = 100;  // that a message lists
 
 using Place = std::array<double, 3>;
 
@@ -117,10 +117,10 @@ void refuse_part(const std::string& name, const std::string& known, const std::f
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), most_names); ++i)
+  for (std::size_t i = 0; i < std::min(names.size(), max_names); ++i)
     text.append(i > 0 ? ", " : "").append(names[i]);
-  if (names.size() > most_names)
-    text.append(" and ").append(std::to_string(names.size() - most_names)).append(" more");
+  if (names.size() > max_names)
+    text.append(" and ").append(std::to_string(names.size() - max_names)).append(" more");
   return text;
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bespoke/digits.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/product/detail/ply_binary.h"
 #include "bespoke/product/detail/ply_scalar.h"
 #include "bespoke/product/detail/ply_text.h"
@@ -132,7 +132,7 @@ void PlyRecords::append(std::string& to, std::size_t element, const PlyValues& v
   const auto require = [&](PlyScalar type, double value, const PlyProperty& property) {
     if (!holds(type, value))
       throw InvalidInput(name_ + ": the type of the property " + property.name + " of the element " +
-                         header_.elements[element].name + " does not hold " + in_digits(value, 17) +
+                         header_.elements[element].name + " does not hold " + format_number(value, 17) +
                          ", which splitting edges needs; give it a wider one");
   };
   if (is_text() && !to.empty() && to.back() != '\n') to += line_break_;  // the file's last line has none

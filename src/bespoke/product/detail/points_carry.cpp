@@ -7,7 +7,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/text_records.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

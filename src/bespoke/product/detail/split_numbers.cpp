@@ -9,7 +9,7 @@
 namespace bespoke {
 namespace {
 
-constexpr int least_real_decimals = 6;  // of new numbers that are no position
+constexpr int min_real_decimals = 6;  // of new numbers that are no position
 
 }  // namespace
 
@@ -23,7 +23,7 @@ SplitNumber split_number(std::string_view word) {
 SplitNumber middle_number(const SplitNumber& a, const SplitNumber& b, bool is_whole) {
   const double mean = 0.5 * (a.value + b.value);
   return {
-      is_whole ? std::floor(mean + 0.5) : mean, std::max({a.decimals, b.decimals, least_real_decimals}), {}};
+      is_whole ? std::floor(mean + 0.5) : mean, std::max({a.decimals, b.decimals, min_real_decimals}), {}};
 }
 
 void append_number(std::string& to, const SplitNumber& number, bool is_whole) {

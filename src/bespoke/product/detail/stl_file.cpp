@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bespoke/error.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

@@ -11,7 +11,7 @@
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/split_numbers.h"
 #include "bespoke/product/detail/stl_file.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {

@@ -6,7 +6,7 @@ namespace bespoke {
 namespace {
 
 // A number may carry more decimals than a double of its size can tell apart.
-constexpr int most_decimals = 400;
+constexpr int max_decimals = 400;
 
 template <class Edit, class Begin>
 void sort_by(std::vector<Edit>& edits, const Begin& begin) {
@@ -30,7 +30,7 @@ void add_edits(const std::vector<NumberTriple>& triples, const Points& moved, in
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const NumberText& number = triples[i][axis];
       edits.push_back({number, moved(static_cast<Eigen::Index>(axis), static_cast<Eigen::Index>(i)),
-                       std::min(std::max<int>(decimals, number.decimals), most_decimals)});
+                       std::min(std::max<int>(decimals, number.decimals), max_decimals)});
     }
 }
 

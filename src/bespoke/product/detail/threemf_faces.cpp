@@ -12,8 +12,8 @@ namespace bespoke {
 namespace {
 
 // Objects may show others many times over; beyond these a file of a few lines would take all memory or time.
-constexpr std::size_t most_triangles = 100'000'000;
-constexpr std::size_t most_places = 1'000'000;
+constexpr std::size_t max_triangles = 100'000'000;
+constexpr std::size_t max_places = 1'000'000;
 constexpr int deepest = 64;  // a circle of components has no end
 
 class ThreemfFaces {
@@ -44,7 +44,7 @@ class ThreemfFaces {
     if (at == model.objects.end())
       fail(from + line, "names the object " + std::to_string(place.object) + ", which is not in " + holder);
     if (depth == deepest) fail(from + line, "components nest too deep, or in a circle");
-    if (++places_ > most_places) fail(from + line, "components show too many objects");
+    if (++places_ > max_places) fail(from + line, "components show too many objects");
     const AffineMap combined{to_build.linear * place.to_outer.linear, to_build * place.to_outer.offset};
     add(at->second, combined, from + line);
     for (const ThreemfPlace& component : at->second.components) show(component, holder, combined, depth + 1);
@@ -53,8 +53,8 @@ class ThreemfFaces {
   void add(const ThreemfObject& object, const AffineMap& to_build, const std::string& where) {
     triangles_ += object.corners.size() / 3;
     vertices_ += object.coordinates.size() / 3;
-    if (triangles_ > most_triangles || vertices_ > most_triangles)
-      fail(where, "the build shows more than " + std::to_string(most_triangles) + " triangles or vertices");
+    if (triangles_ > max_triangles || vertices_ > max_triangles)
+      fail(where, "the build shows more than " + std::to_string(max_triangles) + " triangles or vertices");
     const double determinant = to_build.linear.determinant();
     if (!(std::abs(determinant) > 0)) fail(where, "its transform flattens the object");
     const Points vertices = Eigen::Map<const Points>(

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "bespoke/enum_names.h"
 #include "bespoke/error.h"
-#include "bespoke/named.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/number_text.h"
 #include "bespoke/product/detail/text_blocks.h"

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "bespoke/error.h"
-#include "bespoke/words.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 namespace {
@@ -21,7 +21,7 @@ constexpr std::uint64_t wide_extra = 1;  // the extra field with the numbers tha
 constexpr std::uint64_t in_wide_extra = 0xffffffff;
 
 constexpr int is_stored = 0, is_deflated = 8;
-constexpr std::uint64_t most_expansion = 200;
+constexpr std::uint64_t max_expansion = 200;
 constexpr std::size_t piece_size = std::size_t{1} << 18;
 
 /// The little-endian number of these bytes.
@@ -155,7 +155,7 @@ void ZipFile::read(const ZipEntry& entry, const std::function<bool(std::string_v
   if (entry.method != is_stored && entry.method != is_deflated)
     fail(entry.name + " is compressed by method " + std::to_string(entry.method) +
          "; only deflate (8) is read");
-  if (entry.size / most_expansion > entry.stored_size)
+  if (entry.size / max_expansion > entry.stored_size)
     fail(entry.name + " would expand to " + std::to_string(entry.size) + " bytes from " +
          std::to_string(entry.stored_size) + ", which no list of numbers does");
   const std::uint64_t data = data_of(entry);

@@ -36,7 +36,7 @@ void AnchorLimits::reinforce(const Eigen::VectorXd& residuals) {
     if (sigmas_[k] > 0) ratios.push_back(residuals[k] / (expected * sigmas_[k]));
   if (ratios.empty()) return;
   const double ratio = summarize(std::move(ratios)).median;
-  const double change = std::clamp(ratio * ratio, 1 / settings_.most_reinforced, settings_.most_reinforced);
+  const double change = std::clamp(ratio * ratio, 1 / settings_.max_reinforced, settings_.max_reinforced);
   reinforcement_ = std::max(1.0, reinforcement_ * change);
 }
 

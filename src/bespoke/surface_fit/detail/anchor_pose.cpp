@@ -52,7 +52,7 @@ class PosingByAnchors::Nodes {
     for (const auto& anchor : input.anchor_sources.colwise())
       anchors_.push_back(follower(input.rest, *tree.closest(anchor), anchor));
     targets_ = input.anchor_targets.transpose();
-    const double least = settings.least_sigma * input.diagonal;
+    const double least = settings.min_sigma * input.diagonal;
     const double edge_sigma = settings.edge_misfit * nodes_.spacing;
     for (const double sigma : input.sigmas)
       anchor_weights_.push_back(std::pow(edge_sigma / std::hypot(sigma, least), 2));
@@ -214,26 +214,26 @@ class PosingByAnchors::Nodes {
 PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSettings& settings)
     : input_(input), settings_(settings) {
   if (input.anchor_sources.cols() == 0) return;
-  few_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
+  coarse_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
   for (int iteration = 0; iteration < settings.iterations[0]; ++iteration) {
     // A large β first spreads a turn over a whole limb; a small one later lets it gather at the joint.
     const double share = double(iteration) / std::max(1, settings.iterations[0] - 1);
-    few_->iterate(settings.first_smoothness *
-                  std::pow(settings.last_smoothness / settings.first_smoothness, share));
+    coarse_->iterate(settings.first_smoothness *
+                     std::pow(settings.last_smoothness / settings.first_smoothness, share));
   }
 }
 
 PosingByAnchors::~PosingByAnchors() = default;
 
-double PosingByAnchors::rotation_spread() const { return few_ ? few_->rotation_spread() : 0; }
+double PosingByAnchors::rotation_spread() const { return coarse_ ? coarse_->rotation_spread() : 0; }
 
 AnchorPose PosingByAnchors::bent() const {
   AnchorPose result{input_.rest.vertices, input_.anchor_sources};
-  if (!few_) return result;
+  if (!coarse_) return result;
   Nodes many(input_, settings_, settings_.nodes[1]);
-  many.start_from(*few_);
+  many.start_from(*coarse_);
   // A surface resists bending by β h².
-  const double smoothness = settings_.last_smoothness * std::pow(few_->spacing() / many.spacing(), 2);
+  const double smoothness = settings_.last_smoothness * std::pow(coarse_->spacing() / many.spacing(), 2);
   for (int iteration = 0; iteration < settings_.iterations[1]; ++iteration) many.iterate(smoothness);
   constexpr std::size_t grain = 256;
   parallel_for(static_cast<std::size_t>(result.vertices.cols()), grain,

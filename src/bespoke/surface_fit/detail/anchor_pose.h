@@ -44,7 +44,7 @@ class PosingByAnchors {
   class Nodes;
   AnchorPoseInput input_;
   PoseSettings settings_;
-  std::unique_ptr<Nodes> few_;  // null without anchors
+  std::unique_ptr<Nodes> coarse_;  // null without anchors
 };
 
 }  // namespace bespoke

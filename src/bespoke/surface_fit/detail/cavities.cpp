@@ -1,6 +1,6 @@
 #include "bespoke/surface_fit/detail/cavities.h"
 
-#include "bespoke/mesh/sight.h"
+#include "bespoke/mesh/visibility.h"
 #include "bespoke/parallel.h"
 #include "bespoke/surface_fit/detail/reciprocity.h"
 
@@ -9,9 +9,9 @@ namespace bespoke {
 std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, const TargetSurface& target,
                                                double diagonal, const CavitySettings& settings) {
   const MatchLimits limits{settings.min_cosine, settings.reach * diagonal};
-  const Sight source_sight(source.mesh()), target_sight(target.mesh());
-  const auto faces = [&](const Sight& sight, const Vector3& x, const Vector3& normal) {
-    return sight.is_blocked(x, normal, FaceSides::front, limits.max_distance);
+  const VisibilityQuery source_visibility(source.mesh()), target_visibility(target.mesh());
+  const auto faces = [&](const VisibilityQuery& visibility, const Vector3& x, const Vector3& normal) {
+    return visibility.is_blocked(x, normal, FaceSides::front, limits.max_distance);
   };
   const Points& vertices = source.mesh().vertices;
   std::vector<char> hidden(static_cast<std::size_t>(vertices.cols()), 0);
@@ -21,11 +21,11 @@ std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, cons
       const Vector3 x = vertices.col(static_cast<Eigen::Index>(k));
       const Vector3 normal = source.normals().col(static_cast<Eigen::Index>(k));
       const auto counterpart = target.match(x, normal, limits);
-      if (!counterpart || !faces(source_sight, x, normal) ||
-          faces(target_sight, counterpart->point, counterpart->normal))
+      if (!counterpart || !faces(source_visibility, x, normal) ||
+          faces(target_visibility, counterpart->point, counterpart->normal))
         continue;
       const auto claim = nearer_claim({x, *counterpart, limits}, source, settings.much_nearer);
-      hidden[k] = claim && !faces(source_sight, claim->point, claim->normal);
+      hidden[k] = claim && !faces(source_visibility, claim->point, claim->normal);
     }
   });
   return hidden;

@@ -16,10 +16,10 @@
 #include "bespoke/surface_fit/detail/anchor_pose.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
-#include "bespoke/surface_fit/detail/lacking_linings.h"
+#include "bespoke/surface_fit/detail/misoriented_faces.h"
 #include "bespoke/surface_fit/detail/node_fit.h"
 #include "bespoke/surface_fit/detail/similarity_fit.h"
-#include "bespoke/surface_fit/detail/turned_faces.h"
+#include "bespoke/surface_fit/detail/unmatched_cavities.h"
 
 namespace bespoke {
 namespace {
@@ -36,13 +36,14 @@ struct SurfaceAnchors {
 
 /// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
 /// their anchors are from the source, were that `octave` times as large.
-void lay_on_target(const TriangleMesh& source, const TriangleMesh& target, double octave,
-                   SurfaceAnchors& anchors) {
+void register_by_similarity(const TriangleMesh& source, const TriangleMesh& target, double size_scale,
+                            SurfaceAnchors& anchors) {
   if (!(anchors.sigmas.array() > 0).any()) return;
   const ClosestPointTree source_surface(source), target_surface(target);
   for (Eigen::Index k = 0; k < anchors.sigmas.size(); ++k) {
     if (!(anchors.sigmas[k] > 0)) continue;
-    const double wanted = octave * octave * source_surface.closest(anchors.sources.col(k))->squared_distance;
+    const double wanted =
+        size_scale * size_scale * source_surface.closest(anchors.sources.col(k))->squared_distance;
     const SurfacePoint foot = *target_surface.closest(anchors.targets.col(k));
     if (foot.squared_distance > wanted)
       anchors.targets.col(k) =
@@ -66,7 +67,7 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
     else if (std::isinf(anchors.weights[k]))
       anchors.exact.push_back(k);
   }
-  lay_on_target(input.source, input.target, input.octave(), anchors);
+  register_by_similarity(input.source, input.target, input.size_scale(), anchors);
   return anchors;
 }
 
@@ -223,7 +224,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
     degrees_by_anchors();
   } else {
     NodeFitting straight = fitting(scene.surface, anchors, false);
-    if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.least_rigid_turn))
+    if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.min_rigid_turn))
       return straight.fit_fine();
   }
   summary.posed_by_anchors = true;
@@ -243,19 +244,19 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
   scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
-  MendingSettings mending = settings.mending;
-  mending.most_stretch = options.max_stretch;
+  FaceRepairSettings face_repair = settings.face_repair;
+  face_repair.max_stretch = options.max_stretch;
   const TriangleMesh coarse{nodes.coarse_vertices, scene.surface.faces};
-  MendedSurface mended = mend_turned_faces({shape, coarse, details.vertices}, mending);
+  RepairedSurface mended = repair_misoriented_faces({shape, coarse, details.vertices}, face_repair);
   scene.exact_sources = details.anchor_sources;
-  if (mended.mended_vertices > 0)
+  if (mended.repaired_vertices > 0)
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
   const TriangleMesh rest{shape, scene.surface.faces};
-  const LaidSurface laid{rest, mended.vertices};
+  const RegisteredSurface laid{rest, mended.vertices};
   scene.surface.vertices =
-      carried_by_space(laid, nodes.lacking, nodes.linings.contains, settings.nodes.linings);
+      carried_by_space(laid, nodes.lacking, nodes.cavities.contains, settings.nodes.cavities);
 
-  summary.mended_vertices = mended.mended_vertices;
+  summary.repaired_vertices = mended.repaired_vertices;
   summary.stretched_vertices = std::move(mended.stretched_vertices);
   summary.iterations = nodes.iterations + details.layers;
   summary.rigidity = nodes.rigidity;
@@ -287,7 +288,7 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
     throw InvalidInput("a largest stretch of " + std::to_string(options.max_stretch) +
                        "; it must be above 1");
   DeformationGraphSettings settings;
-  if (!options.tell_rigidity) settings.nodes.shape.most_rigid = 1;
+  if (!options.tell_rigidity) settings.nodes.shape.max_rigid = 1;
   PatchedMesh source = refined_source(input, settings.edges_per_area);
   const PatchedMesh attracting = without_excluded(input.target, input.target_patches);
   const TargetSurface target(attracting.mesh, attracting.patches);

@@ -11,9 +11,9 @@ namespace bespoke {
 /// where it explains the target nothing else is fitted (similarity_fit.h). Else, where the anchors turn a
 /// part beyond a right angle, they bend the source first (anchor_pose.h). Then a smooth deformation of nodes
 /// (node_fit.h), then layers of space (detail_layers.h), and faces that these turned over are taken back
-/// (turned_faces.h). Closest points on the target's boundary do not attract; a boundary of the source meets
-/// the target's where both are plausibly the same cut (boundary_match.h). Exact anchors are met up to 1e-3 of
-/// what the layers left; soft ones pull like their weight in per cent of the surface.
+/// (misoriented_faces.h). Closest points on the target's boundary do not attract; a boundary of the source
+/// meets the target's where both are plausibly the same cut (boundary_match.h). Exact anchors are met up to
+/// 1e-3 of what the layers left; soft ones pull like their weight in per cent of the surface.
 ///
 /// An anchor farther from the source's surface than the spacing of the finest nodes pulls on nothing: what
 /// the nodes resolve does not reach it, and the point of the surface nearest to it is not what was paired.

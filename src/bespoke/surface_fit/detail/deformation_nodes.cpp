@@ -17,7 +17,7 @@ namespace {
 using Near = std::pair<double, int>;  // distance, node: sorts by distance, then by index
 
 /// 1 for the vertices of components large enough to carry nodes of their own.
-std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing, double least_carried_area) {
+std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing, double min_carried_area) {
   DisjointSets components(static_cast<int>(mesh.vertices.cols()));
   for (const auto& face : mesh.faces.colwise())
     for (int k = 0; k < 2; ++k) components.join(face[k], face[k + 1]);
@@ -31,7 +31,7 @@ std::vector<char> carries_nodes(const TriangleMesh& mesh, double spacing, double
     carries[i] = component_area[components.least(i)] >= spacing * spacing ? 1 : 0;
     if (carries[i]) carried += areas[i];
   }
-  if (carried < least_carried_area * areas.sum()) carries.assign(carries.size(), 0);
+  if (carried < min_carried_area * areas.sum()) carries.assign(carries.size(), 0);
   return carries;
 }
 
@@ -79,7 +79,7 @@ Sampling sample(const TriangleMesh& mesh, double spacing, const NodeSettings& se
   Sampling sampling;
   const std::size_t count = static_cast<std::size_t>(mesh.vertices.cols());
   sampling.near.resize(count);
-  const std::vector<char> carries = carries_nodes(mesh, spacing, settings.least_carried_area);
+  const std::vector<char> carries = carries_nodes(mesh, spacing, settings.min_carried_area);
   if (std::find(carries.begin(), carries.end(), 1) == carries.end()) {
     sampling.node_vertices = thin_points(mesh.vertices, spacing);
   } else {

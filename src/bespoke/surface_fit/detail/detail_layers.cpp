@@ -244,8 +244,8 @@ DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings)
     fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
     ++fit.layers;
     moves = input.anchor_targets - fit.anchor_sources;
-  } while (fit.layers < settings.most_meetings &&
-           moves.colwise().norm().maxCoeff() > settings.met * input.diagonal);
+  } while (fit.layers < settings.max_anchor_passes &&
+           moves.colwise().norm().maxCoeff() > settings.tolerance * input.diagonal);
   return fit;
 }
 

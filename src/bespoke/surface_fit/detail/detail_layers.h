@@ -34,7 +34,7 @@ struct DetailFit {
 DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, const Progress& progress);
 
 /// A layer that carries the exact anchors onto their targets and vanishes a short way off, and others after
-/// it while these are missed by more than DetailSettings::met.
+/// it while these are missed by more than DetailSettings::tolerance.
 DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings = {});
 
 }  // namespace bespoke

@@ -40,7 +40,7 @@ Eigen::SparseMatrix<double> umbrella_system(const TriangleMesh& mesh,
 /// I + L without the ones of the unmatched vertices. It differs from the factored matrix in a few diagonal
 /// entries: conjugate gradients preconditioned by the factor need few steps, and no new factorisation.
 struct UnmatchedSystem {
-  static constexpr int most_steps = 50;
+  static constexpr int max_steps = 50;
   static constexpr double relative_residual = 1e-5;  // of a displacement: far below what a step changes
 
   const Eigen::SparseMatrix<double>& matrix;
@@ -54,7 +54,7 @@ struct UnmatchedSystem {
   Points precondition(const Points& residual) const { return factor.solve(residual.transpose()).transpose(); }
   Vector3 products(const Points& a, const Points& b) const { return a.cwiseProduct(b).rowwise().sum(); }
   bool solved(const Points&, const Vector3& product, int steps) const {
-    return steps == most_steps || (product.array() <= enough.array()).all();
+    return steps == max_steps || (product.array() <= enough.array()).all();
   }
 };
 

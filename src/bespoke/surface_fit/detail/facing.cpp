@@ -7,10 +7,10 @@
 namespace bespoke {
 
 bool faces_away(const TriangleMesh& source, const TriangleMesh& target) {
-  constexpr Eigen::Index most_vertices = 2000;
+  constexpr Eigen::Index max_vertices = 2000;
   const ClosestPointTree tree(target);
   const Points normals = vertex_normals(source), target_normals = face_normals(target);
-  const Eigen::Index stride = std::max<Eigen::Index>(1, normals.cols() / most_vertices);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, normals.cols() / max_vertices);
   Eigen::Index asked = 0, against = 0;
   for (Eigen::Index i = 0; i < normals.cols(); i += stride, ++asked) {
     const auto nearest = tree.closest(source.vertices.col(i));
@@ -19,7 +19,7 @@ bool faces_away(const TriangleMesh& source, const TriangleMesh& target) {
   return 3 * against > 2 * asked;
 }
 
-TriangleMesh turned_over(TriangleMesh mesh) {
+TriangleMesh flipped(TriangleMesh mesh) {
   mesh.faces.row(1).swap(mesh.faces.row(2));
   return mesh;
 }

@@ -10,6 +10,6 @@ namespace bespoke {
 bool faces_away(const TriangleMesh& source, const TriangleMesh& target);
 
 /// The mesh with every face turned over.
-TriangleMesh turned_over(TriangleMesh mesh);
+TriangleMesh flipped(TriangleMesh mesh);
 
 }  // namespace bespoke

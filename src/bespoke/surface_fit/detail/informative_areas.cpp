@@ -25,7 +25,8 @@ Eigen::VectorXd informative_areas(const TargetSurface& surface, double diagonal,
   Eigen::VectorXd informative(areas.size());
   const double unit = settings.length * settings.length * diagonal * diagonal;
   for (Eigen::Index i = 0; i < areas.size(); ++i)
-    informative[i] = areas[i] * (1 + std::min(settings.most, unit * curvature[i] / std::max(1.0, edges[i])));
+    informative[i] =
+        areas[i] * (1 + std::min(settings.max_weight, unit * curvature[i] / std::max(1.0, edges[i])));
   const double sum = informative.sum();
   return sum > 0 ? Eigen::VectorXd(informative * (areas.sum() / sum)) : areas;
 }

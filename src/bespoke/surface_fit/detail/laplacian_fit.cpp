@@ -79,7 +79,7 @@ SnappedAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffnes
   const ClosestPointTree target(input.target);
   ClosestPointQuery near_source, near_target;
   near_source.max_distance = on_surface * diagonal(input.source.vertices);
-  near_target.max_distance = input.octave() * near_source.max_distance;
+  near_target.max_distance = input.size_scale() * near_source.max_distance;
   SnappedAnchors result;
   std::vector<Vector3> targets;
   for (Eigen::Index k = 0; k < input.anchor_sources.cols(); ++k) {
@@ -133,11 +133,11 @@ Snapped snap(const Correspondence& found, const SnappedAnchors& anchors, const T
 /// Puts vertices whose snap turned a face over back to where the smooth displacements brought them.
 void undo_turning_snaps(const TriangleMesh& smooth, Snapped& snapped) {
   // Taking a vertex back can turn a neighbouring face that was fine; few rounds settle that.
-  constexpr int most_rounds = 20;
+  constexpr int max_rounds = 20;
   const Points smooth_normals = face_normals(smooth);
   Points& vertices = snapped.mesh.vertices;
   bool taken_back = true;
-  for (int round = 0; round < most_rounds && taken_back; ++round) {
+  for (int round = 0; round < max_rounds && taken_back; ++round) {
     const Points normals = face_normals(snapped.mesh);
     taken_back = false;
     for (Eigen::Index face = 0; face < normals.cols(); ++face) {
@@ -176,7 +176,7 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
                                  const Progress& progress) {
   const Stopwatch watch;
   const LaplacianAdditions& additions = options.laplacian;
-  const double epsilon = options.epsilon * input.octave() * diagonal(input.source.vertices);
+  const double epsilon = options.epsilon * input.size_scale() * diagonal(input.source.vertices);
   SurfaceFit fit;
   SurfaceFitSummary& summary = fit.summary;
   summary.stiffness = stiffness_of(options, input.source.vertices.cols());

@@ -87,7 +87,7 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       areas_(speaking_areas(rest_, input, settings)),
       target_areas_(informative_areas(input.target, input.diagonal, settings.areas)),
       pose_certainty_(input.is_posed ? pose_certainty(input.rest.vertices, input.anchor_sources,
-                                                      settings.sinking.reach * input.diagonal)
+                                                      settings.outside_residuals.reach * input.diagonal)
                                      : Eigen::VectorXd()),
       anchors_(node_anchors(input, rest_)),
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
@@ -101,36 +101,36 @@ double NodeFitting::fit_coarse() {
   const std::unique_ptr<NodeSystem> few = system(level);
   const Eigen::VectorXd areas = areas_, target_areas = target_areas_;
   if (anchors_.empty()) {
-    find_linings();
-    silence(fit_.linings.contains, areas_);
+    find_unmatched_cavities();
+    silence(fit_.unmatched_cavities.contains, areas_);
     silence(target_lined_, target_areas_);
   }
   iterate(*few, level);
   areas_ = areas;
   target_areas_ = target_areas;
   fit_.coarse_vertices = fit_.vertices;
-  many_ = system(settings_.levels.back());
-  const double strain = many_->median_strain();
-  fit_.rigidity = std::clamp(settings_.shape.usual_strain / strain, 1.0, settings_.shape.most_rigid);
+  fine_ = system(settings_.levels.back());
+  const double strain = fine_->median_strain();
+  fit_.rigidity = std::clamp(settings_.shape.usual_strain / strain, 1.0, settings_.shape.max_rigid);
   return fit_.rigidity;
 }
 
-void NodeFitting::find_linings() {
+void NodeFitting::find_unmatched_cavities() {
   if (!target_lined_.empty()) return;
-  fit_.linings = linings_of(rest_.mesh());
-  target_lined_ = linings_of(input_.target.mesh()).contains;
+  fit_.unmatched_cavities = cavities_of(rest_.mesh());
+  target_lined_ = cavities_of(input_.target.mesh()).contains;
 }
 
 NodeFit NodeFitting::fit_fine() {
-  find_linings();
+  find_unmatched_cavities();
   const TargetSurface now = rest_.moved(fit_.vertices);
   fit_.hidden = vertices_in_lacking_cavities(now, input_.target, input_.diagonal, settings_.cavities);
-  fit_.lacking =
-      lacking_linings(fit_.linings.parts, now.mesh(), input_.target.mesh(), target_lined_, settings_.linings);
-  for (const Lining& lining : fit_.lacking)
-    for (const int vertex : lining.vertices) fit_.hidden[static_cast<std::size_t>(vertex)] = 1;
+  fit_.lacking = unmatched_cavities(fit_.unmatched_cavities.parts, now.mesh(), input_.target.mesh(),
+                                    target_lined_, settings_.unmatched_cavities);
+  for (const Cavity& cavity : fit_.lacking)
+    for (const int vertex : cavity.vertices) fit_.hidden[static_cast<std::size_t>(vertex)] = 1;
   silence(fit_.hidden, areas_);
-  iterate(*many_, settings_.levels.back());
+  iterate(*fine_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);
   fit_.matched_boundaries = boundaries_.matched_boundaries();
   return std::move(fit_);
@@ -153,7 +153,7 @@ void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
     if (fit_.iterations > 0 || anchors_.empty())
       planes =
           find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
-                            input_.is_posed && level.sinking ? &pose_certainty_ : nullptr},
+                            input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
                            level, settings_);
     if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
     const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);

@@ -7,9 +7,9 @@
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/anchor_limits.h"
 #include "bespoke/surface_fit/detail/boundary_match.h"
-#include "bespoke/surface_fit/detail/lacking_linings.h"
 #include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
+#include "bespoke/surface_fit/detail/unmatched_cavities.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke {
@@ -36,8 +36,8 @@ struct NodeFit {
   Points vertices;              ///< 3×n, of the deformed `rest`
   Points coarse_vertices;       ///< 3×n, as the few nodes of the first level left them
   Points anchor_sources;        ///< 3×k, carried along
-  Linings linings;              ///< of `rest`
-  std::vector<Lining> lacking;  ///< of them, those that the target lacks
+  Cavities unmatched_cavities;  ///< of `rest`
+  std::vector<Cavity> lacking;  ///< of them, those that the target lacks
   std::vector<char> hidden;     ///< n: in a cavity or lining that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
@@ -50,8 +50,8 @@ struct NodeFit {
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
 /// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
 /// from the target that bends least. After the first level vertices in cavities or linings that the target
-/// lacks (cavities.h, lacking_linings.h) have no more pairs, and the similarities count by the pair's
-/// rigidity. Where no anchor leads, linings of either (mesh/linings.h) have none in the first level: they
+/// lacks (cavities.h, unmatched_cavities.h) have no more pairs, and the similarities count by the pair's
+/// rigidity. Where no anchor leads, linings of either (mesh/cavities.h) have none in the first level: they
 /// would be laid onto whatever is near. Where the target has nothing to offer, the last two extrapolate.
 class NodeFitting {
  public:
@@ -69,7 +69,7 @@ class NodeFitting {
   std::unique_ptr<NodeSystem> system(const NodeLevel& level) const;
   void iterate(NodeSystem& system, const NodeLevel& level);
   std::vector<double> next_limits(const NodeGoals& goals);
-  void find_linings();
+  void find_unmatched_cavities();
 
   const NodeFitInput input_;
   const NodeFitSettings settings_;  // as the input needs them
@@ -83,7 +83,7 @@ class NodeFitting {
   AnchorLimits limits_;
   std::vector<char> target_lined_;  // found with the linings
   NodeFit fit_;
-  std::unique_ptr<NodeSystem> many_;  // of the second level, from the end of the first on
+  std::unique_ptr<NodeSystem> fine_;  // of the second level, from the end of the first on
 };
 
 }  // namespace bespoke

@@ -116,7 +116,8 @@ void NodeSystem::add_planes(const NodeGoals& goals) {
       settings_.outlier_medians * median(distances) + settings_.outlier_floor * surface_.diagonal;
   for (std::size_t k = 0; k < goals.planes.size(); ++k) {
     const PlanePair& plane = goals.planes[k];
-    const double outlier = distances[k] / (scale + settings_.leeway * goals.smoothing * plane.leeway);
+    const double outlier =
+        distances[k] / (scale + settings_.outlier_scale_gain * goals.smoothing * plane.outlier_scale_gain);
     const double weight = plane.weight / surface_.area / (1 + outlier * outlier);
     add_quadratic(nodes_.at_vertex(plane.vertex), weight * plane.normal * plane.normal.transpose(),
                   plane.point - surface_.rest.vertices.col(plane.vertex));
@@ -150,7 +151,7 @@ void NodeSystem::add_bending(double weight, const LocalSimilarities& similaritie
       bending_stencils(nodes_, nodes_.rest + displacements_, settings_.bending);
   for (int node = 0; node < nodes_.size(); ++node) {
     const BendingStencil& stencil = stencils[node];
-    const double growth = similarities.growth(node, settings_.bending.most_growth);
+    const double growth = similarities.growth(node, settings_.bending.max_growth);
     const double share = weight * growth * growth * nodes_.areas[node];
     for (std::size_t a = 0; a < stencil.ids.size(); ++a)
       for (std::size_t b = 0; b < stencil.ids.size(); ++b)

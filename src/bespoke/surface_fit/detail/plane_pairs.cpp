@@ -79,7 +79,7 @@ void append_pairs(const Search& search, std::vector<PlanePair>& pairs) {
       const double sunk = sinking(search, pair, found[k].vertex);
       const double claimed = claimed_as_far_as_asked(search, pair, sunk);
       const double fading = reciprocity(claimed, settings);
-      found[k].leeway = fading * std::max(crease(pair, claimed), sunk);
+      found[k].outlier_scale_gain = fading * std::max(crease(pair, claimed), sunk);
       found[k].weight = search.share() * search.areas()[i] * double(stride) * match->agreement *
                         match->agreement * (search.level.reciprocity ? fading : 1);
     }

@@ -18,7 +18,7 @@ struct PlanePair {
   /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
   /// the asking surface is creased there (crease.h) or, where the source stands out of the target, how surely
   /// anchors tell its pose (pose_certainty.h), whichever is more.
-  double leeway = 0;
+  double outlier_scale_gain = 0;
 };
 
 /// Where pairs are looked for.

@@ -96,7 +96,7 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
     fit.residual = quantile(residuals, settings.quantile);
     // Most pairs are no similar copies; they shall not pay for all iterations.
     const bool give_up =
-        iteration >= settings.trial_iterations && !(fit.residual <= settings.hopeless * tolerance);
+        iteration >= settings.trial_iterations && !(fit.residual <= settings.early_exit_factor * tolerance);
     if (iteration == settings.max_iterations || give_up) break;
     const double robust_scale =
         settings.outlier_medians * quantile(residuals, middle) + settings.outlier_floor * within;

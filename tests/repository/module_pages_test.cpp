@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "support/file_text.h"
+
+namespace bespoke {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::IsEmpty;
+using ::testing::IsSubsetOf;
+
+const fs::path library = fs::path(BESPOKE_SOURCE_DIR) / "src" / "bespoke";
+
+constexpr long max_lines = 40;
+
+/// First group of every match.
+std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
+  const std::regex expression(pattern);
+  std::vector<std::string> found;
+  for (std::sregex_iterator match(text.begin(), text.end(), expression), end; match != end; ++match)
+    found.push_back(match->str(1));
+  return found;
+}
+
+std::set<std::string> directories() {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(library))
+    if (entry.is_directory()) names.insert(entry.path().filename());
+  return names;
+}
+
+/// The rooms that the files of a room include, other than itself.
+std::set<std::string> included_rooms(const std::string& module) {
+  std::set<std::string> modules;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library / module)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    for (const std::string& name : matches(test::read_text(entry.path()), "#include \"bespoke/([a-z0-9_]+)/"))
+      modules.insert(name);
+  }
+  modules.erase(module);
+  return modules;
+}
+
+/// What the page says after "Includes:", up to the end of the sentence.
+std::set<std::string> rooms_on_page(const std::string& page) {
+  const std::vector<std::string> sentences = matches(page, "\n- Includes:([^.]*)\\.");
+  if (sentences.size() != 1) return {"no sentence that begins with \"- Includes:\""};
+  const std::vector<std::string> names = matches(sentences.front(), "`([a-z0-9_]+)`");
+  return {names.begin(), names.end()};
+}
+
+/// The rooms in the order of the table on the library's page.
+std::vector<std::string> rooms_in_order() {
+  return matches(test::read_text(library / "README.md"),
+                 "\n\\| \\[`([a-z0-9_]+)`\\]\\(\\1/README\\.md\\) \\|");
+}
+
+TEST(ModulePages, TableListsEveryModule) {
+  const std::vector<std::string> modules = rooms_in_order();
+  EXPECT_EQ(std::set<std::string>(modules.begin(), modules.end()), directories());
+}
+
+TEST(ModulePages, HaveAtMostFortyLines) {
+  for (const std::string& module : directories()) {
+    const std::string page = test::read_text(library / module / "README.md");
+    EXPECT_GT(page.size(), 0u) << module;
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), max_lines) << module;
+  }
+}
+
+TEST(ModulePages, NameTheRoomsThatAreIncluded) {
+  for (const std::string& module : directories())
+    EXPECT_EQ(rooms_on_page(test::read_text(library / module / "README.md")), included_rooms(module))
+        << module;
+}
+
+TEST(ModulePages, RoomsIncludeOnlyThoseAboveThemInTheTable) {
+  std::vector<std::string> above;
+  for (const std::string& module : rooms_in_order()) {
+    EXPECT_THAT(included_rooms(module), IsSubsetOf(above)) << module;
+    above.push_back(module);
+  }
+}
+
+// A header in ROOM/detail/ may be named by the files of ROOM and by the tests alone.
+TEST(ModulePages, DetailsStayInTheirRooms) {
+  for (const char* tree : {"src", "samples", "tools"})
+    for (const fs::directory_entry& entry :
+         fs::recursive_directory_iterator(fs::path(BESPOKE_SOURCE_DIR) / tree)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      const std::string from = fs::relative(entry.path(), library).begin()->string();
+      for (const std::string& module :
+           matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"))
+        EXPECT_EQ(module, from) << entry.path();
+    }
+}
+
+TEST(ModulePages, PublicHeadersNameNoDetails) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library))
+    if (entry.path().extension() == ".h" && entry.path().parent_path().filename() != "detail") {
+      EXPECT_THAT(matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"), IsEmpty())
+          << entry.path();
+    }
+}
+
+// A heavy or replaceable library is known to few files: the places that each may be included from.
+TEST(ModulePages, LibrariesAreIncludedInTheirPlacesOnly) {
+  const std::map<std::string, std::set<fs::path>> places = {
+      {"openvdb/",
+       {"asset/detail/grid_conversion.cpp", "asset/detail/source_distance.cpp", "asset/detail/vdb_grid.h",
+        "asset/detail/vdb_leaves.h", "asset/detail/vdb_part.cpp"}},
+      {"OpenMesh/", {}},
+      {"tbb/", {"parallel.cpp", "thread_arena.cpp"}},
+      {"nlohmann/",
+       {"anchors/anchor_files.cpp", "anchors/detail/anchor_json.cpp", "anchors/detail/point_files.cpp",
+        "anchors/detail/slicer_markups.cpp", "asset/detail/record_json.cpp", "exchange/glb_file.cpp",
+        "pipeline/summary_json.h", "product/detail/gltf_json.h"}}};
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library)) {
+    if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+    const std::string text = test::read_text(entry.path());
+    for (const auto& [name, files] : places)
+      if (text.find("#include <" + name) != std::string::npos) {
+        EXPECT_TRUE(files.contains(fs::relative(entry.path(), library))) << entry.path() << ": " << name;
+      }
+  }
+}
+
+TEST(ModulePages, LinkToPagesThatExist) {
+  std::vector<fs::path> pages{library / "README.md"};
+  for (const std::string& module : directories()) pages.push_back(library / module / "README.md");
+  for (const fs::path& page : pages)
+    for (const std::string& link : matches(test::read_text(page), "\\]\\(([^)#]+)"))
+      EXPECT_TRUE(fs::exists(page.parent_path() / link)) << page << ": " << link;
+}
+
+}  // namespace
+}  // namespace bespoke
