@@ -24,7 +24,7 @@ enum class TemporaryFile {
 /// A process that is killed leaves a file of its own in one case of two. With unnamed temporaries: between
 /// two system calls that replace an existing file, `.NAME.bespoke-new`, which the next writer of `path`
 /// takes away. With named ones: `.NAME.….bespoke-part`, locked as long as its writer lives; the first
-/// write of a process into a directory removes those that nobody holds.
+/// write of a process into a directory removes those that no process holds.
 ///
 /// `write` opens the file that it is given for writing. Throws FileError, and whatever `write` throws.
 void write_atomically(const std::filesystem::path& path,

@@ -36,7 +36,7 @@ class MemoryLimitError : public Error {
   using Error::Error;
 };
 
-/// The caller asked to stop (Progress::cancelled).
+/// The caller requested a stop (Progress::cancelled).
 class Interrupted : public Error {
   using Error::Error;
 };

@@ -6,7 +6,7 @@
 namespace bespoke {
 
 double power_of_two_scale(double size_ratio) {
-  constexpr double reached = 0.125;  // octaves: sizes are told by anchors or areas, never to the bit
+  constexpr double reached = 0.125;  // powers of two: sizes are told by anchors or areas, never to the bit
   const double log2_scale = std::log2(size_ratio);
   return std::isfinite(log2_scale) ? std::exp2(std::trunc(log2_scale + std::copysign(reached, log2_scale)))
                                    : 1;

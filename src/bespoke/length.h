@@ -19,7 +19,7 @@ enum class LengthRange { positive, not_negative };
 /// between 0.55 and 1.83, since a ratio counts as a power of two from a twelfth before it on, and for one
 /// that is not finite and above 0. Lengths that go with a model's size are scaled by it, which rounds
 /// nothing: a target twice as large has a map twice as large, and on models of about one size lengths stay as
-/// they were asked for.
+/// they were requested.
 double power_of_two_scale(double size_ratio);
 
 /// "0.02" or "10%"; empty unless it is finite and within the range.

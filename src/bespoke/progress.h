@@ -20,7 +20,7 @@ struct Progress {
     if (report) report(stage, done, total);
   }
 
-  /// Throws Interrupted once the caller has asked to stop.
+  /// Throws Interrupted once the caller has requested a stop.
   void check() const {
     if (cancelled && cancelled()) throw Interrupted("interrupted");
   }

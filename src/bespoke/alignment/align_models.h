@@ -47,10 +47,10 @@ std::string to_string(const AlignmentSummary& summary);
 /// Where the source lies on the target, found from the two surfaces alone.
 struct Alignment {
   Similarity target_from_source;  ///< least squares over all patches of the source
-  Points deformed;                ///< 3×n: the source's vertices laid coarsely onto the target, mesh units
+  Points deformed;  ///< 3×n: the source's vertices coarsely registered to the target, mesh units
   Similarity source_from_target;  ///< the inverse
-  Points
-      target_deformed;  ///< 3×m: the target's vertices laid coarsely onto the source, where certain; else 3×0
+  Points target_deformed;  ///< 3×m: the target's vertices coarsely registered to the source, where certain;
+                           ///< else 3×0
   AlignmentSummary summary;
 };
 

@@ -32,7 +32,7 @@ Eigen::VectorXd distances_from(const TriangleMesh& surface, const Points& points
   return distances;
 }
 
-/// n: what each vertex that lies in the open speaks for, mesh units squared.
+/// n: what each vertex that lies in the open represents, mesh units squared.
 Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& lined) {
   Eigen::VectorXd areas = vertex_areas(mesh);
   for (std::size_t i = 0; i < lined.size(); ++i)

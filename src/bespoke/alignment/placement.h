@@ -6,8 +6,8 @@
 
 namespace bespoke {
 
-/// How well a source laid onto a target explains it; to choose among placements of one source by. Cavities of
-/// cavities (cavities.h) of either have no say in how near the two are.
+/// How well a source registered to a target explains it; to choose among placements of one source by.
+/// Cavities (mesh/cavities.h) of either have zero weight in the distance.
 struct PlacementFigures {
   double distance =
       0;  ///< mean of both surfaces' distances from the other, fraction of the target's diagonal

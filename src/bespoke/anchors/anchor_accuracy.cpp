@@ -22,7 +22,7 @@ constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
 constexpr double of_chance = 0.08;
 
 /// How far each unrated pair of the surface lies off the target beyond what it lies off the source, were that
-/// `octave` times as large.
+/// `size_scale` times as large.
 std::vector<OutlierAnchor> offsets(const Anchors& anchors, const TriangleMesh& source,
                                    const TriangleMesh& target, double size_scale) {
   const double reach = near_surface * diagonal(source.vertices);
@@ -71,7 +71,7 @@ EstimatedAnchors estimate_anchor_sigmas(const Anchors& anchors, const TriangleMe
   std::iota(estimated.kept.begin(), estimated.kept.end(), 0);
   AnchorAccuracy& accuracy = estimated.accuracy;
   accuracy.swapped = swapped_anchors(anchors);
-  // Who gives an accuracy stands by the pair.
+  // A pair with a given σ is no suspect.
   std::erase_if(accuracy.swapped, [&](const SwappedAnchors& pair) {
     return !(has_no_given_sigma(anchors.pairs[pair.first]) && has_no_given_sigma(anchors.pairs[pair.second]));
   });

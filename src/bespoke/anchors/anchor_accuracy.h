@@ -16,7 +16,7 @@ struct OutlierAnchor {
   double distance = 0;  ///< mesh units
 };
 
-/// A pair that strains the surfaces, and that surfaces laid without it put elsewhere.
+/// A pair that strains the surfaces, and that surfaces registered without it displace.
 struct RejectedAnchor {
   std::size_t index = 0;
   double distance = 0;  ///< of its target from where they put it, mesh units
@@ -25,7 +25,7 @@ struct RejectedAnchor {
 /// What the models say about anchors that came without a weight and without a σ.
 struct AnchorAccuracy {
   std::size_t estimated = 0;  ///< pairs whose σ was estimated
-  double sigma = 0;           ///< of these, mesh units; 0: nothing speaks against meeting them exactly
+  double sigma = 0;           ///< of these, mesh units; 0: exact
   std::vector<OutlierAnchor> outliers;
   std::vector<SwappedAnchors> swapped;
   std::vector<RejectedAnchor> left_out;
@@ -48,7 +48,7 @@ inline constexpr double near_surface = 0.02;
 /// q' by this distance at least. An inaccurate pair is off in all three directions alike, so the root mean
 /// square of the distances, those beyond three standard deviations left out, is σ. Below 0.1 % of the
 /// diagonal it cannot be told from the tessellation, and the pairs count as exact. A pair left out has its
-/// own distance as σ; beyond four times the others' it is listed as slipped. Swapped pairs
+/// own distance as σ; beyond four times the others' it is listed as an outlier. Swapped pairs
 /// (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for unusable meshes.
 EstimatedAnchors estimate_anchor_sigmas(const Anchors& anchors, const TriangleMesh& source,
                                         const TriangleMesh& target);

@@ -127,14 +127,14 @@ Vector3 place_at(const Points& polyline, bool closed, double share) {
 }
 
 /// Between places, a component of a displacement changes by at most this much of their distance: all three
-/// together by less than a half, so that nothing turns over. Where one of three borders on a head lies 0.9 %
+/// together by less than a half, so that nothing flips. Where one of three borders on a head lies 0.9 %
 /// of the diagonal beside its place, no limit leaves 351 turned faces and 2,582 folded cells, 0.5 leaves 338,
 /// this 8 and none.
 constexpr double steepest = 0.25;
 
-/// What is asked at places[i], made gentle: each component is the mean of the largest and the least function
-/// of that steepness below and above all that is asked (McShane 1934), which leaves what is gentle as it is;
-/// near held places no more than their distance allows.
+/// The displacement required at places[i], made gentle: each component is the mean of the largest and the
+/// least function of that steepness below and above all required ones (McShane 1934), which leaves what is
+/// gentle as it is; near held places no more than their distance allows.
 Vector3 gentle_displacement(const Points& required, const Points& places, const Points& held,
                             Eigen::Index i) {
   const Eigen::RowVectorXd reach = steepest * (places.colwise() - places.col(i)).colwise().norm();

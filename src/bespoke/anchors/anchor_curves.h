@@ -23,11 +23,11 @@ class CurvePairs {
   /// Pairs lie at most `spacing` (> 0, mesh units) apart on the source, at equal shares of length between
   /// fixed points. A closed curve without fixed points begins, and runs, where and as the pairs, moved
   /// rigidly, put it. Where a pair, or an earlier curve, lies within half a spacing on the source (of a
-  /// fixed point: at its place), that speaks for the place alone. Throws InvalidInput for a spacing that is
+  /// fixed point: at its place), that represents the place alone. Throws InvalidInput for a spacing that is
   /// not positive, and for such a closed curve with fewer than three pairs or collinear ones.
   CurvePairs(const Anchors& given, double spacing);
 
-  /// All pairs; those of curves, but for fixed points, with this accuracy (≥ 0, mesh units).
+  /// All pairs; those of curves, except for fixed points, with this accuracy (≥ 0, mesh units).
   Anchors pairs(double sigma) const;
 
   /// Moves the counterparts along their curves to where they are nearest to these places (3×k, target frame)
@@ -37,7 +37,7 @@ class CurvePairs {
   void slide(const Points& places, double reach);
 
   /// Draws the counterparts back towards `places` (3×k, target frame), where the surface lay before it was to
-  /// meet the curves, as far as they ask for displacements that no surface follows without folds: a quarter
+  /// meet the curves, as far as they require displacements that no surface follows without folds: a quarter
   /// of the distance between two points at most is the difference of theirs, and from none at `held` (3×m).
   void give_way(const Points& places, const Points& held);
 

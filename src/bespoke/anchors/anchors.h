@@ -24,7 +24,7 @@ struct AnchorPair {
 };
 
 /// A line on the source and its counterpart on the target, for instance a waist line. What lies on one goes
-/// onto the other; where along it is found by the fit, but for fixed points.
+/// onto the other; where along it is found by the fit, except for fixed points.
 struct AnchorCurve {
   std::string name;  ///< may be empty
   Points a;          ///< 3×n, a polyline, source frame, mesh units
@@ -82,7 +82,7 @@ void add_box_corners(Anchors& anchors, const Points& source_vertices, const Poin
 /// Whether a pair has to be met: it has no weight, and its σ is 0 or not given.
 bool is_exact(const AnchorPair& pair);
 
-/// Whether nobody said how accurate a pair is: it came without weight and σ.
+/// Whether a pair has neither a given weight nor a given σ.
 bool has_no_given_sigma(const AnchorPair& pair);
 
 /// 3×n each, n and n: the pairs as matrices; a σ that is not given is 0.

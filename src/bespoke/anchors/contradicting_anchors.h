@@ -17,7 +17,7 @@ struct ContradictingAnchors {
 
 /// Pairs of exact anchors within 5 % of the targets' diagonal whose targets differ from what the one
 /// similarity of all pairs makes of their sources by more than their distance, and also from what the
-/// similarity of the pairs around them does: a hand may have turned over. Between anchors farther apart a
+/// similarity of the pairs around them does: a hand may have flipped. Between anchors farther apart a
 /// joint may bend; between these the map would have to stretch space twofold or fold it. By decreasing ratio.
 /// None among fewer than 4 pairs.
 std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors);

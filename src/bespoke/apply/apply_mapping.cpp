@@ -97,7 +97,7 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
   });
   if (const ElasticChain* chain = followed_chain(elastic, motion))
     follow(*chain, target_from_source, x, times, applied);
-  // Every t has a lookup of its own where E is asked for at points that move.
+  // Every t has a lookup of its own where E is requested at points that move.
   for (std::size_t frame = 0; frame < times.size(); ++frame) {
     if (is_asked_at_rest(times[frame], motion)) continue;
     const Points argument = elastic_argument(x, target_from_source, times[frame], motion);

@@ -26,7 +26,7 @@ struct ApplyPointsOptions {
 /// time: every point's bits are the same. The seconds of the summary are those of the whole call. Throws
 /// InvalidInput, with what was written so far left as it is, where the sizes of a product differ or are no
 /// multiple of three, and for a point that is not finite, naming product and point; Interrupted when the
-/// caller asks to stop.
+/// caller requests a stop.
 ApplySummary apply_points(const ElasticMap& elastic, const RigidTransform& target_from_source,
                           std::span<const PointSpans> products, const ApplyPointsOptions& options = {});
 

@@ -17,7 +17,7 @@ struct ProductSummary {
   std::vector<std::string> warnings;  ///< what the file holds that was left as it is, a sentence each
   std::vector<std::filesystem::path> companions;  ///< written besides the outputs: buffers beside a .gltf
   std::vector<PartSummary> parts;                 ///< that kept their shape
-  std::optional<ChordError> chord;                ///< at the last time, where it was asked for
+  std::optional<ChordError> chord;                ///< at the last time, where it was requested
   std::size_t splits = 0;                         ///< edges that were split for it
 };
 

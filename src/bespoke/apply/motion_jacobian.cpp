@@ -37,7 +37,7 @@ Points chain_gradient(const ElasticChain& chain, const Points& x, double t) {
   }
 }
 
-/// ∇Ψ(t) out of ∇E at the points that Ψ(t) asks for; the formulas are those of move_points.
+/// ∇Ψ(t) out of ∇E at the points that Ψ(t) requires; the formulas are those of move_points.
 Points moved_gradient(const Points& gradient, const Matrix3& target_from_source, double t,
                       const MotionOptions& motion) {
   const Matrix3 identity = Matrix3::Identity();

@@ -186,7 +186,7 @@ RefinedProduct SplitProduct::finish() {
 }
 
 /// The edges that miss the length, and of every triangle that has one its longest edge. What edges at the
-/// same places ask for holds for all of them.
+/// same places require holds for all of them.
 Middles chosen_edges(const Product& product, const Eigen::Matrix2Xi& edges, const Eigen::VectorXd& errors,
                      double length) {
   const std::vector<int> place = first_at_equal_position(product.vertices);

@@ -31,11 +31,11 @@ struct AnchorRecord {
 
 /// What an asset says about its map besides the map itself. No clock, no path, no user.
 struct AssetRecord {
-  std::string unit;                ///< of all lengths, "unknown" when nobody said
+  std::string unit;                ///< of all lengths, "unknown" when not given
   std::string elastic_method;      ///< for instance "csrbf"
   std::string surface_fit_method;  ///< for instance "laplacian", "given"
   double lambda = 0;               ///< effective distance, mesh units
-  double tolerance = 0;            ///< asked of the bake, mesh units
+  double tolerance = 0;            ///< requested, mesh units
   Statistics bake_error;           ///< measured, mesh units
   std::string options_json;        ///< an object: every option that shaped the map
   std::string stages_json;         ///< an array: what each stage found, without times

@@ -36,7 +36,7 @@ bool has_block_hashes(const std::filesystem::path& path);
 /// looked at. Throws as read_asset, InvalidInput for a box that is empty or not finite.
 std::optional<AssetPart> read_asset_part(const std::filesystem::path& path, const Box& box);
 
-/// As loaded_chain of the whole, with the same bits; asked for what was not read it throws OutsidePart.
+/// As loaded_chain of the whole, with the same bits; a query of unread values throws OutsidePart.
 ElasticChain loaded_chain(std::vector<MapStepPart> steps);
 
 }  // namespace bespoke

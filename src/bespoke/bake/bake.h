@@ -22,7 +22,8 @@ struct BakeOptions {
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes that the bake may take
   /// Leaves that the pyramid may have, where given: the places of the largest errors get them, and of these
   /// the ones near the surface before others; the rest miss the tolerance and are named
-  /// (BakeSummary::relaxed). A tenth is kept for folds and faces that turn first. Few more for rims.
+  /// (BakeSummary::relaxed). A tenth is kept for folds and faces that turn first. Few more for level
+  /// boundaries.
   std::optional<std::size_t> max_leaves;
   /// Random points of the band at which the error is measured; of twice as many the finest cells on the
   /// surface have an equal share, one to 27 each.
@@ -65,11 +66,11 @@ struct BakeSummary {
   std::size_t surface_cells = 0;         ///< finest cells on the surface
   bool tolerance_met = false;            ///< error.max ≤ tolerance
   std::vector<RelaxedRegion> relaxed;    ///< to stay within max_leaves; the worst first
-  /// Of the surface, by more than max_face_turn, but for those thinner than the smallest voxel that a nested
-  /// pyramid may have; of a chain, over its steps.
+  /// Of the surface, by more than max_face_turn, except for those thinner than the smallest voxel that a
+  /// nested pyramid may have; of a chain, over its steps.
   std::size_t misoriented_faces = 0;
-  std::size_t refined_folds = 0;   ///< cells that folded though the map does not, mended by finer leaves
-  std::size_t repaired_cells = 0;  ///< cells that folded as the map does, mended by moving nodes
+  std::size_t refined_folds = 0;   ///< cells that folded though the map does not, repaired by finer leaves
+  std::size_t repaired_cells = 0;  ///< cells that folded as the map does, repaired by moving nodes
   double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
   std::size_t folded_cells = 0;    ///< cells that still fold or are undecided
   std::size_t evaluated_points = 0;

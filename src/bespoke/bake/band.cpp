@@ -65,7 +65,7 @@ class BandSearch {
     for (int i = root(low.x() - 0.5); i <= root(high.x() + 0.5); ++i)
       for (int j = root(low.y() - 0.5); j <= root(high.y() + 0.5); ++j)
         for (int k = root(low.z() - 0.5); k <= root(high.z() + 0.5); ++k) add_root({i, j, k}, balls, depth_);
-    // Enough of them for all threads; every ball is asked once a level by the few boxes near it.
+    // Enough of them for all threads; every ball is queried once a level by the few boxes near it.
     constexpr std::size_t enough_roots = 256;
     for (; depth_ > 0 && roots_.size() < enough_roots; --depth_) {
       const std::vector<Root> parents = std::exchange(roots_, {});

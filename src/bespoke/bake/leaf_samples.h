@@ -9,7 +9,7 @@
 
 namespace bespoke {
 
-/// u at all nodes of the leaves as PyramidLevel::values has them. Throws InvalidInput when the map answers
+/// u at all nodes of the leaves as PyramidLevel::values has them. Throws InvalidInput when the map returns
 /// with a value that is not finite.
 std::vector<float> sample_leaves(const ElasticMap& map, const Lattice& lattice,
                                  const std::vector<LeafCoordinates>& leaves, const Progress& progress);

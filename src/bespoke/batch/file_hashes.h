@@ -29,7 +29,7 @@ class FileHashes {
  public:
   struct HashedFile {
     FileStamp stamp;  ///< as it was before the file was read
-    bool was_recent;  ///< is_within_timestamp_resolution then: the stamp vouches for nothing
+    bool was_recent;  ///< is_within_timestamp_resolution then: the stamp proves nothing
     std::string hash;
   };
 

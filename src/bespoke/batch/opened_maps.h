@@ -14,8 +14,8 @@ namespace bespoke {
 /// Maps in memory, each opened once for all who carry products through it. Thread-safe.
 class OpenedMaps {
  public:
-  /// As open_map. Who asks for a map that is being opened waits for it; one that cannot be opened is tried
-  /// again by the next who asks.
+  /// As open_map. A caller waits for a map that is being opened; one that cannot be opened is tried
+  /// again by the next caller.
   std::shared_ptr<const OpenedMap> open(const std::filesystem::path& path, MapForm form,
                                         const ReadAssetOptions& options);
 

@@ -38,7 +38,7 @@ std::string member_name(const fs::path& path, const fs::path& directory) {
   return name.string();
 }
 
-/// Outputs wait in open files, of which a process may have a thousand unless it asks for more.
+/// Outputs wait in open files, of which a process may have a thousand unless it requires more.
 void allow_many_open_files() {
   rlimit limit;
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;

@@ -37,7 +37,7 @@ struct BatchOptions {
   int jobs = 1;                ///< most at a time
   std::size_t max_memory = 0;  ///< bytes that the forecasts of running jobs may add up to
   bool keep_going = false;     ///< after a job has failed, all others that do not need it
-  std::function<bool()> stop;  ///< asked before a job starts: those that run end, no more start
+  std::function<bool()> stop;  ///< called before a job starts: those that run end, no more start
   /// Open for writing: takes the outputs that no job reads, and is finished at the end.
   PackedJobs* pack = nullptr;
 };

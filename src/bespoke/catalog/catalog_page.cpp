@@ -5,7 +5,7 @@
 namespace bespoke {
 namespace {
 
-// Of a hash; enough to tell models apart by eye, and more than find_map asks for.
+// Of a hash; enough to tell models apart by eye, and more than find_map requires.
 constexpr std::size_t shown_digits = 12;
 
 std::string hash_cell(const std::string& hash) {

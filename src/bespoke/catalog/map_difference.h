@@ -31,7 +31,7 @@ struct MapDifference {
 
 /// Random points where the maps' u may be nonzero, `count` of each map: as many of each step and of each
 /// level of its pyramid, so that more of them lie where a map is stored finely. Points of later steps are
-/// taken back through the affine parts of those before. Fewer where a map is affine. 3×n, source frame, mesh
+/// reset through the affine parts of those before. Fewer where a map is affine. 3×n, source frame, mesh
 /// units; the same each time, and for A and B those of B and A.
 Points points_of_bands(const Asset& a, const Asset& b, std::size_t count);
 

@@ -34,7 +34,7 @@ class PointwiseInverse {
   std::unique_ptr<const Cells> cells_;
 };
 
-/// The way back of Ψ = Γ∘E as an elastic map of its own, to be baked: Γ∘E⁻¹∘Γ⁻¹ in the target frame, so that
+/// The inverse of Ψ = Γ∘E as an elastic map, to be baked: Γ∘E⁻¹∘Γ⁻¹ in the target frame, so that
 /// Ψ⁻¹ = Γ⁻¹∘(Γ∘E⁻¹∘Γ⁻¹). Exactly affine outside the image of E's support.
 class InverseMap : public ElasticMap {
  public:

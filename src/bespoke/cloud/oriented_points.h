@@ -6,13 +6,13 @@
 
 namespace bespoke {
 
-/// Points of a surface and the directions in which it faces there: a scan that nobody has meshed.
+/// Points of a surface and the directions in which it faces there: a scan without a mesh.
 struct OrientedPoints {
   Points points;   ///< 3×n, mesh units
   Points normals;  ///< 3×n, outwards, of any length above 0
 };
 
-/// A cloud of fewer points shows no surface: a few neighbourhoods, most of them cut off by the rim.
+/// A cloud of fewer points shows no surface: a few neighbourhoods, most of them cut off by the boundary.
 inline constexpr Eigen::Index min_cloud_points = 100;
 
 /// Throws InvalidInput, naming `what` (for instance "target scan.ply"), unless there are at least

@@ -19,7 +19,7 @@ namespace {
 // clearance at up to twice the time of a chain.
 constexpr double offset_share = 0.4;
 constexpr double min_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
-// By which guides may part or come together: 3 leaves folds to mend on an adult and a toddler, 1.5 drops
+// By which guides may part or come together: 3 leaves folds to repair on an adult and a toddler, 1.5 drops
 // three times as many for the same products.
 constexpr double max_strain = 2;
 

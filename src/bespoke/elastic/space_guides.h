@@ -17,8 +17,8 @@ struct SpaceGuides {
 /// of the vertices within d, or one edge, that face as v does, taken to v' + s d R n, with R the
 /// least-squares rotation of these vertices and s² the factor of the whole area, which no pose changes. None
 /// where another part of the source, or of the fitted source, is nearer than v: space between fingers goes as
-/// these ask. Nor where two guides less than d apart, before or (measured by s) after, come to lie more than
-/// twice as far apart or as near: space between an arm and a hip that approach each other. fitted: 3×n;
+/// these require. Nor where two guides less than d apart, before or (measured by s) after, come to lie more
+/// than twice as far apart or as near: space between an arm and a hip that approach each other. fitted: 3×n;
 /// lambda > 0, mesh units. Throws InvalidInput for another number of vertices and meshes that are not valid.
 SpaceGuides space_guides(const TriangleMesh& source, const Points& fitted, double lambda);
 

@@ -118,7 +118,7 @@ PointsF picked(const Points& points, const std::vector<int>& columns) {
   return points(Eigen::all, columns).cast<float>();
 }
 
-/// Unit normals of vertices; where there is none, any, for glTF asks for one.
+/// Unit normals of vertices; where there is none, any, for glTF requires one.
 Points normals_of(const Product& product, const Points& vertices) {
   Points normals = vertex_normals({vertices, triangulated(product)});
   for (Eigen::Index i = 0; i < normals.cols(); ++i)

@@ -125,7 +125,7 @@ struct SurfacePath::Parts {
   std::vector<std::vector<PieceLink>> links;
   FaceRotations rotations;
   EdgePoisson poisson;
-  Points start, end;  // placed(0) and placed(1): the source and the fitted source but for rounding, faces
+  Points start, end;  // placed(0) and placed(1): the source and the fitted source except for rounding, faces
                       // without area and vertices that part
 };
 

@@ -8,7 +8,7 @@
 namespace bespoke {
 
 /// An elastic map whose u is looked up in a brick atlas: what products are carried with. It differs from the
-/// BakedMap of the same pyramid, which the certificate speaks of, by the rounding of sums to float: a
+/// BakedMap of the same pyramid, which the certificate proves, by the rounding of sums to float: a
 /// component of u by at most 2⁻²⁴ of its largest at the cell's corners, one of its gradient by at most 2⁻²³
 /// of that a voxel of the cell (besides roundings of doubles).
 class AtlasMap : public ElasticMap {

@@ -34,7 +34,7 @@ constexpr std::uint32_t unread_brick = 1;  // of NaN, where a part was read; 0 i
 struct EntryBricks {
   int octants = 0;          // bit o: octant o has a brick, or a part in the whole one
   std::uint32_t first = 0;  // number of the first brick among those of its kind
-  bool is_read = true;      // all values that the bricks ask for are there
+  bool is_read = true;      // all values that the bricks require are there
   bool whole() const { return std::popcount(static_cast<unsigned>(octants)) >= octants_of_a_whole; }
 };
 

@@ -52,7 +52,7 @@ struct BrickAtlas {
 /// values, where the pyramid spans more than 2³⁰ of its smallest octants, or where a sum may exceed a float.
 std::optional<BrickAtlas> make_brick_atlas(const Pyramid& pyramid, double largest_share = 3);
 
-/// The same where values of a part were read: there the bricks of the whole's atlas, and where one asks for
+/// The same where values of a part were read: there the bricks of the whole's atlas, and where one requires
 /// other values NaN. Nothing where the whole has no atlas (its sums are those of the part, though). `index`
 /// is the part's.
 std::optional<BrickAtlas> make_brick_atlas(const PyramidPart& part, const PyramidIndex& index,

@@ -24,7 +24,7 @@ class BrickTable {
   /// regions before the smaller ones in them.
   void set(const LatticeCoordinates& region, int bits, Reference reference);
 
-  /// The places that find answers for, `high` not included.
+  /// The places that find covers, `high` not included.
   LatticeCoordinates low() const;
   LatticeCoordinates high() const;
 

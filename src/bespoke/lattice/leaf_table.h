@@ -11,7 +11,7 @@ namespace bespoke {
 /// In lexicographic order, each once.
 std::vector<LeafCoordinates> unique_leaves(std::vector<LeafCoordinates> leaves);
 
-/// What LeafTable::find answers for a leaf that is not in the list.
+/// What LeafTable::find returns for a leaf that is not in the list.
 inline constexpr int no_leaf = -1;
 
 /// Finds leaves of a list by their coordinates. Thread-safe to read.

@@ -10,14 +10,14 @@
 
 namespace bespoke {
 
-/// A point asks for values of a map that were not read; the message names it.
+/// A point requires values of a map that were not read; the message names it.
 class OutsidePart : public InvalidInput {
   using InvalidInput::InvalidInput;
 };
 
-/// The elastic map of a pyramid of which a part was read: where it answers, with the bits of loaded_map of
+/// The elastic map of a pyramid of which a part was read: where it has values, with the bits of loaded_map of
 /// the whole; elsewhere it throws OutsidePart. (The bits of an AtlasMap and a BakedMap differ, and which of
-/// them the whole would be is known but for displacements above 1e38, which are not read.)
+/// them the whole would be is known except for displacements above 1e38, which are not read.)
 class PartMap : public ElasticMap {
  public:
   /// Throws InvalidInput for a part that is not valid.

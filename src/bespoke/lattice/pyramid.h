@@ -52,7 +52,7 @@ struct Pyramid {
 /// No component of the sum of the levels exceeds it anywhere: bounds the rounding of that sum. Mesh units.
 double largest_sum(const Pyramid& pyramid);
 
-/// Rounds u so that its bits say no more than the tolerance (mesh units) asks for, and as zeros compress: to
+/// Rounds u so that its bits say no more than the tolerance (mesh units) requires, and as zeros compress: to
 /// multiples of a power of two that is at most a 32nd of it, then to the precision. Zero stays zero. Throws
 /// InvalidInput where a value exceeds the range of half precision.
 void round_values(std::span<float> values, double tolerance, ValuePrecision precision);

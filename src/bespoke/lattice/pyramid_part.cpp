@@ -58,7 +58,8 @@ LeafBox leaves_near(const Lattice& lattice, const Box& box) {
 Box image_box(const Box& box, const AffineMap& affine, const PyramidPart& part) {
   const Vector3 center = affine * Vector3(box.center());
   const Vector3 half = affine.linear.cwiseAbs() * (box.sizes() / 2);
-  // Between nodes and at the rim, where a level goes to zero, a value is a mean of nodes' values and zeros.
+  // Between nodes and at the level boundary, where a level goes to zero, a value is a mean of nodes' values
+  // and zeros.
   Vector3 low = Vector3::Zero(), high = Vector3::Zero();
   for (const PyramidLevel& level : part.read.levels) {
     Vector3 least = Vector3::Zero(), largest = Vector3::Zero();

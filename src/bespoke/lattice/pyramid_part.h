@@ -13,7 +13,7 @@ struct LeafBox {
   LeafCoordinates high{};
 };
 
-/// A pyramid of which every leaf is known, and the values of some: what a product asks for.
+/// A pyramid of which every leaf is known, and the values of some: what a product requires.
 struct PyramidPart {
   Pyramid read;  ///< the leaves whose values are here; maybe none of a level
   std::vector<std::vector<LeafCoordinates>> leaves;  ///< of every level, all, in lexicographic order
@@ -21,7 +21,7 @@ struct PyramidPart {
   std::size_t leaf_count() const;  ///< all leaves of all levels
 };
 
-/// Throws InvalidInput, naming the level, unless all holds of the whole that require_valid(Pyramid) asks for,
+/// Throws InvalidInput, naming the level, unless all holds of the whole that require_valid(Pyramid) requires,
 /// as far as it is known, and every leaf with values is one of the whole's.
 void require_valid(const PyramidPart& part);
 

@@ -29,7 +29,7 @@ struct MotionOptions {
   MappingOrder order = MappingOrder::elastic_first;
 };
 
-/// Where Ψ(t) asks for E, for points x (3×n, source frame, mesh units): Γ⁻¹(R(t) x + t T) in the order of the
+/// Where Ψ(t) requires E, for points x (3×n, source frame, mesh units): Γ⁻¹(R(t) x + t T) in the order of the
 /// moving point, x itself in all others and at both ends, so that many t cost one lookup. Throws InvalidInput
 /// when t is not finite.
 Points elastic_argument(const Points& x, const RigidTransform& target_from_source, double t,

@@ -36,7 +36,7 @@ std::vector<Box> face_boxes(const TriangleMesh& mesh);
 /// at most 40 levels of three waiting nodes. `boxes` must not be empty, nor any of its elements.
 BoxTree build_box_tree(const std::vector<Box>& boxes);
 
-/// Fits the tree to the same boxes at other places, a fraction of the cost of building it. Answers stay
+/// Fits the tree to the same boxes at other places, a fraction of the cost of building it. Results stay
 /// exact; walks get slower where boxes that were neighbours have parted.
 void refit(BoxTree& tree, const std::vector<Box>& boxes);
 

@@ -20,7 +20,7 @@ constexpr int ray_count = 32;
 /// On six heads and bodies 1.8 to 15 % of the area is enclosed then; 0 and 6: up to 3.9 % of it less, at most
 /// 0.2 % more. Of an open hand nothing is, of a fist 4 %; 0 and 6: nothing, 6 %.
 constexpr int max_free = 4;
-/// Vertices asked at first, evenly chosen; from those enclosed on, their neighbours are.
+/// Vertices queried at first, evenly chosen; from those enclosed on, their neighbours are.
 constexpr std::size_t seeds = 4000;
 
 /// Unit vectors about e_z, the first along it: a spiral of equal areas.
@@ -46,7 +46,7 @@ bool is_enclosed(const VisibilityQuery& visibility, const Vector3& x, const Vect
   return true;
 }
 
-/// Neighbours of those vertices that are enclosed, each once, which have not been asked.
+/// Neighbours of those vertices that are enclosed, each once, which have not been queried.
 std::vector<int> unasked_neighbours(const VertexAdjacency& adjacency, const std::vector<int>& vertices,
                                     const std::vector<char>& enclosed, const std::vector<char>& asked) {
   std::vector<int> found;

@@ -27,7 +27,7 @@ struct Triangle {
   double inverse_ab, inverse_ac, inverse_bc;  ///< reciprocal squared lengths, 0 for no length
   int face;
   std::array<signed char, 3> corner;  ///< of the face, for a, b, c
-  bool sliver;                        ///< too thin to trust the weights: the edges are asked as well
+  bool sliver;                        ///< too thin to trust the weights: the edges are queried as well
 };
 
 struct Hit {

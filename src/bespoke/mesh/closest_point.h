@@ -22,21 +22,21 @@ struct SurfacePoint {
 /// Where a point of a surface is when the surface's vertices are here (3×n): it goes with its face.
 Vector3 carried(const SurfacePoint& point, const Faces& faces, const Points& vertices);
 
-/// Which points of the surface may answer a query.
+/// Which points of the surface a query may return.
 struct ClosestPointQuery {
   double max_distance = std::numeric_limits<double>::infinity();  ///< mesh units
-  /// Only faces whose unit normal n satisfies n · normal > min_cosine answer (the paper's compatible points,
-  /// IV.C: within 90° is min_cosine 0). Without a normal every face answers.
+  /// Only faces whose unit normal n satisfies n · normal > min_cosine count (the paper's compatible points,
+  /// IV.C: within 90° is min_cosine 0). Without a normal every face counts.
   std::optional<Vector3> normal = std::nullopt;
   double min_cosine = 0;
   /// With a normal: counts (normal_length · |n − normal|)² as squared distance too, mesh units, so that of
-  /// points about as near the one that faces alike answers. max_distance and squared_distance include it.
+  /// points about as near the one that faces alike is returned. max_distance and squared_distance include it.
   double normal_length = 0;
 };
 
-/// Bounding-volume tree over the triangles of a mesh; answers exact closest-point queries. Copies what it
-/// needs. Queries are thread-safe and, at equal distance, answer the face of least index. Faces without area
-/// answer too when no normal is asked for.
+/// Bounding-volume tree over the triangles of a mesh; for exact closest-point queries. Copies what it
+/// needs. Queries are thread-safe and, at equal distance, return the face of least index. Faces without area
+/// count too when no normal is given.
 ///
 /// Microseconds of one core per query, 13,380 queries on a body of 39,998 faces at up to 0.2 / 2 / 50 % of
 /// the diagonal from it: 1.0 / 1.9 / 6.9, with normals 1.1 / 2.1 / 7.4, built in 22 ms. Embree 3.13's point
@@ -52,7 +52,7 @@ class ClosestPointTree {
   ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
 
   /// For the mesh this was built from with its vertices elsewhere: the same answers as a new tree, made in a
-  /// fraction of the time, and slower to ask the more the mesh was deformed. Throws as the constructor.
+  /// fraction of the time, and slower to query the more the mesh was deformed. Throws as the constructor.
   ClosestPointTree moved(const TriangleMesh& mesh) const;
   /// The same where face_normals() of the mesh are known: 3×m.
   ClosestPointTree moved(const TriangleMesh& mesh, const Points& of_faces) const;

@@ -21,7 +21,7 @@ struct EqualPositions {
   }
 };
 
-/// points: 3×n, mesh units. Throws InvalidInput when a column asked for is not finite.
+/// points: 3×n, mesh units. Throws InvalidInput when a column requested is not finite.
 EqualPositions equal_positions(const Points& points);
 
 /// Of the given columns alone, each at most once.

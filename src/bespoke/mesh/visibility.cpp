@@ -10,7 +10,7 @@ constexpr double weight_rounding = 1e-9;  // of barycentric weights: a way throu
 constexpr double slab_rounding = 1e-15;   // of t: a way along a box's side crosses it
 constexpr double at_the_eye = 1e-10;      // of the mesh's diagonal
 
-/// A way from t = 0 to t = reach that is asked about boxes.
+/// A way from t = 0 to t = reach that is queried against boxes.
 struct Way {
   Vector3 from, direction, inverse;
   double reach;

@@ -10,24 +10,23 @@
 
 namespace bespoke {
 
-/// What surfaces laid on each other say about pairs that are on the source and that nobody stands by: neither
-/// σ nor weight was given. `laid` stands for where the source's vertices lie then, 3×n, target frame, mesh
-/// units.
+/// Tests pairs on the source without a given σ or weight against a registration. `registered`: the source's
+/// registered vertices, 3×n, target frame, mesh units.
 class AnchorOutlierTest {
  public:
   /// rated: `given`, perhaps with pairs of curves behind. What is referred to must outlive this.
   AnchorOutlierTest(const TriangleMesh& source, const TriangleMesh& target, const Anchors& given,
                     const EstimatedAnchors& estimated);
 
-  /// Pairs that a source laid with all of them does not meet, or only by a strain around them
+  /// Suspects: pairs that a registration with all of them misses, or matches only by a strain around them
   /// (surface_strain.h) as of a stretch to twice the length; half of that for pairs that the others
   /// contradict. Where these are more than a third, they tell no wrong pair from its neighbours, and those
   /// that the others contradict are left; none where these are more than a third too, or among fewer than
   /// seven pairs. Numbers among those given, ascending.
   std::vector<std::size_t> suspects(const Points& registered, const AnchorAudit& audit) const;
 
-  /// Of these pairs, which must be judged ones, those that the laid source does not meet: they lie farther
-  /// from where it has them than 4 % of the target's diagonal, and than four times their estimated σ.
+  /// Of these pairs, which must be tested ones, those that the registered source misses: they lie
+  /// farther from where it has them than 4 % of the target's diagonal, and than four times their estimated σ.
   std::vector<RejectedAnchor> displaced_pairs(const Points& registered,
                                               const std::vector<std::size_t>& pairs) const;
 
@@ -40,7 +39,7 @@ class AnchorOutlierTest {
   double source_size_;     // the diagonal
   std::size_t count_ = 0;  // of the given pairs that the fit uses
   std::vector<std::size_t> tested_;
-  std::vector<SurfacePoint> feet_;  // of the judged pairs' sources
+  std::vector<SurfacePoint> feet_;  // of the tested pairs' sources
   std::vector<double> limits_;      // how far these may be missed, mesh units
 };
 

@@ -14,7 +14,7 @@ struct SuggestionOptions {
   double tolerance = 0;
 };
 
-/// A pair that a person is asked to check, or to put right.
+/// A pair for a person to check or correct.
 struct SuggestedAnchor {
   AnchorPair pair;         ///< a vertex of the source, the point of the target that the fits propose, its σ
   double uncertainty = 0;  ///< how far apart the fits are around it, mesh units of the target

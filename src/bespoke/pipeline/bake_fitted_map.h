@@ -7,7 +7,7 @@
 namespace bespoke {
 
 /// Bakes the elastic map of `fit`, and makes it another one where its bake does not do: a step that folds
-/// although it was mended becomes two, a chain of many such steps one of more equal ones, and guides of one
+/// although it was repaired becomes two, a chain of many such steps one of more equal ones, and guides of one
 /// step that take it beyond its share of voxels are left. `options` are those of the fit, `anchors` and
 /// `source` its own. Throws as fit_mapping and bake.
 BakedSteps bake_fitted_map(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,

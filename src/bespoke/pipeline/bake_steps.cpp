@@ -114,7 +114,7 @@ BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfac
   return baked;
 }
 
-/// Whether all steps do what they were asked for, and are allowed more leaves.
+/// Whether all steps do what they were requested, and are allowed more leaves.
 bool finer_steps_help(const BakedSteps& baked, const BakeOptions& options) {
   std::size_t leaves = 0;
   for (const MapStep& step : baked.steps) leaves += step.pyramid.leaf_count();

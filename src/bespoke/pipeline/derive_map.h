@@ -12,7 +12,7 @@ namespace bespoke {
 struct DerivedMap {
   Asset asset;
   BakeSummary bake;
-  /// Of random points of the band, mesh units: after there and back (invert_map), between one map and two
+  /// Of random points of the band, mesh units: after a round trip (invert_map), between one map and two
   /// (compose_maps).
   Statistics deviation;
 };

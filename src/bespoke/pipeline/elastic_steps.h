@@ -16,17 +16,18 @@ namespace bespoke {
 inline constexpr std::size_t max_planned_steps = 32;
 
 /// A path of surfaces and the times that divide it into the steps of a chain. Every step is as it would be
-/// between models of about one size: the octaves by which the fitted source is larger are left to equal
+/// between models of about one size: the powers of two by which the fitted source is larger are left to equal
 /// factors of growth in equal times.
 struct StepPlan {
-  /// Of the source, with anchors off its surface as loose vertices, to the fitted source without its octaves.
+  /// Of the source, with anchors off its surface as loose vertices, to the fitted source without its powers
+  /// of two.
   std::shared_ptr<const SurfacePath> path;
   std::vector<double> times;         ///< increasing, 0 first, 1 last: one more than there are steps
   double size_scale = 1;             ///< of the fitted source's growth (power_of_two_scale, triangle_mesh.h)
   Vector3 middle = Vector3::Zero();  ///< where growing leaves space in place, mesh units
 
   std::size_t steps() const { return times.size() - 1; }
-  double size(double t) const;     ///< how many times as large as the source the surface is, but for its pose
+  double size(double t) const;  ///< how many times as large as the source the surface is, except for its pose
   Points surface(double t) const;  ///< 3×n, t in [0, 1]: source at 0, fitted source at 1
 };
 

@@ -110,7 +110,7 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
   }
 }
 
-/// One map or a chain of as many steps as the motion asks for, more where they miss vertices. Takes the place
+/// One map or a chain of as many steps as the motion requires, more where they miss vertices. Takes the place
 /// of one that there is.
 void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                   const FitOptions& options, const Progress& progress) {

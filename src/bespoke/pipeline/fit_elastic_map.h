@@ -8,7 +8,7 @@
 
 namespace bespoke {
 
-/// E of the fitted vertices, the parts of which are held apart (IV.D, IV.E): one map for models in about the
+/// E of the fitted vertices, the parts of which are separated (IV.D, IV.E): one map for models in about the
 /// same pose, else a chain of them along surfaces between the two. `fitted` has everything but E and what
 /// follows from it. Throws as fit_mapping.
 void fit_elastic_map(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,

@@ -47,7 +47,7 @@ void require_one_unit(double ratio, const std::string& what) {
                      "other, or ask for any size (--any-size), and the map goes from one unit to the other");
 }
 
-/// Where the target touches itself no homeomorphism exists: the parts of the fitted source are held apart.
+/// Where the target touches itself no homeomorphism exists: the parts of the fitted source are separated.
 void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const FitOptions& options,
                       const Progress& progress) {
   // Parts that pass through each other more deeply were not laid there by a target's contact.

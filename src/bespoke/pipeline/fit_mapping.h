@@ -33,7 +33,7 @@ struct FittedMapping {
   RigidTransform target_from_source;            ///< Γ
   std::shared_ptr<const ElasticChain> elastic;  ///< E, of one step for models in about the same pose
   std::vector<Points> step_sources;     ///< 3×n per step, where the source's vertices are when it begins
-  Points fitted_vertices;               ///< H'_a, 3×n, source frame, mesh units, parts held apart
+  Points fitted_vertices;               ///< H'_a, 3×n, source frame, mesh units, parts separated
   std::vector<double> confidence;       ///< of the surface fitting, n (surface_fit.h); empty without
   std::vector<double> anchor_residual;  ///< |Γ(E(q)) − q'|, mesh units, one per pair
   std::vector<double> anchor_sigma;     ///< as the fit took it, mesh units, one per pair; empty without
@@ -43,7 +43,7 @@ struct FittedMapping {
 };
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
-/// and σ get a σ first; swapped ones, and those that slipped, are left out of everything but the residuals
+/// and σ get a σ first; swapped ones, and outliers, are left out of everything but the residuals
 /// (anchor_accuracy.h). Exact
 /// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
 /// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
@@ -53,13 +53,13 @@ struct FittedMapping {
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 
-/// The source laid on the target alone, sections IV.A to IV.C: everything but E and what follows from it.
+/// The registration alone, sections IV.A to IV.C: everything but E and what follows from it.
 /// Throws as fit_mapping.
 FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh& target,
                                  const Anchors& anchors, const FitOptions& options,
                                  const Progress& progress = {});
 
-/// The same for a source that somebody already fitted: `fitted` has the source's connectivity and lies on the
+/// The same for a source that is already registered: `fitted` has the source's connectivity and lies on the
 /// target, in the target frame (the consistent-connectivity case of the paper's references 4–7). Anchors may
 /// be empty: then all vertices serve as anchors of the rigid part.
 FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMesh& fitted,

@@ -21,7 +21,7 @@
 namespace bespoke {
 
 struct RigidSummary {
-  bool by_vertices = false;  ///< pairs of vertices, for want of anchors
+  bool by_vertices = false;  ///< pairs of vertices, without enough anchors
   double rotation = 0;       ///< radians, 0 … π
   Statistics residuals;      ///< |Γ(q) − q'|, mesh units
   double seconds = 0;
@@ -38,7 +38,7 @@ struct CoarseSummary {
 struct CounterpartSummary {
   std::size_t found = 0;
   std::size_t displaced = 0;  ///< of them, where the source came to lie elsewhere by the anchors alone
-  bool taken = false;         ///< the source laid by them too explains the target better
+  bool taken = false;         ///< the source registered by them too explains the target better
   double seconds = 0;
 };
 
@@ -47,13 +47,13 @@ struct ElasticSummary {
   ElasticFindings found;                     ///< what the method says itself (of a chain's first step)
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
-  bool divided_where_missed = false;         ///< more steps than the motion asks for, to meet the vertices
+  bool divided_where_missed = false;         ///< more steps than the motion requires, to meet the vertices
   std::size_t divided_steps = 0;   ///< folded when baked or were foreseen to, so that there are more
   double lambda = 0;               ///< effective distance, mesh units
   bool left_guides = false;        ///< the surface, or the bake's tolerance, is met without
   Statistics vertex_residuals;     ///< |E(vᵢ) − v'ᵢ|, mesh units
   Statistics anchor_residuals;     ///< |Γ(E(q)) − q'|, mesh units
-  std::vector<UnmetVertex> unmet;  ///< beyond a fit tolerance above 0; none asked for at 0
+  std::vector<UnmetVertex> unmet;  ///< beyond a fit tolerance above 0; none requested at 0
   std::size_t unreferenced_vertices = 0;
   std::size_t duplicate_vertices = 0;
   std::size_t anchors_off_surface = 0;    ///< exact ones, beyond the fit tolerance from the source

@@ -48,7 +48,7 @@ SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, con
                             const Leads& leads, const SurfaceFitOptions& options, const Progress& progress) {
   const TriangleMesh started{start, moving.faces};
   const Points sources = start(Eigen::all, leads.vertices);
-  // Where σ is not asked for, each counts like one per cent of the surface.
+  // Where σ is not requested, each counts like one per cent of the surface.
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(sources.cols());
   return fit_surface({started, start, fixed, sources, leads.targets, weights, leads.sigmas}, options,
                      progress);

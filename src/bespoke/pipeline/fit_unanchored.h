@@ -21,7 +21,7 @@ struct UnanchoredSummary {
 /// One line.
 std::string to_string(const UnanchoredSummary& summary);
 
-/// The source laid onto the target without anchors.
+/// The source registered to the target without anchors.
 struct UnanchoredFit {
   RigidTransform target_from_source;  ///< Γ, of all vertices
   Points start;                       ///< 3×n, the coarse deformation, source frame, mesh units

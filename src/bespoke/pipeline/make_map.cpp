@@ -10,7 +10,7 @@
 namespace bespoke {
 namespace {
 
-/// What the method of the surface fitting heeds.
+/// What the method of the surface fitting uses.
 void put_surface_fit(const SurfaceFitOptions& options, Json& json) {
   json["surface_fit"] = name_of(surface_fits, options.method);
   json["epsilon"] = options.epsilon;

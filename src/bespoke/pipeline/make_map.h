@@ -23,8 +23,8 @@ struct MakeMapOptions {
   bool keep_exact = false;           ///< store the exact E as well (Asset::exact_map)
 };
 
-/// Options whose lengths are the default fractions above of `source_diagonal` (mesh units), but for lambda
-/// `octave` times as much: they are measured on the target, which is about so many times as large
+/// Options whose lengths are the default fractions above of `source_diagonal` (mesh units), except for lambda
+/// `size_scale` times as much: they are measured on the target, which is about so many times as large
 /// (power_of_two_scale, length.h).
 MakeMapOptions default_options(double source_diagonal, double size_scale = 1);
 

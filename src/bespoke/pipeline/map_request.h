@@ -8,9 +8,10 @@
 
 namespace bespoke {
 
-/// What somebody asks of a map, by the names of `bespoke fit`; what is empty or false is left to the
+/// The options of a map, by the names of `bespoke fit`; what is empty or false is left to the
 /// defaults. Lengths in percent are of the source's bounding-box diagonal: lambda and the voxel size, which
-/// are measured around the source, of that itself, all others of an octave of it (default_options).
+/// are measured around the source, of that itself, all others of the source scaled by a power of two
+/// (default_options).
 struct MapRequest {
   std::optional<SurfaceFitMethod> surface_fit;
   std::optional<BoundaryRule> boundaries;
@@ -30,22 +31,22 @@ struct MapRequest {
   bool keep_exact = false;
   bool half = false;
   bool strict = false;    ///< the tolerance is met everywhere, whatever it takes
-  bool as_given = false;  ///< models are not mended (SurfaceFitOptions)
+  bool as_given = false;  ///< models are not repaired (SurfaceFitOptions)
   bool any_size = false;  ///< models may be in two units (FitOptions)
   bool paper = false;     ///< the printed method; needs anchors
 };
 
-/// octave: see default_options.
+/// size_scale: see default_options.
 MakeMapOptions make_options(const MapRequest& request, double source_diagonal, double size_scale = 1);
 
 /// What comes with a request.
 struct RequestInputs {
   bool anchors = false;      ///< pairs, curves or patches
-  bool fitted = false;       ///< the source already laid onto the target
+  bool fitted = false;       ///< the source already registered to the target
   bool add_corners = false;  ///< corners of bounding boxes are to be added to the anchors
 };
 
-/// An option that cannot be heeded: the methods asked for know nothing of it, or what comes with it says
+/// An option that cannot be supported: the methods requested know nothing of it, or what comes with it says
 /// otherwise.
 struct InapplicableOption {
   std::string name;  ///< of `bespoke fit`, without dashes in front
@@ -55,7 +56,7 @@ struct InapplicableOption {
 /// The first that there is.
 std::optional<InapplicableOption> inapplicable_option(const MapRequest& request, const RequestInputs& inputs);
 
-/// Gives the asked σ to the pairs that came without an accuracy; the printed method has exact anchors only.
+/// Gives the requested σ to the pairs without a given one; the printed method has exact anchors only.
 void estimate_anchor_sigmas(Anchors& anchors, const MapRequest& request, double source_diagonal,
                             double size_scale = 1);
 

@@ -29,7 +29,7 @@ struct OpenedMap {
 OpenedMap open_map(const std::filesystem::path& path, MapForm form = MapForm::grids,
                    const ReadAssetOptions& options = {});
 
-/// The way back of a map through its own cells, in the target frame: Ψ⁻¹ = Γ⁻¹ ∘ this. Throws InvalidInput
+/// The inverse of a map through its own cells, in the target frame: Ψ⁻¹ = Γ⁻¹ ∘ this. Throws InvalidInput
 /// unless every step is certified as a bijection.
 std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
                                               const RigidTransform& target_from_source);

@@ -19,7 +19,7 @@ struct OpenedPart {
 bool can_open_part(const std::filesystem::path& path);
 
 /// open_map with MapForm::grids, for points in `box` (source frame, mesh units): of those the same bits;
-/// asked for what was not read the map throws OutsidePart. Nothing for a file that must be read as a whole.
+/// a query of unread values throws OutsidePart. Nothing for a file that must be read as a whole.
 /// Throws as read_asset_part.
 std::optional<OpenedPart> open_map_part(const std::filesystem::path& path, const Box& box);
 

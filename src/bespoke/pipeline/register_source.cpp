@@ -47,7 +47,7 @@ Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, Eigen::Inde
   return warped;
 }
 
-/// What is laid onto what, and as which parts.
+/// What is registered to what, and as which parts.
 struct RegistrationInput {
   const TriangleMesh& source;
   const TriangleMesh& target;
@@ -117,7 +117,7 @@ struct RegistrationTrial {
   const Progress& progress;
   FittedMapping registered;  // the last
 
-  /// Those of the pairs left out that surfaces so laid put elsewhere.
+  /// Those of the pairs left out that surfaces so laid displace.
   std::vector<RejectedAnchor> register_without(const std::vector<std::size_t>& left_out) {
     std::vector<RejectedAnchor> all;
     for (const std::size_t index : left_out) all.push_back({index, 0});
@@ -126,9 +126,9 @@ struct RegistrationTrial {
   }
 };
 
-/// Lays the source without the pairs that surfaces so laid disown, and takes that if it explains the target
-/// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been disowned
-/// beside wrong ones: then each of a few is asked for alone. Of a few that are left out, those are taken back
+/// Lays the source without the pairs that surfaces so laid reject, and takes that if it explains the target
+/// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been rejected
+/// beside wrong ones: then each of a few is requested alone. Of a few that are left out, those are reset
 /// that raise no doubt, and with which the target is explained no worse, once the others are left out.
 /// Returns the pairs then to be used.
 EstimatedAnchors register_by_inliers(FittedMapping& result, const RegistrationInput& input,
@@ -188,7 +188,7 @@ std::vector<AnchorPair> pairs_of(const GeodesicCounterparts& counterparts, doubl
 /// Whether the source as laid may be wrong somewhere: what it did not find is bare, what was drawn to the
 /// wrong place is distorted. With five anchors, of the pairs of CounterpartOptions, those that had lost a
 /// limb were distorted by 0.18 to 0.3; right ones in one pose by 0.03 to 0.16, and covered 0.995 and more,
-/// but for scans with debris (0.91, 0.98).
+/// except for scans with debris (0.91, 0.98).
 bool is_suspect(const PlacementFigures& registered) {
   return registered.distortion > 0.15 || registered.covered < 0.99;
 }

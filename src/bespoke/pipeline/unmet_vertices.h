@@ -12,7 +12,7 @@ namespace bespoke {
 enum class UnmetReason {
   shared_place,  ///< another vertex at the same place was fitted elsewhere
   touching,      ///< the target touches itself here: the vertex was released (contact.h)
-  folded,        ///< a fitted face at the vertex is turned over, or has no area left: the data folds there
+  folded,        ///< a fitted face at the vertex is flipped, or has no area left: the data folds there
   steep,         ///< neighbours part faster than the gradient limit of the layers allows
 };
 

@@ -44,7 +44,7 @@ struct CarryOptions {
 /// Points of the options' parts move with their part, and so does what lies at the same places; no two parts
 /// may have a place in common. Points that splits add to a part move with it, but do not tell how.
 ///
-/// Blocks of a file are read, moved and written on all threads; memory does not grow with the file but for
+/// Blocks of a file are read, moved and written on all threads; memory does not grow with the file except for
 /// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending, an unknown
 /// part and for images that the file's numbers cannot hold, FormatError naming the line, the byte or the
 /// element at fault, and what the motion throws. Each output is complete or untouched.

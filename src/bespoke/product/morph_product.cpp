@@ -20,7 +20,7 @@ class Additions {
  public:
   Additions(GltfJson& json, std::vector<GltfBuffer>& buffers) : json_(json), buffers_(buffers) {}
 
-  /// Vectors of three, or numbers, with their bounds where these are asked for.
+  /// Vectors of three, or numbers, with their bounds where these are requested.
   std::size_t add(const GltfValues& values, bool has_bounds, bool is_of_vertices) {
     GltfPlace room;
     room.components = static_cast<std::size_t>(values.rows());

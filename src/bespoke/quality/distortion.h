@@ -48,7 +48,7 @@ struct MapDistortionOptions {
 MapDistortion map_distortion(const ElasticMap& map, const MapDistortionOptions& options = {},
                              const Progress& progress = {});
 
-/// Faces that the map turns over: the direction into which ∇E at the face's centre takes its normal lies
+/// Faces that the map flips: the direction into which ∇E at the face's centre takes its normal lies
 /// behind its image. Faces without area are none. `mapped`: 3×n, E at the mesh's vertices.
 std::size_t flipped_faces(const TriangleMesh& mesh, const Points& mapped, const ElasticMap& map);
 

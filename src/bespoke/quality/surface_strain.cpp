@@ -32,7 +32,7 @@ double squared_strain(const Edges& before, const Edges& after) {
   constexpr double most = 10;
   const Eigen::HouseholderQR<Edges> qr(before);
   const Eigen::Matrix2d upper = qr.matrixQR().topRows<2>().triangularView<Eigen::Upper>();
-  const Edges gradient = after * upper.inverse();  // but for a rotation
+  const Edges gradient = after * upper.inverse();  // except for a rotation
   const Eigen::Matrix2d metric = gradient.transpose() * gradient;
   const double mean = metric.trace() / 2;
   const double half_difference = std::sqrt(std::max(0.0, mean * mean - metric.determinant()));

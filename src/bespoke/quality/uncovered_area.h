@@ -6,23 +6,23 @@
 
 namespace bespoke {
 
-/// What of a target is far from a source laid onto it, although the source goes on there: where the source
-/// ends, at an open boundary, the target may go on alone.
+/// What of a target is far from a source registered to it, although the source goes on there: where the
+/// source ends, at an open boundary, the target may go on alone.
 struct UncoveredArea {
   double share = 0;     ///< of the target's area
   double distance = 0;  ///< of the farthest place there from the source, mesh units; 0 without any
   Vector3 farthest = Vector3::Zero();  ///< that place, mesh units
 
-  /// Worth saying. Of 35 pairs of models with all their anchors none leaves more than 0.6 % bare; of hands in
-  /// a fist whose fingers lack anchors 3 to 4 %.
+  /// Worth reporting. Of 35 pairs of models with all their anchors none leaves more than 0.6 % uncovered; of
+  /// hands in a fist whose fingers lack anchors 3 to 4 %.
   bool is_notable() const { return share > 0.01; }
 };
 
-/// reach: mesh units, > 0: what is nearer is not bare. By 5,000 samples of equal area. Throws InvalidInput
+/// reach: mesh units, > 0: what is nearer is covered. By 5,000 samples of equal area. Throws InvalidInput
 /// for meshes that are not valid.
 UncoveredArea uncovered_area(const TriangleMesh& target, const TriangleMesh& registered, double reach);
 
-/// "2.9 % of the target is bare, at most 9.3 from the source, at (1, 2, 3)"
+/// "2.9 % of the target is uncovered, up to 9.3 from the source, at (1, 2, 3)"
 std::string to_string(const UncoveredArea& uncovered);
 
 }  // namespace bespoke

@@ -7,7 +7,7 @@
 namespace bespoke {
 
 /// Where a layer's centres lie, in single precision and sixteen at a time: finds those near a box. It may
-/// keep a centre that is a millionth farther than asked, but never misses one.
+/// keep a centre that is a millionth farther than requested, but never misses one.
 class CenterPlaces {
  public:
   /// centers: 3×n, finite; reach: the distance that counts as near, > 0; mesh units.

@@ -38,7 +38,7 @@ class FrontCholesky {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_side) const;
 
  private:
-  /// Eliminates the subtree of a front; answers the update of its boundary (lower triangle).
+  /// Eliminates the subtree of a front; returns the update of its boundary (lower triangle).
   Eigen::MatrixXd factor(int front);
   void add_entries(const EliminationTree::Front& front, Eigen::MatrixXd& panel) const;
   void add_child(int child, const EliminationTree::Front& front, const Eigen::MatrixXd& child_update,

@@ -34,7 +34,7 @@ class LayerEvaluator {
     Bounds bounds;              ///< of x; the caller's business, by update_bounds()
     bool reached = false;       ///< whether any centre is near; the sums below are filled only then
     double value[3][lanes];     ///< u
-    double gradient[9][lanes];  ///< row-major ∂uᵢ/∂xⱼ; only when asked for
+    double gradient[9][lanes];  ///< row-major ∂uᵢ/∂xⱼ; only when requested
 
     void update_bounds();
   };

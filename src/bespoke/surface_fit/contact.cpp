@@ -19,7 +19,7 @@ namespace {
 // Of the smooth displacement: weight of an edge and of staying in place against that of a vertex in contact.
 // A displacement fades over about √(stiffness / rest) = 3 edges.
 constexpr double stiffness = 0.05, rest = 0.005;
-constexpr int patience = 5;         // steps without fewer contacts: crumpled parts push each other to and fro
+constexpr int patience = 5;         // steps without fewer contacts: folded parts push each other to and fro
 constexpr double overshoot = 0.25;  // of the gap: contacts that are solved together then settle in few steps
 
 /// What a vertex is too near to.
@@ -67,7 +67,7 @@ class ContactSearch {
     query.normal = Vector3(-normal);
     const std::optional<SurfacePoint> foot = tree.closest(x, query);
     if (!foot) return std::nullopt;
-    // Of a crumpled neighbourhood, which no distance could part.
+    // Of a folded neighbourhood, which no distance could part.
     if ((source_.faces.col(foot->face).array() == vertex).any()) return std::nullopt;
     const Vector3 there = facing.col(foot->face);
     const double distance = (x - foot->point).dot(there);

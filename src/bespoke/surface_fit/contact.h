@@ -24,7 +24,7 @@ struct ContactOptions {
 /// A vertex that gave up its place.
 struct ReleasedVertex {
   int vertex = 0;
-  Vector3 place = Vector3::Zero();  ///< where the surface fitting had laid it, mesh units
+  Vector3 place = Vector3::Zero();  ///< where the surface fitting had placed it, mesh units
 };
 
 struct ContactSummary {
@@ -39,7 +39,7 @@ struct ContactSummary {
 /// One line.
 std::string to_string(const ContactSummary& summary);
 
-/// A fitted surface whose parts were held apart.
+/// A fitted surface whose parts were separated.
 struct ContactFit {
   Points vertices;  ///< 3×n, mesh units
   ContactSummary summary;
@@ -49,7 +49,7 @@ struct ContactFit {
 /// touches itself: a vertex and the nearest point that faces it are in contact when they lie on the same side
 /// of each other as on no source (signed distance below the gap) although the source keeps them at more than
 /// gap / compression. Each gives way by half, the vertices around follow smoothly. Sheets that lie back to
-/// back (the two sides of an ear) are no contact. Where parts are too crumpled to be parted, the step with
+/// back (the two sides of an ear) are no contact. Where parts are too folded to be parted, the step with
 /// the fewest contacts is the result. Throws InvalidInput for sizes that differ or options out of range,
 /// SolverError, Interrupted.
 ContactFit separate_contacts(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,

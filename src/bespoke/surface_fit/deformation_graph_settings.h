@@ -171,8 +171,8 @@ struct NodeFitSettings {
   double normal_length = 0.02;
   double outlier_medians = 4;   ///< scale of the M-estimator, median distances: weight 1/2 there
   double outlier_floor = 1e-4;  ///< diagonals, added to that scale, where half of the pairs coincide
-  /// Of ℓ, added to that scale where far pairs count too (PlanePair::leeway): in sharp creases, which must
-  /// unfold, and for posed sources outside the target (OutsideResidualSettings).
+  /// Of ℓ, added to that scale where far pairs count too (PlanePair::outlier_scale_gain): in sharp creases,
+  /// which must unfold, and for posed sources outside the target (OutsideResidualSettings).
   double outlier_scale_gain = 1;
   /// Weight of all exact anchors together, times the iteration's number from the second on; the surface's is
   /// 1. It grows, so that anchors lead and leave no dents.

@@ -46,11 +46,12 @@ inline constexpr LaplacianAdditions no_additions{false, false, false, false, fal
 
 struct SurfaceFitOptions {
   SurfaceFitMethod method = SurfaceFitMethod::deformation_graph;
-  /// Models are mended first: seams are joined (seams.h, by who calls fit_surface), and a target that is
-  /// inside out is turned over. Not part of the printed method.
+  /// Models are repaired first: seams are joined (seams.h, by who calls fit_surface), and a target that is
+  /// inside out is flipped. Not part of the printed method.
   bool repair_models = true;
   int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
-  /// ε of the paper, a fraction of the source's bounding-box diagonal, in octaves as large as the target.
+  /// ε of the paper, a fraction of the source's bounding-box diagonal, in powers of two as large as the
+  /// target.
   double epsilon = 1e-5;
   /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit, instead of the printed or the scaled one:
   /// how much smoothness counts against reaching the target in one step (laplacian only).
@@ -88,7 +89,7 @@ struct SurfaceFitSummary {
   // deformation-graph:
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
   /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn; where they
-  /// were asked.
+  /// were queried.
   double anchor_turn_degrees = 0;
   bool posed_by_anchors = false;  ///< the anchors alone bent the source before anything else
   /// How much more than other pairs the models keep their shape, 1 to 10; similarities of parts count by it.
@@ -137,7 +138,7 @@ struct SurfaceFitInput {
   double size_scale() const;
 };
 
-/// A target whose faces look the other way than the source's, as of a file that is inside out, is turned over
+/// A target whose faces are oriented against the source's, as of a file that is inside out, is flipped
 /// first, and the summary says so; where both look out of what they enclose, one is a mirror image of the
 /// other. Throws InvalidInput for that, for unusable meshes, sizes that differ and patches that the method
 /// does not know, SolverError when the factorisation fails.

@@ -28,7 +28,7 @@ class Anchor:
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A line on the source and its counterpart on the target, which slides along itself but for fixed points."""
+    """A line on the source and its counterpart on the target, which slides along itself except at fixed points."""
 
     a: npt.ArrayLike  #: (n, 3), a polyline on the source
     b: npt.ArrayLike  #: (m, 3), on the target

@@ -21,7 +21,7 @@ class Fit:
     """A map and how it came to be."""
 
     map: Map
-    fitted: Mesh  #: the source laid onto the target, target frame
+    fitted: Mesh  #: the source registered to the target, target frame
     confidence: npt.NDArray[np.float64]  #: (n,), 0 to 1: whether a vertex found a counterpart; empty with `fitted`
     report: FitReport
 

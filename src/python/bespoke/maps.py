@@ -1,4 +1,4 @@
-"""Maps: loaded or fitted, asked for points, carried over products, turned round and joined."""
+"""Maps: loaded or fitted, applied to points and products, inverted and composed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Length = float | str
 class Map:
     """A map Ψ(t) of the space around the source onto the space around the target.
 
-    Any number of threads may ask one map at a time.
+    Any number of threads may query one map at a time.
     """
 
     def __init__(self, engine: _engine.Map) -> None:

@@ -14,7 +14,7 @@ def _known(kind: type, found: Mapping[str, Any]) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Statistics:
-    """Of a sample; a length's unit is the models'. Quantiles that were not asked for are None."""
+    """Of a sample; a length's unit is the models'. Quantiles that were not requested are None."""
 
     count: int
     min: float = 0.0
@@ -94,7 +94,7 @@ class Info:
     surface_fit: str
     elastic: str
     lambda_: float  #: effective distance
-    tolerance: float  #: asked of the bake
+    tolerance: float  #: requested
     bake_error: Statistics
     precision: str  #: "single" or "half"
     voxels: int
@@ -144,7 +144,7 @@ class FitReport:
 
     seconds: float
     peak_memory: int  #: bytes
-    vertex_residuals: Statistics  #: of the source's vertices from where the surface fitting laid them
+    vertex_residuals: Statistics  #: of the source's vertices from their registered places
     anchor_residuals: Statistics | None  #: None without anchors
     stages: tuple[Stage, ...]
     json: Mapping[str, Any]  #: all of `bespoke fit --report`

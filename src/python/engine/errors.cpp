@@ -64,7 +64,7 @@ void add_errors(py::module_& engine) {
   classes.solver_error = add("SolverError", "A numerical method did not succeed.", PyExc_ArithmeticError);
   classes.memory_limit =
       add("MemoryLimitError", "The work would need more memory than allowed.", PyExc_MemoryError);
-  classes.interrupted = add("Interrupted", "The caller asked to stop.", PyExc_RuntimeError);
+  classes.interrupted = add("Interrupted", "The caller requested a stop.", PyExc_RuntimeError);
   py::register_exception_translator(&translate);
 }
 

@@ -18,7 +18,7 @@
 
 namespace bespoke::python {
 
-/// An asset in memory, and the forms of its map that were asked for. Thread-safe.
+/// An asset in memory, and the forms of its map that were requested. Thread-safe.
 class LoadedAsset {
  public:
   explicit LoadedAsset(Asset asset) : asset_(std::move(asset)) {}
@@ -28,7 +28,7 @@ class LoadedAsset {
   /// E in its fastest form, for points and products.
   const ElasticMap& carrier();
 
-  /// E as the certificate speaks of it.
+  /// E as the certificate proves it.
   const ElasticMap& certified_map();
 
   /// Ψ(1)⁻¹ at the columns of y, 3×n, mesh units. Throws InvalidInput unless the map is certified as a

@@ -7,7 +7,7 @@
 
 namespace bespoke {
 
-/// The patches of a source laid onto those of a target.
+/// The patches of a source registered to those of a target.
 struct PatchDeformation {
   Points points;                      ///< 3×n, target frame, mesh units
   Points normals;                     ///< 3×n, unit

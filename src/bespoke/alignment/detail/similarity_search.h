@@ -7,7 +7,7 @@
 
 namespace bespoke {
 
-/// A similarity that lays a source's patches onto a target's better than its neighbours do.
+/// A similarity that aligns a source's patches with a target's better than its neighbours do.
 struct SimilarityCandidate {
   Similarity target_from_source;
   /// Root mean square distance from soft matches over the share that found some, fraction of the target's

@@ -16,10 +16,10 @@ struct EnclosedFaces {
 /// of the line, on the connected piece of the surface that it runs on, the one with less area. A face belongs
 /// to the side of two of its corners at least. Vertices at one position count as one.
 ///
-/// The line is laid onto the surface as a walk from face to face. Every vertex is on one side, two ends of an
-/// edge on the same one if the walk crosses the edge an even number of times; where no such choice exists the
-/// line does not separate the surface. Throws InvalidInput, `where` first, if so, if the line leaves the
-/// surface, encloses no vertex, or cuts the surface in two about equal halves.
+/// The line is projected onto the surface as a path from face to face. Every vertex is on one side, two ends
+/// of an edge on the same one if the path crosses the edge an even number of times; where no such choice
+/// exists the line does not separate the surface. Throws InvalidInput, `where` first, if so, if the line
+/// leaves the surface, encloses no vertex, or cuts the surface in two about equal halves.
 EnclosedFaces enclosed_faces(const TriangleMesh& mesh, const Points& border, const std::string& where);
 
 /// The mesh with the vertices at one position as one, without the faces that have less than three then.

@@ -26,7 +26,7 @@ class BlockFile {
   /// The bytes of a block. Throws FormatError, naming its offset, where they do not have its hash.
   std::string block(std::uint64_t number);
 
-  /// Read so far: trailer, table and the blocks, each as often as it was asked for.
+  /// Read so far: trailer, table and the blocks, each as often as it was requested.
   std::uint64_t bytes_read() const { return bytes_read_; }
 
  private:

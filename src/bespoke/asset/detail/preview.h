@@ -38,7 +38,7 @@ StoredGrid jacobian_preview(const ElasticChain& baked, const StoredGrid& displac
 /// otherwise of a shell, the unsigned distance minus one voxel. Its metadata says which.
 StoredGrid source_distance_preview(const TriangleMesh& source);
 
-/// The surface of `distance` carried by a map whose way back is `map_back`, about 128 voxels along the
+/// The surface of `distance` mapped by a map whose inverse is `map_back`, about 128 voxels along the
 /// diagonal of `box` (which holds its image): a shell as of an open mesh, of the distance before the map.
 StoredGrid carried_distance(const StoredGrid& distance, const Box& box,
                             const std::function<Points(const Points&)>& map_back);

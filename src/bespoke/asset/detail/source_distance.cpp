@@ -16,7 +16,7 @@ constexpr double voxels_along_diagonal = 128;
 // Half the width of a narrow band, as level-set tools expect it.
 constexpr float band_voxels = 3;
 
-/// The mesh in index space, as OpenVDB's converter asks for it.
+/// The mesh in index space, as OpenVDB's converter requires it.
 struct IndexSpaceMesh {
   const TriangleMesh& mesh;
   Vector3 origin;

@@ -21,7 +21,7 @@ std::string level_name(std::size_t step, std::size_t level);
 /// The record, once the version is one of ours and the plain entries repeat it.
 std::string checked_record(const Metadata& metadata);
 
-/// The file has as many grids as the record asks for.
+/// The file has as many grids as the record requires.
 void require_grid_count(std::size_t grids, const ParsedRecord& record);
 
 /// The grid may stand for a level of the pyramid, of which origin and precision are known: all but its number

@@ -27,8 +27,8 @@ constexpr int face_rounds = 8;
 // A round that leaves more than this share of the points that missed the tolerance is the last: where voxels
 // are as small as they get, the worst points stay however often they are found.
 constexpr double max_left_by_a_round = 0.7;
-// Leaves for folds have rims of their own, at which the tolerance may be missed, and leaves for the tolerance
-// may fold: so often they take turns.
+// Leaves for folds have level boundaries of their own, at which the tolerance may be missed, and leaves for
+// the tolerance may fold: so often they take turns.
 constexpr int turns = 3;
 
 class AdaptiveBake {

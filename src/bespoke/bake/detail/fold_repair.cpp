@@ -11,7 +11,7 @@ namespace bespoke {
 namespace {
 
 constexpr int rounds_of_refinement = 3;
-// More are no isolated places: the map itself is too steep for its voxels there, and no local change mends
+// More are no isolated places: the map itself is too steep for its voxels there, and no local change repairs
 // it.
 constexpr std::size_t max_mendable_folds = 20'000;
 // At the middle of a cell and at the corners of a cube of four voxels around it.
@@ -25,7 +25,7 @@ Points probes_around(const FoldedCell& cell, double voxel_size) {
   return x;
 }
 
-// Cells that fold although the map itself keeps its orientation in and around them: finer leaves will mend
+// Cells that fold although the map itself keeps its orientation in and around them: finer leaves will repair
 // them.
 Points needless_folds(const ElasticMap& map, const Pyramid& pyramid, const std::vector<FoldedCell>& folds) {
   Points x(3, probes * static_cast<Eigen::Index>(folds.size()));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t samples_per_level = 1024;
 constexpr std::uint64_t forecast_seed = 11;
-// Leaves that rims add to those that errors ask for (measured: 1.2 to 1.6 on the shared cases).
+// Leaves that level boundaries add to those that errors require (measured: 1.2 to 1.6 on the shared cases).
 constexpr double share_of_rims = 1.6;
 
 // Of an octant's coarse nodes and of those around them, by which they are balanced.

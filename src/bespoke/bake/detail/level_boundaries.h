@@ -7,8 +7,8 @@
 
 namespace bespoke {
 
-/// η: what a rim may add to the gradient. Without the rule 30,877 of 1.1 M cells of the prototype's body pair
-/// folded, with it 2.
+/// η: what a level boundary may add to the gradient. Without the rule 30,877 of 1.1 M cells of the
+/// prototype's body pair folded, with it 2.
 inline constexpr double rim_gradient = 0.3;
 
 /// Where a level ends, the residual r of its outermost nodes drops to zero within one voxel h, which adds a

@@ -8,7 +8,8 @@
 
 namespace bespoke {
 
-/// How much an error counts where not all can be mended: most on the model, since that is where products lie.
+/// How much an error counts where not all can be repaired: most on the model, since that is where products
+/// lie.
 class Nearness {
  public:
   explicit Nearness(const TriangleMesh& surface);

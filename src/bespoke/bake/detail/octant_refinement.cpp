@@ -17,8 +17,8 @@ constexpr double resolving_voxels_per_radius = 4;
 constexpr std::size_t octants_per_call = (1 << 16) / tested_nodes;
 
 // Whether the cell has a corner in a missing leaf. There the level drops to zero, and the error is what the
-// rim rule (rim_neighbours) tolerates at that rim: a finer leaf would not reduce it, and would have a rim of
-// its own.
+// level-boundary rule (rim_neighbours) tolerates at that level boundary: a finer leaf would not reduce it,
+// and would have a level boundary of its own.
 bool lies_at_rim(const std::bitset<8>& missing, const LatticeCoordinates& cell) {
   for (int block = 1; block < 8; ++block)
     if (missing[static_cast<std::size_t>(block)] && cell_reaches(cell, block)) return true;

@@ -62,7 +62,7 @@ void PyramidBuilder::refine_level(std::size_t level) {
   const std::size_t first = std::exchange(looked_[level].leaves, levels_[level].leaves.size());
   if (is_finest(level)) return;
   const std::vector<FailingOctant> failing = octants_.failing_octants(levels_, level, first);
-  // Several times as many may be added at rims.
+  // Several times as many may be added at level boundaries.
   const bool affordable = refused_.empty() && failing.size() <= leaves_left(Purpose::tolerance) / 8;
   if (!affordable) {
     refuse(level + 1, failing);
@@ -93,7 +93,7 @@ bool PyramidBuilder::add_worst_refused() {
   if (refused_.empty() || left == 0) return false;
   double largest = 0;
   for (const RefusedOctant& octant : refused_) largest = std::max(largest, octant.urgency);
-  // Rims as fine as the tolerance would cover all that fails.
+  // Level boundaries as fine as the tolerance would cover all that fails.
   rim_tolerance_ = std::max(largest / 2, options_.tolerance) / options_.growth_after;
   for (Looked& looked : looked_) looked.rims_known = false;
   std::vector<std::vector<LeafCoordinates>> wanted(levels_.size() + 1);
@@ -143,7 +143,8 @@ std::vector<RelaxedRegion> PyramidBuilder::relaxed() const {
   return relaxed_regions(coarsest_, left);
 }
 
-// Neighbours and the leaves above them may change the rims of every level, so each is looked at again.
+// Neighbours and the leaves above them may change the level boundaries of every level, so each is looked at
+// again.
 void PyramidBuilder::close_rims() {
   while (const std::optional<std::size_t> level = first_level_of_unknown_rims()) {
     looked_[*level].rims_known = true;
@@ -151,7 +152,7 @@ void PyramidBuilder::close_rims() {
   }
 }
 
-// Rims that fold are closed in any case.
+// Level boundaries that fold are closed in any case.
 std::vector<LeafCoordinates> PyramidBuilder::rims_within_budget(std::size_t level) {
   std::vector<LeafCoordinates> leaves = rim_neighbours(levels_, level, rim_tolerance_, options_.growth);
   while (leaves.size() > leaves_left(Purpose::reserved) &&
@@ -168,7 +169,7 @@ std::optional<std::size_t> PyramidBuilder::first_untested_level() const {
   return std::nullopt;
 }
 
-// Beyond the rim of level 0 u is zero.
+// Beyond the level boundary of level 0 u is zero.
 std::optional<std::size_t> PyramidBuilder::first_level_of_unknown_rims() const {
   for (std::size_t level = 1; level < levels_.size(); ++level)
     if (!looked_[level].rims_known) return level;
@@ -194,7 +195,7 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
 }
 
 // What the finest voxels do not resolve bends by more than second differences tell, and no finer level takes
-// back what balancing adds there: a cell of a head folded, which no leaf could mend.
+// back what balancing adds there: a cell of a head folded, which no leaf could repair.
 NodeValues PyramidBuilder::nodes_of(std::size_t level) const {
   return is_finest(level) ? NodeValues::sampled : options_.nodes;
 }
@@ -216,7 +217,7 @@ std::size_t PyramidBuilder::refine_at(const Points& x, Purpose purpose) {
   return levels_.leaf_count() - before;
 }
 
-// In a cell at a rim the leaves beyond the rim, elsewhere a finer one.
+// In a cell at a level boundary the leaves beyond the level boundary, elsewhere a finer one.
 std::vector<PyramidBuilder::WantedLeaf> PyramidBuilder::leaves_wanted_at(const Vector3& x) const {
   for (std::size_t level = levels_.size(); level-- > 0;) {
     const LatticeCoordinates cell = levels_[level].lattice.cell_of(x);

@@ -42,14 +42,14 @@ class PyramidBuilder {
   void refine();
 
   /// Gives the finest leaf around each point one below it, whatever its error; where the point lies in a cell
-  /// at a rim, adds the leaves beyond the rim instead. Points outside all leaves are left alone. Returns the
-  /// number of leaves added; call refine() afterwards.
+  /// at a level boundary, adds the leaves beyond the level boundary instead. Points outside all leaves are
+  /// left alone. Returns the number of leaves added; call refine() afterwards.
   std::size_t refine_at(const Points& x, Purpose purpose = Purpose::tolerance);
 
   /// From now on leaves may be for any purpose. Returns whether octants wait for them; call refine() then.
   bool free_reserve();
 
-  /// Where octants that do not pass have no leaf of their own, for want of leaves.
+  /// Where octants that do not pass have no leaf of their own, since leaves are bounded.
   std::vector<RelaxedRegion> relaxed() const;
 
   /// Rounded, without empty leaves (stored_pyramid).
@@ -67,7 +67,7 @@ class PyramidBuilder {
  private:
   struct Looked {
     std::size_t leaves = 0;   // whose octants were tested, the first so many of the level
-    bool rims_known = false;  // no rim has changed since they were looked at
+    bool rims_known = false;  // no level boundary has changed since they were looked at
   };
   struct WantedLeaf {
     std::size_t level;
@@ -91,7 +91,8 @@ class PyramidBuilder {
 
   const ElasticMap& map_;
   RefinementOptions options_;
-  double rim_tolerance_;  // largest jump at a rim, mesh units: the tolerance, more where leaves are few
+  double rim_tolerance_;  // largest jump at a level boundary, mesh units: the tolerance, more where leaves
+                          // are few
   const Progress& progress_;
   Lattice coarsest_;
   std::vector<LeafCoordinates> band_;

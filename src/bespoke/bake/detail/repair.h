@@ -17,7 +17,7 @@ struct RepairSummary {
 /// Moves nodes of folded cells towards the mean of their neighbours, finest level first, then coarser ones
 /// for folds that are wider than their cells, until every cell is certified or it gives up. Only values
 /// change, no leaf is added; nodes far from a fold keep theirs; values keep the pyramid's precision. Folds of
-/// the affine part cannot be repaired. It gives up on a level once several rounds mend next to nothing.
+/// the affine part cannot be repaired. It gives up on a level once several rounds repair next to nothing.
 /// `folds`: all folded and undecided cells of the pyramid's certificate.
 RepairSummary repair_folds(Pyramid& pyramid, const AffineMap& affine, const std::vector<FoldedCell>& folds,
                            const Progress& progress = {});

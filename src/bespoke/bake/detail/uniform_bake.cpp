@@ -45,7 +45,7 @@ double smallest_radius(const Support& support) {
 }
 
 // Too fine a lattice must be refused before its leaves are counted one by one: once a coarser one with the
-// same origin has this many, the rest of the count is volume, up to the leaves at the rim.
+// same origin has this many, the rest of the count is volume, up to the leaves at the level boundary.
 double bytes_needed(const Support& support, const Lattice& lattice) {
   constexpr std::size_t enough_leaves = 4'000'000;
   const double extent = bounding_box(support).sizes().maxCoeff();
@@ -139,7 +139,7 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   result.summary.misoriented_faces =
       FaceTurns(map, options, however_thin).misoriented_faces(result.pyramid).size();
   result.summary.measure_seconds = watch.lap();
-  // Asked for this size, it has no finer leaves to mend a fold by.
+  // Asked for this size, it has no finer leaves to repair a fold by.
   result.certificate = certify(result.pyramid, map.affine(), 1, progress);
   result.summary.repair_seconds = watch.lap();
   return result;

@@ -14,7 +14,7 @@ class RandomAccessFile {
   enum class Access {
     read,
     write_alone,  ///< and read; made where it is not there; locked against others until the object is gone
-    write,        ///< of a file that is there and nobody else's
+    write,        ///< of a file that exists and that no other process has open
   };
 
   /// Throws FileError, also when the path is no regular file, or when another process has it locked.
@@ -27,7 +27,7 @@ class RandomAccessFile {
 
   /// Bytes. These and all below throw FileError.
   std::uint64_t size() const;
-  /// Fewer than asked for at the end of the file.
+  /// Fewer than requested at the end of the file.
   std::string read(std::uint64_t offset, std::uint64_t bytes) const;
   void write(std::uint64_t offset, std::string_view bytes);
   /// Cuts off what lies behind.

@@ -8,7 +8,7 @@
 namespace bespoke {
 
 /// All triangles within one radius of a point, with their squared distances: what a blend over neighbouring
-/// faces asks for at every point. Thread-safe; what is found, and in which order, depends on the triangles,
+/// faces requires at every point. Thread-safe; what is found, and in which order, depends on the triangles,
 /// the radius and the point alone.
 class FaceDistances {
  public:

@@ -26,7 +26,7 @@ void write_values(std::ostream& out, const std::vector<float>& values) {
 
 }  // namespace
 
-// Scalars too, because vtkGridTransform asks for scalars of three components; other filters ask for vectors.
+// Scalars too, because vtkGridTransform requires scalars of three components; other filters require vectors.
 void write_vti(std::ostream& out, const DisplacementImage& image, const ImageNotes& notes) {
   std::string extent;
   for (const std::size_t size : image.size)

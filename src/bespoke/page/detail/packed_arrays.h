@@ -12,7 +12,7 @@ namespace bespoke {
 
 /// The numbers of a scene, as bytes that deflate well: of each array the differences from one number to the
 /// next, zigzag (0, −1, 1, −2 … become 0, 1, 2, 3 …), all lowest bytes first, then all second ones, and so
-/// on. What every `add` answers is the reference by which the scene's record names the array.
+/// on. What every `add` returns is the reference by which the scene's record names the array.
 class PackedArrays {
  public:
   /// bits: 16 or 32, which hold every value.

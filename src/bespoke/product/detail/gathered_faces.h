@@ -34,7 +34,7 @@ class GatheredFaces {
   std::vector<int> polygon_start_{0}, corners_;
 };
 
-/// All of a text format's file. The normals of a point cloud are asked for: those of a mesh are not needed.
+/// All of a text format's file. The normals of a point cloud are requested: those of a mesh are not needed.
 enum class GatheredNormals { none, of_points };
 GatheredFaces gather_text(const InputFile& file, const TextFormat& format,
                           GatheredNormals normals = GatheredNormals::none);

@@ -19,7 +19,7 @@ struct GltfRows {
   std::shared_ptr<const char> bytes;  ///< of all rows, one behind the other
 };
 
-/// The bytes of a glTF buffer: those of a file, which are read when they are asked for, or a string; with
+/// The bytes of a glTF buffer: those of a file, which are read when they are requested, or a string; with
 /// rows in place of some of them. Copies share what they hold.
 class GltfBuffer {
  public:

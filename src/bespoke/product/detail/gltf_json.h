@@ -21,7 +21,7 @@ GltfJson parse_gltf_json(std::string_view text, const std::filesystem::path& pat
 std::string edited_json(std::string_view text, const GltfJson& before, const GltfJson& now);
 
 /// An object of a glTF file's JSON, and its JSON pointer. Every function throws FormatError "path: pointer:
-/// what" for a value that is not of the kind that is asked for. File and JSON must outlive it.
+/// what" for a value that is not of the kind that is requested. File and JSON must outlive it.
 class GltfPart {
  public:
   GltfPart(const std::filesystem::path& path, const GltfJson& json, std::string pointer);

@@ -254,7 +254,7 @@ class GltfSplitter {
     return result;
   }
 
-  /// As the accessor `source` but for its values.
+  /// As the accessor `source` except for its values.
   std::size_t store(std::size_t source, const GltfVertexData& vertex_data) {
     const bool is_normalized = vertex_data.is_normalized && vertex_data.component != GltfComponent::real;
     const GltfPlace place = add_view(json_, file_.buffers,

@@ -185,7 +185,7 @@ ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
     is_complete = is_complete && largest[kind] <= limits[kind];
   }
   if (!is_complete) {
-    // Once more, to name the first line that asks for too much.
+    // Once more, to name the first line that requires too much.
     TextCutter again(file.path(), 1, count_obj);
     walk_blocks(
         file, 0, [&](const Window& window) { return again(window); },

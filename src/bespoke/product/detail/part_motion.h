@@ -43,9 +43,9 @@ struct MotionWithParts {
   std::vector<PartSummary> parts;
 };
 
-/// `motion`, but for the points of the parts, which move as fit_part says of `parts`. What lies at the same
-/// place as a point of `places` (the same parts, perhaps with more points), to the last bit, moves alike, so
-/// that seams stay closed. Throws InvalidInput where two parts have a place in common.
+/// `motion`, except for the points of the parts, which move as fit_part says of `parts`. What lies at the
+/// same place as a point of `places` (the same parts, perhaps with more points), to the last bit, moves
+/// alike, so that seams stay closed. Throws InvalidInput where two parts have a place in common.
 MotionWithParts with_rigid_parts(const PointMotion& motion, const std::vector<PartPoints>& parts,
                                  const std::vector<PartPoints>& places, const std::filesystem::path& file);
 

@@ -55,7 +55,7 @@ struct LineSyntax {
 /// Walks through the lines of a block, and through the words of a line.
 class TextWords {
  public:
-  /// The block and the path must outlive the walk.
+  /// The block and the path must outlive the iteration.
   TextWords(const TextBlock& block, const std::filesystem::path& path, LineSyntax syntax = {})
       : block_(block),
         path_(path),

@@ -216,7 +216,7 @@ PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSetting
   if (input.anchor_sources.cols() == 0) return;
   coarse_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
   for (int iteration = 0; iteration < settings.iterations[0]; ++iteration) {
-    // A large β first spreads a turn over a whole limb; a small one later lets it gather at the joint.
+    // A large β first spreads a rotation over a whole limb; a small one later lets it gather at the joint.
     const double share = double(iteration) / std::max(1, settings.iterations[0] - 1);
     coarse_->iterate(settings.first_smoothness *
                      std::pow(settings.last_smoothness / settings.first_smoothness, share));

@@ -25,7 +25,7 @@ struct AnchorPoseInput {
 /// to what it was, with similarities Mᵢ that change little from node to node:
 ///   Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ.
 /// where h is the spacing of the nodes. So a limb turns by more than a right angle without shrinking before
-/// any closest point is asked. Alternates between the similarities and the places, from no motion on: few
+/// any closest point is queried. Alternates between the similarities and the places, from no motion on: few
 /// nodes first, which find the turns of whole limbs, then many from there. Without anchors nothing moves.
 /// Same bytes at any thread count.
 class PosingByAnchors {

@@ -35,7 +35,7 @@ struct SurfaceAnchors {
 };
 
 /// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
-/// their anchors are from the source, were that `octave` times as large.
+/// their anchors are from the source, were that `size_scale` times as large.
 void register_by_similarity(const TriangleMesh& source, const TriangleMesh& target, double size_scale,
                             SurfaceAnchors& anchors) {
   if (!(anchors.sigmas.array() > 0).any()) return;
@@ -193,7 +193,7 @@ Eigen::VectorXd pose_sigmas(const Scene& scene, const PoseSettings& settings) {
       .cwiseMax(scene.anchors.sigmas);
 }
 
-/// Whether closest points cannot find what anchors tell: two at least, since one alone may be a slip, are
+/// Whether closest points cannot find what anchors tell: two at least, since one alone may be an outlier, are
 /// farther from their targets than closest points reach.
 bool are_out_of_reach(const Scene& scene, const Points& anchors, const DeformationGraphSettings& settings) {
   const double reach = settings.nodes.max_distance * scene.diagonal;
@@ -235,7 +235,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   return posed.fit_fine();
 }
 
-/// Pose, nodes, layers of space, mending. Returns what the summary says of them.
+/// Pose, nodes, layers of space, repair. Returns what the summary says of them.
 SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
                          const DeformationGraphSettings& settings, const Progress& progress) {
   SurfaceFitSummary summary;

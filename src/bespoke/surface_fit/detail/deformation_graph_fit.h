@@ -10,7 +10,7 @@ namespace bespoke {
 /// Surface fitting as a deformation, coarse to fine (default). One similarity first, refined on the surfaces;
 /// where it explains the target nothing else is fitted (similarity_fit.h). Else, where the anchors turn a
 /// part beyond a right angle, they bend the source first (anchor_pose.h). Then a smooth deformation of nodes
-/// (node_fit.h), then layers of space (detail_layers.h), and faces that these turned over are taken back
+/// (node_fit.h), then layers of space (detail_layers.h), and faces that these flipped are reset
 /// (misoriented_faces.h). Closest points on the target's boundary do not attract; a boundary of the source
 /// meets the target's where both are plausibly the same cut (boundary_match.h). Exact anchors are met up to
 /// 1e-3 of what the layers left; soft ones pull like their weight in per cent of the surface.

@@ -16,7 +16,7 @@ struct NodeWeight {
   double weight = 0;
 };
 
-/// A vertex as a weighted sum of nodes; without allocation, because it is asked for every pair.
+/// A vertex as a weighted sum of nodes; without allocation, because every pair evaluates it.
 struct VertexNodes {
   std::array<NodeWeight, NodeSettings::per_vertex> nodes;
   std::size_t count = 0;

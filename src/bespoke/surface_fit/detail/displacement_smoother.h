@@ -7,11 +7,11 @@
 
 namespace bespoke {
 
-/// A point of the surface whose displacement is asked for: Σ weights[k] · T(vertices[k]).
+/// A point of the surface whose displacement is requested: Σ weights[k] · T(vertices[k]).
 struct DisplacementAnchor {
   Eigen::Vector3i vertices;
   Vector3 barycentric;  ///< sum 1
-  double weight = 0;    ///< > 0, no unit; a vertex's own wish has weight 1
+  double weight = 0;    ///< > 0, no unit; a vertex's own data term has weight 1
 };
 
 /// Eq. 11–13: smooth displacements T near the wished ones T⁰, the minimum of
@@ -25,7 +25,7 @@ class DisplacementSmoother {
   DisplacementSmoother(const TriangleMesh& mesh, const std::vector<DisplacementAnchor>& anchors,
                        double stiffness);
 
-  /// wished: 3×n, mesh units, 0 where `matched` is 0: such a vertex has no wish of its own and follows its
+  /// wished: 3×n, mesh units, 0 where `matched` is 0: such a vertex has no data term and follows its
   /// neighbours (its first term is left out of the energy). anchor_wished: 3×k.
   Points solve(const Points& wished, const std::vector<char>& matched, const Points& anchor_wished) const;
 

@@ -9,7 +9,7 @@ namespace bespoke {
 /// source: roughly in place.
 bool faces_away(const TriangleMesh& source, const TriangleMesh& target);
 
-/// The mesh with every face turned over.
+/// The mesh with every face flipped.
 TriangleMesh flipped(TriangleMesh mesh);
 
 }  // namespace bespoke

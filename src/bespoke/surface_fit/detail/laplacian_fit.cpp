@@ -15,8 +15,8 @@ namespace bespoke {
 namespace {
 
 /// Anchors count only where both ends lie on their surfaces to this fraction of the source's bounding-box
-/// diagonal, in octaves as large on the target: farther off, the surface point beneath them is not what the
-/// user paired.
+/// diagonal, in powers of two as large on the target: farther off, the surface point beneath them is not what
+/// the user paired.
 constexpr double on_surface = 1e-3;
 
 /// s of Eq. 11. With scaled_stiffness s grows with the vertices: displacements then spread over some 0.08 of

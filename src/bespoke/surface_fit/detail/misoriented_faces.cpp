@@ -202,8 +202,8 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
   return released;
 }
 
-/// Of the free vertices, those of patches that are bent no farther from their shape as mended than as drawn.
-/// A patch is connected along edges, and its faces are those with a corner in it.
+/// Of the free vertices, those of patches that are bent no farther from their shape as repaired than as
+/// drawn. A patch is connected along edges, and its faces are those with a corner in it.
 std::vector<int> no_farther_bent(const DrawnSurface& surface, const std::vector<Hinge>& edges,
                                  const Points& mended, std::vector<int> free) {
   if (free.empty()) return free;

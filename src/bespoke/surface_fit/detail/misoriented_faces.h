@@ -15,7 +15,7 @@ struct DrawnSurface {
   const Points& after;         ///< 3×n, as it was drawn
 };
 
-/// A surface whose turned faces were taken back.
+/// A surface whose turned faces were reset.
 struct RepairedSurface {
   Points vertices;                      ///< 3×n, mesh units
   std::size_t repaired_vertices = 0;    ///< vertices that follow their neighbours
@@ -27,8 +27,8 @@ struct RepairedSurface {
 /// is bent by more than a right angle at an edge at which it is not in the shape, its vertices give up their
 /// displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings around
 /// the face as help and the settings allow, and as long as that is a small part of the vertices: where more
-/// has turned, mending would undo the fit. By as much as a face comes nearer to the surface around it, that
-/// of its corners' normals, it has not turned: the fit smooths what is crumpled on the source. A patch of
+/// has turned, repair would undo the fit. By as much as a face comes nearer to the surface around it, that
+/// of its corners' normals, it has not turned: the fit smooths what is folded on the source. A patch of
 /// such vertices stays as it was drawn, turned and stretched, where following would bend it farther from its
 /// shape (the sum of the squared bends of its edges, bends.h): there it is the smooth deformation that is
 /// folded, a nostril inside out, and measures nothing. Throws SolverError.

@@ -65,13 +65,13 @@ Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& in
   return areas;
 }
 
-/// Those vertices speak for nothing.
+/// Those vertices have zero weight.
 void silence(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
   for (std::size_t i = 0; i < vertices.size(); ++i)
     if (vertices[i]) areas[static_cast<Eigen::Index>(i)] = 0;
 }
 
-/// With as many iterations as the anchors ask for.
+/// With as many iterations as the anchors require.
 NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
   if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
   return settings;

@@ -38,7 +38,7 @@ struct NodeFit {
   Points anchor_sources;        ///< 3×k, carried along
   Cavities unmatched_cavities;  ///< of `rest`
   std::vector<Cavity> lacking;  ///< of them, those that the target lacks
-  std::vector<char> hidden;     ///< n: in a cavity or lining that the target lacks, without any pair
+  std::vector<char> hidden;     ///< n: in a cavity that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
   double rigidity = 1;  ///< g of the pair, as NodeFitting::fit_coarse tells it
@@ -48,11 +48,11 @@ struct NodeFit {
 /// that (compatible points both ways, nearest in place and normal, symmetric point to plane, weighted by
 /// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
 /// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
-/// geometrically. Second differences are taken along the surface as it lies now, so that it is the way back
-/// from the target that bends least. After the first level vertices in cavities or linings that the target
-/// lacks (cavities.h, unmatched_cavities.h) have no more pairs, and the similarities count by the pair's
-/// rigidity. Where no anchor leads, linings of either (mesh/cavities.h) have none in the first level: they
-/// would be laid onto whatever is near. Where the target has nothing to offer, the last two extrapolate.
+/// geometrically. Second differences are taken along the surface as it lies now, so that the inverse bends
+/// least. After the first level vertices in cavities that the target lacks (cavities.h, unmatched_cavities.h)
+/// have no more pairs, and the similarities count by the pair's rigidity. Where no anchor leads, cavities of
+/// either (mesh/cavities.h) have none in the first level: they would be registered to whatever is near. Where
+/// the target has nothing to offer, the last two extrapolate.
 class NodeFitting {
  public:
   /// The input's references and the progress must outlive it.
@@ -81,7 +81,7 @@ class NodeFitting {
   BoundaryMatcher boundaries_;
   NodeSurface surface_;
   AnchorLimits limits_;
-  std::vector<char> target_lined_;  // found with the linings
+  std::vector<char> target_lined_;  // found with the cavities
   NodeFit fit_;
   std::unique_ptr<NodeSystem> fine_;  // of the second level, from the end of the first on
 };

@@ -49,7 +49,8 @@ class NodeSystem {
   void start_from(const Points& vertices);
 
   /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
-  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ leeway))²)     robust point to plane
+  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ outlier scale gain))²)     robust point
+  ///   to plane
   ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
   ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)², by areas grown as the shape
   ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, turned and scaled as around

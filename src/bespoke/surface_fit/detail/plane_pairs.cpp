@@ -29,7 +29,7 @@ struct Search {
   }
 };
 
-/// Where anchors tell the pose and the source still stands out of the target, it is its shape that differs,
+/// Where anchors tell the pose and the source still lies outside the target, it is its shape that differs,
 /// or a joint that has bent at another place.
 double sinking(const Search& search, const FoundPair& pair, int source_vertex) {
   const Eigen::VectorXd* certainty = search.surfaces.pose_certainty;

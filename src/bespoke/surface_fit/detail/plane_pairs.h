@@ -13,10 +13,10 @@ struct PlanePair {
   int vertex = 0;
   Vector3 point;      ///< of the plane, mesh units
   Vector3 normal;     ///< unit, halfway between both surfaces' (symmetric point to plane)
-  double weight = 0;  ///< mesh units squared: the area that the pair speaks for, times the squared agreement
+  double weight = 0;  ///< mesh units squared: the area that the pair represents, times the squared agreement
                       ///< of the normals, times its direction's share
   /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
-  /// the asking surface is creased there (crease.h) or, where the source stands out of the target, how surely
+  /// the asking surface is creased there (crease.h) or, where the source lies outside the target, how surely
   /// anchors tell its pose (pose_certainty.h), whichever is more.
   double outlier_scale_gain = 0;
 };
@@ -25,7 +25,7 @@ struct PlanePair {
 struct PairSurfaces {
   const TargetSurface& source;  ///< where the source is now
   const TargetSurface& target;
-  /// n: what each vertex speaks for (informative_areas.h); 0 leaves it out, as a counterpart too
+  /// n: what each vertex represents (informative_areas.h); 0 leaves it out, as a counterpart too
   const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
   double diagonal = 0;  ///< of the aligned source, mesh units

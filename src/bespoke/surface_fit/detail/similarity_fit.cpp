@@ -94,7 +94,7 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
     const auto residuals = plane_residuals(moved, areas, target, limits, settings.max_samples);
     if (residuals.empty()) return {start, within, false};
     fit.residual = quantile(residuals, settings.quantile);
-    // Most pairs are no similar copies; they shall not pay for all iterations.
+    // Most pairs are no similar copies; they must not pay for all iterations.
     const bool give_up =
         iteration >= settings.trial_iterations && !(fit.residual <= settings.early_exit_factor * tolerance);
     if (iteration == settings.max_iterations || give_up) break;

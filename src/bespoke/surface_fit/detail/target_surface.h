@@ -30,15 +30,15 @@ struct MatchLimits {
   double min_cosine = 0;     ///< between the query's normal and that of the face
   double max_distance = 0;   ///< mesh units
   double normal_length = 0;  ///< mesh units; prefers faces of like normal (ClosestPointQuery)
-  /// Whether a point on the surface's boundary answers. Usually it does not: there the surface ends, not the
-  /// body, and whatever lies beyond would collapse onto the boundary curve.
+  /// Whether a point on the surface's boundary is a counterpart. Usually it is not: there the surface ends,
+  /// not the body, and whatever lies beyond would collapse onto the boundary curve.
   bool boundary_answers = false;
-  /// Only faces of this patch answer (FacePatches::none: those of no patch), and where it ends is boundary. A
-  /// surface without patches does not ask.
+  /// Only faces of this patch count (FacePatches::none: those of no patch), and where it ends is boundary. A
+  /// surface without patches ignores it.
   std::optional<int> patch = std::nullopt;
 };
 
-/// A surface that answers closest compatible points. Thread-safe.
+/// A surface with queries of closest compatible points. Thread-safe.
 class TargetSurface {
  public:
   /// Throws InvalidInput as ClosestPointTree.
@@ -64,7 +64,7 @@ class TargetSurface {
   bool is_excluded(Eigen::Index vertex) const { return patch(vertex) == FacePatches::excluded; }
 
  private:
-  /// Faces that answer together, and where they end: what stays as vertices move.
+  /// Faces that are searched together, and where they end: what stays as vertices move.
   struct Extent {
     Faces faces;
     std::vector<int> numbers;  // of the faces in the mesh; empty for all of them

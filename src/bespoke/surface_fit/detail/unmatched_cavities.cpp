@@ -24,9 +24,9 @@ struct Surroundings {
         radius(std::sqrt((points.colwise() - center).colwise().squaredNorm().maxCoeff())) {}
 };
 
-constexpr double min_apart = 1e-6;  // of a lining's radius: nearer places are one
+constexpr double min_apart = 1e-6;  // of a cavity's radius: nearer places are one
 
-/// Places of the open surface around a lining. `lined`: the vertices in linings.
+/// Places of the open surface around a cavity. `lined`: the vertices in cavities.
 std::vector<int> open_places(const Points& vertices, const Cavity& cavity, const std::vector<char>& lined,
                              const UnmatchedCavitySettings& settings) {
   const Surroundings own(vertices(Eigen::all, cavity.vertices));
@@ -54,8 +54,8 @@ bool span_space(const Points& points, double min_width) {
   return widths[2] > min_width * widths[0];
 }
 
-/// What is given at the rim, spread over the lining such that it is the mean over the neighbours, by one over
-/// their distance. `offsets`: 3×n, of the rim's vertices; the lining's are set.
+/// What is given at the rim, spread over the cavity such that it is the mean over the neighbours, by one over
+/// their distance. `offsets`: 3×n, of the rim's vertices; the cavity's are set.
 void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offsets) {
   std::map<int, Eigen::Index> column;
   for (const int vertex : cavity.vertices) column.emplace(vertex, static_cast<Eigen::Index>(column.size()));
@@ -77,7 +77,7 @@ void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offse
         right.row(own->second) += offsets.col(to).transpose() / length;
     }
   }
-  constexpr double free_floating = 1e-9;  // of the largest weight: a lining without rim stays
+  constexpr double free_floating = 1e-9;  // of the largest weight: a cavity without rim stays
   for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(i, i, free_floating * largest);
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());

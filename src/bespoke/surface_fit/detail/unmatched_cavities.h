@@ -8,9 +8,9 @@
 
 namespace bespoke {
 
-/// Those of the source's linings that the target lacks: within a lining's radius about its middle, as the
-/// source lies now (mesh units), the target's linings have less than a share of its area. `lined`: the
-/// target's vertices in linings.
+/// Those of the source's cavities that the target lacks: within a cavity's radius about its middle, as the
+/// source lies now (mesh units), the target's cavities have less than a share of its area. `lined`: the
+/// target's vertices in cavities.
 std::vector<Cavity> unmatched_cavities(const std::vector<Cavity>& cavities, const TriangleMesh& source,
                                        const TriangleMesh& target, const std::vector<char>& lined,
                                        const UnmatchedCavitySettings& settings);
@@ -18,14 +18,14 @@ std::vector<Cavity> unmatched_cavities(const std::vector<Cavity>& cavities, cons
 /// One surface twice, with the same faces; mesh units.
 struct RegisteredSurface {
   const TriangleMesh& source;
-  const Points& fitted;  ///< 3×n: its vertices where they are laid
+  const Points& fitted;  ///< 3×n: its registered vertices
 };
 
-/// Takes linings where the space around them goes: each by the warp |r|³ that takes places of the open
+/// Takes cavities where the space around them goes: each by the warp |r|³ that takes places of the open
 /// surface around it where these are laid; what that leaves at its rim is spread over it. Following its
 /// neighbours along the surface, it would keep its shape, and come through a cheek that is thinner on the
-/// target. A lining without enough of the surface around it stays. `lined`: n, the source's vertices in any
-/// lining. Returns all vertices, 3×n. Throws SolverError.
+/// target. A cavity without enough of the surface around it stays. `lined`: n, the source's vertices in any
+/// cavity. Returns all vertices, 3×n. Throws SolverError.
 Points carried_by_space(const RegisteredSurface& laid, const std::vector<Cavity>& cavities,
                         const std::vector<char>& lined, const UnmatchedCavitySettings& settings);
 
