@@ -147,7 +147,7 @@ test("what it encloses is found anew when a point was dragged", async () => {
 
 test("the saved border runs through the clicked places; fit takes it and finds the same faces inside", async () => {
   const [patch] = await curves();
-  assert.match(await warnings(), /fit asks for pairs or a curve beside them/);
+  assert.match(await warnings(), /fit requires pairs or a curve beside them/);
   const { patches, curves: lines } = await saved();
   assert.equal(lines, undefined);
   assert.equal(patches?.length, 1);

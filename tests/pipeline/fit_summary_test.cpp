@@ -55,9 +55,9 @@ TEST(FitSummary, LinesNameWhatWasLeftOut) {
   summary.duplicate_vertices = 3;
   summary.anchors_off_surface = 2;
   EXPECT_THAT(to_string(summary), HasSubstr("1 unreferenced vertices left out; 3 duplicate vertices merged; "
-                                            "2 anchors off the surface met as points"));
+                                            "2 anchors off the surface matched as points"));
   summary.meets_anchors_off_surface = false;
-  EXPECT_THAT(to_string(summary), HasSubstr("2 anchors off the surface left out: p-FFD knows faces only"));
+  EXPECT_THAT(to_string(summary), HasSubstr("2 anchors off the surface left out: p-FFD uses faces only"));
 }
 
 TEST(StagesJson, HoldTheFieldsWithoutTimes) {

@@ -44,7 +44,7 @@ void require_one_unit(double ratio, const std::string& what) {
   if (ratio <= largest_size_ratio && 1 / ratio <= largest_size_ratio) return;
   throw InvalidInput("the target is " + format_number(ratio, 3) + " times as large as the source by " + what +
                      ", as if they were in two units; bring one of them, and its anchors, to the unit of the "
-                     "other, or ask for any size (--any-size), and the map goes from one unit to the other");
+                     "other, or allow any size (--any-size), and the map goes from one unit to the other");
 }
 
 /// Where the target touches itself no homeomorphism exists: the parts of the fitted source are separated.

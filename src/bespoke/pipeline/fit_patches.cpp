@@ -63,8 +63,7 @@ FitPatches fit_patches(const Anchors& anchors, const TriangleMesh& source, const
   FitPatches patches;
   if (anchors.patches.empty()) return patches;
   if (anchors.pairs.empty() && anchors.curves.empty())
-    throw InvalidInput(
-        "patches say what belongs together, not where it lies; give 4 anchor pairs at least beside them");
+    throw InvalidInput("patches pair parts but fix no positions; give at least 4 anchor pairs as well");
   patches.source = face_patches(source, anchors.patches, ModelSide::source);
   patches.target = face_patches(target, anchors.patches, ModelSide::target);
   require_sides_agree(anchors, patches, source, target);

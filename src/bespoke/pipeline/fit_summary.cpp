@@ -8,8 +8,8 @@
 namespace bespoke {
 
 std::string to_string(const SeamSummary& summary) {
-  return "vertices joined that are one but for a seam: " + std::to_string(summary.source) +
-         " of the source, " + std::to_string(summary.target) + " of the target";
+  return "vertices joined at seams: " + std::to_string(summary.source) + " of the source, " +
+         std::to_string(summary.target) + " of the target";
 }
 
 std::string to_string(const RigidSummary& summary) {
@@ -44,7 +44,7 @@ std::string to_string(const ElasticFindings& found) {
 
 std::string motion_text(const RegionalMotion& motion) {
   char text[120];
-  std::snprintf(text, sizeof text, "parts turn by %.3g degrees and stretch by %.3g",
+  std::snprintf(text, sizeof text, "parts rotate by %.3g degrees and stretch by %.3g",
                 motion.turn * 180 / std::numbers::pi, motion.stretch);
   return text;
 }
@@ -80,7 +80,7 @@ std::string to_string(const ElasticSummary& summary) {
     line += "; " + std::to_string(summary.duplicate_vertices) + " duplicate vertices merged";
   if (summary.anchors_off_surface > 0)
     line += "; " + std::to_string(summary.anchors_off_surface) + " anchors off the surface" +
-            (summary.meets_anchors_off_surface ? " met as points" : " left out: p-FFD knows faces only");
+            (summary.meets_anchors_off_surface ? " matched as points" : " left out: p-FFD uses faces only");
   return line;
 }
 
@@ -122,7 +122,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
                                                         ": " + to_string(*summary.surface)
                                                   : "given: the fitted mesh as it is"});
   if (summary.uncovered && summary.uncovered->is_notable())
-    lines.push_back({"bare", to_string(*summary.uncovered)});
+    lines.push_back({"uncovered", to_string(*summary.uncovered)});
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});

@@ -53,7 +53,7 @@ std::optional<InapplicableOption> against_inputs(const MapRequest& request, cons
 
 std::optional<InapplicableOption> against_paper(const MapRequest& request) {
   if (!request.paper) return std::nullopt;
-  const std::string reason = "the printed method, which is asked for, has its own";
+  const std::string reason = "the printed method (--paper) has its own";
   if (request.surface_fit) return InapplicableOption{"surface-fit", reason};
   if (request.elastic) return InapplicableOption{"elastic", reason};
   if (request.path) return InapplicableOption{"path", reason};
@@ -62,7 +62,7 @@ std::optional<InapplicableOption> against_paper(const MapRequest& request) {
 
 std::optional<InapplicableOption> unknown_to_methods(const MapRequest& request) {
   if (request.nodes == NodeValues::balanced && request.voxel_size)
-    return InapplicableOption{"nodes", "one uniform level, which a voxel size asks for, is sampled"};
+    return InapplicableOption{"nodes", "one uniform level (--voxel-size) is always sampled"};
   const FitOptions fit = make_options(request, 1).fit;
   const ElasticMethodRow& elastic = elastic_method(fit.elastic);
   if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
@@ -70,7 +70,7 @@ std::optional<InapplicableOption> unknown_to_methods(const MapRequest& request) 
   if (fit.surface_fit.method == SurfaceFitMethod::deformation_graph) return std::nullopt;
   const std::string reason = "the surface fitting " +
                              std::string(name_of(surface_fits, fit.surface_fit.method)) +
-                             " does not know it; deformation-graph does";
+                             " has no such option; deformation-graph has";
   if (request.boundaries) return InapplicableOption{"boundaries", reason};
   if (request.max_stretch) return InapplicableOption{"max-stretch", reason};
   return std::nullopt;

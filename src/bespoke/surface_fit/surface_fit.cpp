@@ -61,7 +61,7 @@ void require_unmirrored(const SurfaceFitInput& input) {
   const std::optional<bool> source = faces_outward(input.source), target = faces_outward(input.target);
   if (source && source == target)
     throw InvalidInput(
-        "where the anchors lay the source onto the target, the outside of one lies against the inside of the "
+        "where the anchors place the source on the target, the outside of one lies against the inside of the "
         "other, so one model is a mirror image of the other, or the anchors' left and right are exchanged; "
         "mirror it back first, or name them anew");
 }
@@ -100,11 +100,11 @@ std::string to_string(const SurfaceFitSummary& summary) {
   std::string line = text;
   if (summary.off_surface_anchors > 0)
     line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
-  if (summary.target_flipped) line += ", the target's faces turned over to face as the source's do";
+  if (summary.target_flipped) line += ", the target's faces flipped to match the source's";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.posed_by_anchors) {
     char turn[80];
-    std::snprintf(turn, sizeof turn, ", bent by the anchors first (turns of %.0f degrees)",
+    std::snprintf(turn, sizeof turn, ", posed by the anchors first (rotations of %.0f degrees)",
                   summary.anchor_turn_degrees);
     line += turn;
   }
@@ -122,9 +122,9 @@ std::string to_string(const SurfaceFitSummary& summary) {
     line += ", " + std::to_string(summary.excluded_vertices.size()) +
             " vertices without counterpart since patches exclude it";
   if (!summary.stretched_vertices.empty())
-    line += ", " + std::to_string(summary.stretched_vertices.size()) + " vertices stretched too far";
+    line += ", " + std::to_string(summary.stretched_vertices.size()) + " over-stretched vertices";
   if (summary.repaired_vertices > 0)
-    line += ", " + std::to_string(summary.repaired_vertices) + " vertices drawn too far taken back";
+    line += ", " + std::to_string(summary.repaired_vertices) + " over-stretched vertices reset";
   return line;
 }
 

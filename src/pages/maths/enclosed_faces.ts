@@ -20,7 +20,7 @@ const clearly_smaller = 0.45; // of the area of both sides
 
 class Trouble extends Error {}
 
-/** Lays a line onto a surface, face by face, and notes which edges it crosses an odd number of times. */
+/** Projects a line onto a surface, face by face, and notes which edges it crosses an odd number of times. */
 class SurfaceWalk {
   readonly is_odd: Uint8Array;
   readonly faces: number[] = [];

@@ -59,7 +59,7 @@ function nodes_of(graph: SurfaceGraph): Float64Array {
 
 /**
  * Strips of faces that nearly shortest paths from one point take: the shortest over a few points of every edge. Towards a single point A* looks
- * at little else; without such a goal, Dijkstra's search goes as far out as a strip asks for, and on from there for the next one.
+ * at little else; without such a goal, Dijkstra's search goes as far out as a strip requires, and on from there for the next one.
  */
 export class StripSearch {
   private readonly nodes: Float64Array;

@@ -54,7 +54,7 @@ class Unfolded {
     this.lay(n - 1, ...to, 1, 4 * n + 2);
   }
 
-  /** Lays a point beside an edge: beyond it (side 1) or before it (−1). Unfolding keeps height and foot over the edge. */
+  /** Unfolds a point beside an edge: beyond it (side 1) or before it (−1). Unfolding keeps height and foot over the edge. */
   private lay(edge: number, x: number, y: number, z: number, side: 1 | -1, out: number): void {
     const { places } = this.graph, { flat } = this;
     const l = 3 * this.left[edge], r = 3 * this.right[edge], at = 4 * edge;

@@ -18,7 +18,7 @@ export interface PairChecks {
 }
 
 const typical_factor = 4, min_share = 0.04; // as in anchor_audit.cpp
-const same_place = 0.002; // of the diagonal: nobody means two points so near each other
+const same_place = 0.002; // of the diagonal: two points so near each other are one
 const flat = 0.02; // least spread over the largest, below which a plane holds the points
 
 const name_of = (pair: PickedPair, i: number): string => (pair.name === "" ? `pair ${i + 1}` : `“${pair.name}”`);
@@ -87,7 +87,7 @@ function warn_of_outliers(complete: CompletePair[], a: Triple[], b: Triple[], si
   });
 }
 
-/** The point of the source that lies farthest from all pairs: what no pair speaks for. */
+/** The point of the source that lies farthest from all pairs: where no pair is near. */
 export function next_place(vertices: Float32Array, taken: Triple[]): Triple | null {
   if (taken.length === 0) return null;
   let best: Triple | null = null, farthest = -1;

@@ -21,7 +21,7 @@ export class CurveEditor {
   chosen = -1;
   /** The chosen point of the chosen curve on each model, −1 without. */
   point: Record<Side, number> = { a: -1, b: -1 };
-  /** The last point was just laid: a click on the first one closes the curve. */
+  /** The last point was just drawn: a click on the first one closes the curve. */
   private is_drawing: Side | null = null;
   /** The line of the chosen curve that is being dragged, as it was before: what it encloses is found again at the end. */
   private held: { side: Side; line: PickedLine } | null = null;

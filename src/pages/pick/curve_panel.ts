@@ -13,7 +13,7 @@ export function kept_patches(count: number): string {
 }
 
 const meanings: Record<PickedCurve["meaning"], string> = {
-  line: "What lies on one line goes onto the other; where along it is found by the fit, but for points that belong together.",
+  line: "A line is registered to its counterpart; the fit finds the positions along it, except at paired points.",
   patch: "What lies inside goes inside, border onto border. The inside is tinted: the side with less area. Single points of a border are not fixed together.",
   exclude: "The hatched inside, the side with less area, attracts nothing and is drawn nowhere. It may be on one model alone.",
 };

@@ -26,7 +26,7 @@ export class ExportPanel {
     const record = anchor_formats[this.format];
     const lost = left_out(this.work(), this.unit, this.format);
     const refusal = record.of_model ? this.models.thinned : "";
-    const notes = [lost.length === 0 ? "" : `Left out, for want of a place in the format: ${lost.join(", ")}.`, changed(this.work(), this.format)];
+    const notes = [lost.length === 0 ? "" : `Left out, since the format cannot store it: ${lost.join(", ")}.`, changed(this.work(), this.format)];
     const text = refusal === "" ? notes.filter((each) => each !== "").join(" ") : `${refusal[0].toUpperCase()}${refusal.slice(1)}.`;
     if (this.note.textContent !== text) this.note.textContent = text;
     this.note.className = lost.length > 0 || refusal !== "" ? "warn" : "soft";

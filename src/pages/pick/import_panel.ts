@@ -20,7 +20,7 @@ export interface ImportListener {
   /** What the files hold; lists that they have no place for are missing. */
   read(work: Partial<Work>, files: string): void;
   refused(reason: string): void;
-  /** Of files with one side each the other is wanted, or somebody's consent. */
+  /** Of files with one side each the other is needed, or the user's consent. */
   asked(question: string): void;
 }
 

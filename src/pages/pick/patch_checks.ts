@@ -26,7 +26,7 @@ export function check_patches({ curves, patches: kept }: Work, pairs: CompletePa
   const patches = curves.map((curve, i) => ({ name: curve_name(curve, i), curve })).filter(({ curve }) => is_patch(curve) && is_complete_curve(curve));
   const warnings = names_given_twice([...patches.map(({ curve }) => curve.name), ...kept.map((patch) => String(patch.name ?? ""))]);
   const has_places = pairs.length > 0 || curves.some((curve) => !is_patch(curve) && is_complete_curve(curve));
-  if (patches.length + kept.length > 0 && !has_places) warnings.push("Patches say what belongs together, not where it lies: fit asks for pairs or a curve beside them.");
+  if (patches.length + kept.length > 0 && !has_places) warnings.push("Patches pair parts but fix no positions: fit requires pairs or a curve beside them.");
   for (const { name, curve } of patches)
     for (const side of sides) {
       const trouble = models[side].enclosed(curve)?.trouble ?? null;

@@ -237,7 +237,7 @@ class PickPage {
     this.curve_message.textContent = done ? this.symmetry(planes) : "Choose a curve or a patch that is complete.";
   }
 
-  /** Found once; from then on they are shown until somebody hides them. */
+  /** Found once; from then on they are shown until the user hides them. */
   private found_planes(): Record<Side, Plane> {
     if (this.planes === null) this.planes = { a: this.plane("a"), b: this.plane("b") };
     if (!this.has_planes) (this.plane_box.firstChild as HTMLInputElement).click();

@@ -55,7 +55,7 @@ export class Fills {
   }
 
   set(fills: Fill[]): void {
-    // Asked for whenever a point moves, and seldom changed by it.
+    // Requested whenever a point moves, and seldom changed by it.
     if (fills.length === this.shown.length && fills.every((fill, i) => is_same(fill, this.shown[i]))) return;
     this.shown = fills;
     const count = 3 * fills.reduce((sum, fill) => sum + fill.faces.length, 0);

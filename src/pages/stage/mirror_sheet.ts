@@ -5,7 +5,7 @@ import { section } from "../maths/section";
 import { Lines } from "./lines";
 
 const colour = "#8a5cf0";
-const margin = 1.06; // of the model's extent, so that the sheet stands out all round
+const margin = 1.06; // of the model's extent, so that the sheet protrudes all round
 
 /** A plane that a model is mirrored by: a sheet through it, and the line in which it cuts the model. */
 export class MirrorSheet {

@@ -205,7 +205,7 @@ export class Stage {
     this.draw_soon();
   }
 
-  /** Half of what a pane shows of the height, mesh units: more than asked for where its width would cut something off. */
+  /** Half of what a pane shows of the height, mesh units: more than requested where its width would cut something off. */
   private half_height(pane: Pane): number {
     const [, , width, height] = this.rectangle(pane);
     return this.view.half_height * Math.max(1, (this.widest * height) / Math.max(1, width));

@@ -53,10 +53,10 @@ function anchor_row(anchor: AnchorRecord, index: number, body: HTMLElement, chos
   return line;
 }
 
-/** Folds, mended cells, contacts, unmet vertices: by kind, the largest first; a click flies there. */
+/** Folds, repaired cells, contacts, unmet vertices: by kind, the largest first; a click flies there. */
 export function place_panel(record: ViewRecord, chosen: (place: PlaceRecord) => void): HTMLElement {
   const parts: HTMLElement[] = [];
-  if (record.places.length === 0) parts.push(element("p", {}, "No place stands out: no folds, no regions that miss the tolerance, no vertices unmet, in cavities or stretched too far."));
+  if (record.places.length === 0) parts.push(element("p", {}, "Nothing to inspect: no folds, no regions that miss the tolerance, no vertices unmet, in cavities or stretched too far."));
   for (const kind of new Set(record.places.map((place) => place.kind))) {
     const places = record.places.filter((place) => place.kind === kind);
     parts.push(
@@ -70,10 +70,10 @@ export function place_panel(record: ViewRecord, chosen: (place: PlaceRecord) => 
 /** What a map's record only counts: its stage, its key, and in words. */
 const counts: [string, string, string][] = [
   ["surface-fit", "unmatched_vertices", "vertices without counterpart"],
-  ["surface-fit", "mended_vertices", "mended vertices"],
-  ["contact", "touching_vertices", "vertices in contact, held apart"],
+  ["surface-fit", "mended_vertices", "repaired vertices"],
+  ["contact", "touching_vertices", "vertices in contact, separated"],
   ["contact", "left", "of them still touching"],
-  ["bake", "repaired_cells", "mended cells"],
+  ["bake", "repaired_cells", "repaired cells"],
 ];
 
 function counted(info: Record<string, unknown>): HTMLElement {

@@ -63,7 +63,7 @@ void require_grid_count(std::size_t grids, const ParsedRecord& record) {
   std::size_t count = preview_count;
   for (const std::vector<LevelRecord>& levels : record.levels) count += levels.size();
   require_format(grids == count,
-                 "has " + std::to_string(grids) + " grids, the record asks for " + std::to_string(count));
+                 "has " + std::to_string(grids) + " grids, the record requires " + std::to_string(count));
 }
 
 void require_level(const StoredGrid& grid, const std::string& name, const Pyramid& pyramid,

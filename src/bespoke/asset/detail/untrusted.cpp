@@ -148,7 +148,7 @@ std::string message_for(const std::exception& error) {
   try {
     answer = std::string(1, accepted) + to_bytes(stored_file_from_vdb(bytes));
   } catch (const std::bad_alloc&) {
-    answer = std::string(1, rejected) + "asks for more memory than a file of its size may";
+    answer = std::string(1, rejected) + "requires more memory than a file of its size may";
   } catch (const std::exception& error) {
     answer = message_for(error);
   } catch (...) {

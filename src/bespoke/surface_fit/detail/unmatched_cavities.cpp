@@ -83,7 +83,7 @@ void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offse
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
   if (solver.info() != Eigen::Success)
-    throw SolverError("surface fitting: the system of a lining is singular");
+    throw SolverError("surface fitting: the system of a cavity is singular");
   const Eigen::MatrixX3d solution = solver.solve(right);
   for (const auto& [vertex, row] : column) offsets.col(vertex) = solution.row(row).transpose();
 }
