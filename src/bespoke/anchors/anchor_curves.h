@@ -36,7 +36,7 @@ class CurvePairs {
   /// go as near to that as their order allows, in the sense of least squares. Fixed points stay.
   void slide(const Points& places, double reach);
 
-  /// Draws the counterparts back towards `places` (3×k, target frame), where the surface lay before it was to
+  /// Draws the counterparts back towards `places` (3×k, target frame), where the surface was before it was to
   /// meet the curves, as far as they require displacements that no surface follows without folds: a quarter
   /// of the distance between two points at most is the difference of theirs, and from none at `held` (3×m).
   void give_way(const Points& places, const Points& held);

@@ -63,8 +63,8 @@ CatalogEntry entry_of(const fs::path& path, const Asset& asset) {
   return entry;
 }
 
-/// Whether a file is OpenVDB's and says nothing in its head of being an asset: somebody else's volume, or an
-/// exported image. An asset that was cut short does say so.
+/// Whether a file is OpenVDB's and says nothing in its head of being an asset: a volume of another program,
+/// or an exported image. An asset that was cut short does say so.
 bool is_other_volume(const fs::path& path) {
   constexpr std::string_view magic(" BDV\0\0\0\0", 8);
   constexpr std::string_view entry = "bespoke:format_version";

@@ -152,6 +152,8 @@ class Fitter {
                       : std::max(options_.tolerance, guide_tolerance * growth_ * options_.guides.offset);
   }
 
+  /// Residual correction (Floater, Iske 1996) in composed form: displacements clipped and gradients below 1
+  /// keep every layer a diffeomorphism.
   void compose_scale(double lambda) {
     for (int count = 0; count < max_layers_per_scale; ++count) {
       progress_.check();

@@ -21,7 +21,7 @@ constexpr std::size_t whole_floats = 3 * block_nodes;
 constexpr int octants_of_a_whole = static_cast<int>((whole_floats + octant_floats - 1) / octant_floats);
 
 // Of the values' bytes: what the grid of the table may take, and what it may always take. A finer grid saves
-// steps of the walk and takes room in the cache.
+// steps of the descent and takes space in the cache.
 constexpr double grid_share = 1.0 / 32;
 constexpr double min_grid_bytes = 1 << 14;
 

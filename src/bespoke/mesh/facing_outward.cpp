@@ -26,6 +26,7 @@ Vector3 apex_of_borders(const TriangleMesh& mesh) {
 
 }  // namespace
 
+// Divergence theorem: the sum of signed cones over the faces.
 double signed_volume(const TriangleMesh& mesh) {
   const Vector3 apex = apex_of_borders(mesh);
   double sum = 0;

@@ -5,6 +5,7 @@
 namespace bespoke {
 namespace {
 
+/// Farthest-point sampling (Gonzalez 1985).
 /// nearest: n, squared distances to begin with; points at 0 are not chosen.
 std::vector<int> spread_from(const Points& points, Eigen::VectorXd nearest, std::size_t count) {
   std::vector<int> chosen;

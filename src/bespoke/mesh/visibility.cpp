@@ -6,7 +6,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double weight_rounding = 1e-9;  // of barycentric weights: a way through an edge meets a face
+constexpr double weight_rounding = 1e-9;  // of barycentric weights: a ray through an edge meets a face
 constexpr double slab_rounding = 1e-15;   // of t: a way along a box's side crosses it
 constexpr double at_the_eye = 1e-10;      // of the mesh's diagonal
 

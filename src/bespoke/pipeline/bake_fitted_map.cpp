@@ -57,8 +57,8 @@ class BakeOfAPlan {
  private:
   std::size_t steps() const { return fit_.elastic->steps().size(); }
 
-  /// Whether a single step that folds may become a chain: where nobody requested one step or its voxels, and
-  /// the map itself does not fold.
+  /// Whether a single step that folds may become a chain: where neither one step nor its voxels were
+  /// requested, and the map itself does not fold.
   bool may_become_chain() const {
     return !options_.steps && !bake_.voxel_size && elastic_method(options_.elastic).keeps_orientation;
   }

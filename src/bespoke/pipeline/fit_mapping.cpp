@@ -50,7 +50,7 @@ void require_one_unit(double ratio, const std::string& what) {
 /// Where the target touches itself no homeomorphism exists: the parts of the fitted source are separated.
 void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const FitOptions& options,
                       const Progress& progress) {
-  // Parts that pass through each other more deeply were not laid there by a target's contact.
+  // Parts that pass through each other more deeply are not due to a target's contact.
   constexpr double reach = 20;  // of the gap
   progress.step("contact", 0, 0);
   ContactFit apart =

@@ -26,6 +26,7 @@ double area(const Edges& face) {
   return doubled > least * face.squaredNorm() ? doubled / 2 : 0;
 }
 
+/// Hencky (logarithmic) strain.
 /// ln² s₁ + ln² s₂ of a face that had an area; s₁², s₂² are the eigenvalues of CᵀC, C = A R⁻¹, with
 /// B = Q R its edges before and A those after.
 double squared_strain(const Edges& before, const Edges& after) {

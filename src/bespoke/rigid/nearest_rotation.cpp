@@ -4,6 +4,7 @@
 
 namespace bespoke {
 
+// The polar rotation by singular values, with det = +1 (Arun, Huang, Blostein 1987; Umeyama 1991).
 NearestRotation nearest_rotation(const Matrix3& matrix) {
   const Eigen::JacobiSVD<Matrix3> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vector3 sign = Vector3::Ones();

@@ -101,9 +101,9 @@ class ContactSearch {
   Points source_vertex_normals_, source_face_normals_;
 };
 
-/// Displacements that take the vertices in contact where they want to go and fade along the edges around:
-/// least Σ wᵢ|δᵢ − dᵢ|² + stiffness Σ |δᵢ − δⱼ|² over edges + rest Σ |δᵢ|², factored anew for every set of
-/// contacts.
+/// Displacements that separate the vertices in contact and fade along the edges around (screened Laplacian):
+/// the minimum of Σ wᵢ|δᵢ − dᵢ|² + stiffness Σ |δᵢ − δⱼ|² over edges + rest Σ |δᵢ|², factored anew for every
+/// set of contacts.
 class SmoothDisplacement {
  public:
   explicit SmoothDisplacement(const TriangleMesh& mesh) : adjacency_(vertex_adjacency(mesh)) {}

@@ -51,6 +51,7 @@ Links make_links(const SurfacePatches& source) {
   return links;
 }
 
+/// Local step of an as-similar-as-possible deformation (Igarashi 2005; Sorkine, Alexa 2007).
 /// The similarity around every patch; turns the normals with it and measures the bending.
 void update_similarities(const SurfacePatches& source, const Links& links, PatchDeformation& state) {
   double sum = 0;
@@ -75,7 +76,8 @@ void update_similarities(const SurfacePatches& source, const Links& links, Patch
   state.bending = std::sqrt(sum);
 }
 
-/// Σ_i w_i |x_i − y_i|² + stiffness Σ_ij |x_j − x_i − S_i e_ij|², whose matrix has one pattern throughout.
+/// The global step: Σ_i w_i |x_i − y_i|² + stiffness Σ_ij |x_j − x_i − S_i e_ij|², whose matrix has one
+/// pattern throughout.
 class PatchSystem {
  public:
   explicit PatchSystem(const Links& links) : links_(links) {}

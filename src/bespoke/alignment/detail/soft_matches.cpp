@@ -35,6 +35,8 @@ double SoftMatches::residual(const Points& points) const {
   return std::sqrt((targets - points).colwise().squaredNorm().dot(weights) / total);
 }
 
+// Expectation step of a Gaussian mixture with an outlier class, in both directions (as in coherent point
+// drift, Myronenko, Song 2010).
 SoftMatches soft_matches(const SurfacePatches& source, const Points& points, const Points& normals,
                          const SurfacePatches& target, double length) {
   const Features a = features_of(points, normals, source, target.center, length);

@@ -35,6 +35,7 @@ Vector3 BiharmonicWarp::operator()(const Vector3& x) const {
   return (row * coefficients_).transpose();
 }
 
+// Leave-one-out residuals in closed form: coefficient / diagonal of the inverse (Rippa 1999).
 double BiharmonicWarp::left_out(Eigen::Index i) const { return coefficients_.row(i).norm() / stiffness(i); }
 
 double BiharmonicWarp::stiffness(Eigen::Index i) const { return std::max(std::abs(inverse_(i, i)), 1e-300); }

@@ -19,13 +19,13 @@ namespace {
 /// Of the diagonal. Lines of clicks that are a few per cent apart stay within it, a chord through a limb does
 /// not.
 constexpr double farthest = 0.02;
-/// Of the diagonal: points of the line are laid on the surface this near to one another where neighbouring
-/// ones lie on faces without a common edge, that is at corners.
+/// Of the diagonal: points of the line are projected onto the surface this near to one another where
+/// neighbouring ones lie on faces without a common edge, that is at corners.
 constexpr double nearest = 1e-6;
 /// Of the diagonal: how far from the line a way from one point of it to the next may lead, around a corner or
 /// over the rim of a groove, an eyelid for instance, that hides the surface between them.
 constexpr double detour = 0.05;
-/// Of the area of both sides: where the smaller has more, nobody sees which one is meant.
+/// Of the area of both sides: where the smaller has more, the inside is ambiguous.
 constexpr double clearly_smaller = 0.45;
 
 std::string place_text(const Vector3& x) {
@@ -34,7 +34,7 @@ std::string place_text(const Vector3& x) {
   return text.str();
 }
 
-/// Lays lines onto a surface, and counts how often they cross each edge.
+/// Projects lines onto a surface, and counts how often they cross each edge.
 class SurfaceWalk {
  public:
   SurfaceWalk(const TriangleMesh& mesh, const MeshEdges& edges, const std::string& where)

@@ -34,6 +34,8 @@ using Node = LatticeCoordinates;
 // Nodes of one level that may move, by their place in the level's values.
 using MovableNodes = std::map<std::pair<int, Node>, std::size_t>;
 
+// Untangling: nodes at folds move to the mean of their neighbours, by damped Jacobi sweeps of Laplace's
+// equation.
 class Repair {
  public:
   explicit Repair(Pyramid& pyramid) : pyramid_(pyramid), index_(pyramid) {

@@ -34,6 +34,7 @@ struct Image {
   Matrix3 jacobian;
 };
 
+// Damped Newton, x += s J⁻¹ (y − E(x)), with Armijo's condition on the residual.
 // Accepts or refuses the walker's trial, whose image is known.
 void advance(Walker& walker, const Image& image, const Vector3& y, double tolerance) {
   const Vector3 missing = y - image.value;

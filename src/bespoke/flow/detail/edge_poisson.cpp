@@ -59,6 +59,7 @@ EdgePoisson::EdgePoisson(const TriangleMesh& source, const Eigen::VectorXd& area
 
 EdgePoisson::~EdgePoisson() = default;
 
+/// Poisson's equation: the positions whose gradients are nearest to the interpolated ones, by area.
 Points EdgePoisson::solve(const FaceRotations& rotations, double t) const {
   const auto count = static_cast<std::size_t>(source_.faces.cols());
   Points gradients(3, 3 * source_.faces.cols());

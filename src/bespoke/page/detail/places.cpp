@@ -11,7 +11,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t max_places = 100;  // of a kind: nobody visits more
+constexpr std::size_t max_places = 100;  // of a kind: a person visits no more
 constexpr double group_radius = 0.03;    // of the diagonal: about what a flight to a place shows
 
 template <class Figure>

@@ -133,7 +133,7 @@ class OffSplitter {
       edges_.push_back(std::minmax({part[k], part[(k + 1) % part.size()]}));
   }
 
-  /// The number of edges may be missing, or 0 where nobody counted them.
+  /// The number of edges may be missing, or 0 where they were not counted.
   std::vector<TextEdit> repaired_counts() {
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());

@@ -72,6 +72,7 @@ void NodeSystem::start_from(const Points& vertices) {
   displacements_ = sum * total.cwiseInverse().asDiagonal();
 }
 
+/// One step of Gauss-Newton on an embedded deformation graph (Sumner, Schmid, Pauly 2007).
 Points NodeSystem::solve(const NodeGoals& goals) {
   system_.set_zero();
   add_planes(goals);
@@ -107,6 +108,8 @@ void NodeSystem::add_quadratic(const Nodes& combination, const Matrix3& form,
   }
 }
 
+/// Point to plane (Chen, Medioni 1992) with Cauchy's M-estimator, iteratively reweighted: a residual of the
+/// scale has weight 1/2.
 void NodeSystem::add_planes(const NodeGoals& goals) {
   if (goals.planes.empty()) return;
   std::vector<double> distances;
@@ -146,6 +149,7 @@ void NodeSystem::add_anchors(const NodeGoals& goals) {
   }
 }
 
+/// Thin-plate energy: squared second differences of the displacements, by area.
 void NodeSystem::add_bending(double weight, const LocalSimilarities& similarities) {
   const std::vector<BendingStencil> stencils =
       bending_stencils(nodes_, nodes_.rest + displacements_, settings_.bending);
@@ -169,6 +173,7 @@ Vector3 NodeSystem::edge_now(int node, int other) const {
 
 Vector3 NodeSystem::shape_edge(int node, int other) const { return shape_.col(other) - shape_.col(node); }
 
+/// Local step of the as-similar-as-possible term: the least-squares similarity of a node's edges.
 NodeSystem::LocalSimilarity NodeSystem::local_similarity(int node) const {
   Matrix3 covariance = Matrix3::Zero();
   double spread = 0;
@@ -197,6 +202,8 @@ NodeSystem::LocalSimilarities NodeSystem::local_similarities() const {
   return result;
 }
 
+/// Global step of the as-similar-as-possible term (Igarashi, Moscovich, Hughes 2005; Sorkine, Alexa 2007):
+/// Σ |x'ⱼ − x'ᵢ − sᵢ Rᵢ eᵢⱼ|² over the edges of the graph.
 void NodeSystem::add_local_similarity(double weight, const LocalSimilarities& similarities) {
   const double usual = similarities.usual_scale;
   for (int node = 0; node < nodes_.size(); ++node) {

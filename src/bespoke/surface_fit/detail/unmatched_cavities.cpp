@@ -54,8 +54,8 @@ bool span_space(const Points& points, double min_width) {
   return widths[2] > min_width * widths[0];
 }
 
-/// What is given at the rim, spread over the cavity such that it is the mean over the neighbours, by one over
-/// their distance. `offsets`: 3×n, of the rim's vertices; the cavity's are set.
+/// Harmonic extension of the offsets at the rim into the cavity, by inverse edge length. `offsets`: 3×n, of
+/// the rim's vertices; the cavity's are set.
 void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offsets) {
   std::map<int, Eigen::Index> column;
   for (const int vertex : cavity.vertices) column.emplace(vertex, static_cast<Eigen::Index>(column.size()));
