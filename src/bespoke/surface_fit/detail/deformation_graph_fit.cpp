@@ -253,8 +253,8 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
     carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
   const TriangleMesh rest{shape, scene.surface.faces};
   const RegisteredSurface laid{rest, mended.vertices};
-  scene.surface.vertices =
-      carried_by_space(laid, nodes.lacking, nodes.cavities.contains, settings.nodes.cavities);
+  scene.surface.vertices = carried_by_space(laid, nodes.lacking, nodes.unmatched_cavities.contains,
+                                            settings.nodes.unmatched_cavities);
 
   summary.repaired_vertices = mended.repaired_vertices;
   summary.stretched_vertices = std::move(mended.stretched_vertices);
