@@ -36,9 +36,7 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 std::vector<std::filesystem::path> write_sample(const Sample& sample,
                                                 const std::filesystem::path& directory) {
   const std::filesystem::path folder = directory / sample.name;
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw FileError(folder.string() + ": cannot be made: " + failure.message());
+  make_directories(folder);
 
   std::vector<std::filesystem::path> written;
   const auto write_mesh = [&](const std::string& name, const TriangleMesh& mesh) {

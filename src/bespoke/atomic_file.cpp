@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/output_stream.h"
 
 namespace bespoke {
 namespace {
@@ -29,6 +30,7 @@ class Descriptor {
  public:
   Descriptor() = default;
   Descriptor(const fs::path& path, int flags, mode_t mode = 0) : number_(::open(path.c_str(), flags, mode)) {}
+  explicit Descriptor(int number) : number_(number) {}
   ~Descriptor() { close(); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -55,6 +57,11 @@ constexpr std::string_view new_ending = ".bespoke-new";
 constexpr int max_attempts = 1000;
 
 fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
+
+/// What lies beside a stream is not ours.
+fs::path directory_for_temporaries(const fs::path& path) {
+  return is_stream(path) ? fs::temp_directory_path() : directory_of(path);
+}
 
 /// `.NAME` and something, beside the target.
 fs::path hidden_neighbour(const fs::path& target, const std::string& ending) {
@@ -172,12 +179,32 @@ class Temporary {
   Descriptor file_;
 };
 
+/// Also of a link to what is not there yet.
 fs::path followed(const fs::path& path) {
-  std::error_code error;
-  if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
-  const fs::path target = fs::weakly_canonical(path, error);
-  if (error) fail("cannot follow", path, error.value());
-  return target;
+  constexpr int max_links = 40;  // as Linux follows
+  fs::path target = path;
+  for (int links = 0; links < max_links; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(target, error))) return target;
+    target = target.parent_path() / fs::read_symlink(target, error);
+    if (error) fail("cannot follow", path, error.value());
+  }
+  fail("cannot follow", path, ELOOP);
+}
+
+/// What has not been written in full reaches no reader.
+void write_into_stream(const fs::path& path, const std::function<void(const fs::path&)>& write,
+                       TemporaryFile kind) {
+  constexpr std::size_t block = 1 << 20;  // bytes, of which a pipe takes 64 KiB at a time
+  require_writable_stream(path);
+  const Temporary temporary(directory_for_temporaries(path) / path.filename(), kind);
+  write(temporary.path());
+  const Descriptor content(temporary.path(), O_RDONLY | O_CLOEXEC), stream(open_stream(path));
+  std::string bytes(block, '\0');
+  ssize_t count = 0;
+  while ((count = ::read(content.number(), bytes.data(), bytes.size())) > 0)
+    write_to_descriptor(stream.number(), {bytes.data(), static_cast<std::size_t>(count)}, path);
+  if (count < 0) fail("cannot write", path, errno);
 }
 
 void flush_directory(const fs::path& directory) {
@@ -211,6 +238,7 @@ class Setting {
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write,
                       TemporaryFile kind) {
   if (holder) return holder->write(path, write, kind);
+  if (is_stream(path)) return write_into_stream(path, write, kind);
   const fs::path target = followed(path);
   std::error_code ignored;
   if (target.filename().empty() || fs::is_directory(target, ignored)) fail("cannot write", path, EISDIR);
@@ -223,12 +251,30 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 
 void remove_written(const fs::path& path) {
   if (holder) return holder->remove(path);
-  std::error_code ignored;
-  fs::remove(path, ignored);
+  if (is_stream(path)) return;
+  try {
+    std::error_code ignored;
+    fs::remove(followed(path), ignored);
+  } catch (const FileError&) {
+    // Links in a circle: nothing was written.
+  }
 }
 
 fs::path directory_of_temporaries(const fs::path& path) {
-  return holder ? holder->directory_ : directory_of(path);
+  return holder ? holder->directory_ : directory_for_temporaries(path);
+}
+
+void make_directories(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (fs::is_directory(directory)) return;
+  for (fs::path part = directory; !part.empty(); part = part.parent_path()) {
+    std::error_code ignored;
+    if (fs::exists(part, ignored) && !fs::is_directory(part, ignored))
+      throw FileError(part.string() + ": is no directory but a file; name another");
+    if (part == part.parent_path()) break;
+  }
+  throw FileError(directory.string() + ": cannot be made: " + error.message());
 }
 
 bool writes_are_held() { return holder != nullptr; }

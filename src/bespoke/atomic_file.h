@@ -19,7 +19,8 @@ enum class TemporaryFile {
 /// that says nothing about the target's; then the file is flushed to the disk and put in the place of `path`.
 /// Whoever opens `path` sees the old content or the new one, never a part of it, and of two writers at a time
 /// the later one's. A symbolic link is followed: what it points to is replaced. An existing file keeps its
-/// permissions. When anything throws, the temporary is gone and `path` is as it was.
+/// permissions. When anything throws, the temporary is gone and `path` is as it was. A stream (is_stream in
+/// output_stream.h) is not replaced: once `write` has returned, its bytes are written into the stream.
 ///
 /// A process that is killed leaves a file of its own in one case of two. With unnamed temporaries: between
 /// two system calls that replace an existing file, `.NAME.bespoke-new`, which the next writer of `path`
@@ -31,13 +32,17 @@ void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write,
                       TemporaryFile kind = TemporaryFile::unnamed_where_possible);
 
-/// Takes away what write_atomically has written, where something later fails. A file that is not there is no
-/// error.
+/// Takes away what write_atomically has written, where something later fails: a link's target, not the link,
+/// and never a stream. A file that is not there is no error.
 void remove_written(const std::filesystem::path& path);
 
 /// Where temporaries for a file belong: in the directory that it is put into or, while it would be held
-/// (below), in that of the held files.
+/// (below), in that of the held files; those for a stream in the system's directory for temporaries.
 std::filesystem::path directory_of_temporaries(const std::filesystem::path& path);
+
+/// Makes a directory for outputs, and those above it; one that is there is no error. Throws FileError, which
+/// names the file that is in its way.
+void make_directories(const std::filesystem::path& directory);
 
 /// Whether what this thread writes atomically is held: the directories of its files need not be there.
 bool writes_are_held();

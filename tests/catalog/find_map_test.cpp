@@ -50,6 +50,17 @@ TEST_F(FindMap, NamesTheMapsThatThereAre) {
   EXPECT_THAT(refusal("aaaaaa", "cccccc"), AllOf(HasSubstr("ben.vdb"), HasSubstr("foot.vdb")));
 }
 
+TEST_F(FindMap, TakesAnyOfCopiesButAsksWhichOfMapsBetweenTheSameModels) {
+  add("copy.vdb", "aaaaaa22", "cccccc11");
+  EXPECT_THAT(refusal("aaaaaa22"), AllOf(HasSubstr("2 maps lead from the source aaaaaa22 to the same target"),
+                                         HasSubstr("foot.vdb"), HasSubstr("copy.vdb"),
+                                         HasSubstr("give one of them as MAP, without --from")));
+  for (CatalogEntry& entry : catalog_.assets) entry.sha256 = "of " + entry.file;
+  EXPECT_THAT(refusal("aaaaaa22", "cccccc11"), HasSubstr("to the same target"));
+  catalog_.assets.back().sha256 = catalog_.assets[2].sha256;
+  EXPECT_EQ(found("aaaaaa22"), "foot.vdb");
+}
+
 TEST_F(FindMap, RefusesWhatIsNoHash) {
   for (const std::string bad : {"", "aaaaa", "body.obj", "aaaaaag"})
     EXPECT_THAT(refusal(bad), HasSubstr("hexadecimal")) << bad;

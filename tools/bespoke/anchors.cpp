@@ -14,11 +14,13 @@
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/pipeline/anchor_suggestions.h"
 #include "commands.h"
 #include "length_option.h"
 #include "output_files.h"
 #include "run_options.h"
+#include "standard_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -79,6 +81,26 @@ std::string written(const Anchors& anchors, AnchorFormat format) {
   return text;
 }
 
+/// Standard output, a pipe or a device, whose name tells no format, takes this project's own.
+bool takes_any_format(const std::vector<std::string>& outputs) {
+  const std::filesystem::path output = outputs.front();
+  return is_standard_output(output) || (is_stream(output) && !output.has_extension());
+}
+
+AnchorFormat written_format(const std::vector<std::string>& outputs) {
+  return takes_any_format(outputs) ? AnchorFormat::json : anchor_format_of(outputs.front());
+}
+
+void write_anchors(const std::vector<std::string>& outputs, const Anchors& anchors,
+                   const AnchorFileOptions& options) {
+  if (!takes_any_format(outputs)) return write_anchor_files(as_paths(outputs), anchors, options);
+  if (outputs.size() > 1)
+    throw CLI::ValidationError("-o", outputs.front() + " takes both sides; give it alone");
+  OutputFiles files;
+  files.write_text(outputs.front(), anchors_json(anchors));
+  files.keep();
+}
+
 // ---- convert
 
 struct ConvertArguments {
@@ -94,8 +116,8 @@ void convert(const ConvertArguments& arguments) {
   const AnchorFileOptions options =
       file_options(models, arguments.coordinates == "RAS" ? PatientSystem::ras : PatientSystem::lps);
   const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), options);
-  write_anchor_files(as_paths(arguments.outputs), anchors, options);
-  std::cout << written(anchors, anchor_format_of(arguments.outputs[0])) << '\n';
+  write_anchors(arguments.outputs, anchors, options);
+  std::cout << written(anchors, written_format(arguments.outputs)) << '\n';
 }
 
 void add_convert(CLI::App& app) {
@@ -229,11 +251,11 @@ void suggest(const SuggestArguments& arguments, const Progress& progress) {
     anchors.pairs.push_back(suggestion.pair);
     if (!arguments.run.quiet) print(suggestion);
   }
-  write_anchor_files(as_paths(arguments.outputs), anchors, options);
+  write_anchors(arguments.outputs, anchors, options);
   if (arguments.run.quiet) return;
   if (suggestions.size() < arguments.count)
     std::printf("everywhere else the fits are at most %.4g apart\n", tolerance);
-  std::printf("written: %s\n", written(anchors, anchor_format_of(arguments.outputs[0])).c_str());
+  std::printf("written: %s\n", written(anchors, written_format(arguments.outputs)).c_str());
 }
 
 void add_suggest(CLI::App& app) {

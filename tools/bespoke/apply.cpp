@@ -7,16 +7,19 @@
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
 #include "bespoke/atomic_file.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "bespoke/strings.h"
+#include "bespoke/unknown_ending.h"
 #include "catalog_option.h"
 #include "commands.h"
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
 #include "product_map.h"
+#include "standard_output.h"
 #include "time_option.h"
 
 namespace bespoke::command {
@@ -58,9 +61,15 @@ std::vector<fs::path> frame_paths(const fs::path& path, std::optional<int> frame
   return paths;
 }
 
+/// Whether the output says no kind of file: standard output, a pipe or a device.
+bool takes_any_kind(const fs::path& output) {
+  return is_standard_output(output) ||
+         (is_stream(output) && !has_product_ending(output) && !can_write_product(output));
+}
+
 /// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
 bool keeps_kind(const fs::path& product, const fs::path& output) {
-  return lower_ending(product) == lower_ending(output);
+  return takes_any_kind(output) || lower_ending(product) == lower_ending(output);
 }
 
 /// Whether the file is carried as it is, with its edges split where that is asked for.
@@ -68,23 +77,46 @@ bool is_carried(const ApplyArguments& arguments, const fs::path& product, const 
   return keeps_kind(product, output) && (!arguments.refine || can_split_product(product));
 }
 
+/// Of points without edges, or of a kind whose edges are not split.
+[[noreturn]] void refuse_refinement(const fs::path& product) {
+  const std::string name = product.string();
+  if (!has_product_ending(product))
+    throw UnknownEnding("apply: " + name + " must end in " + product_endings() + conversion_advice(product));
+  if (!can_read_product(product))
+    throw CLI::ValidationError(
+        "--refine", name + " holds points, which have no edges to split; carry it without --refine");
+  throw CLI::ValidationError("--refine", "edges of " + name + " are split only where the output ends in " +
+                                             written_product_endings());
+}
+
+/// To a kind of file that is carried but not written anew.
+[[noreturn]] void refuse_conversion(const fs::path& product, const fs::path& output) {
+  std::string endings = has_product_ending(product) ? lower_ending(product) : "";
+  if (can_read_product(product)) endings += (endings.empty() ? "" : ", or ") + written_product_endings();
+  throw UnknownEnding("apply: " + product.string() + " cannot become " + lower_ending(output) +
+                      ", which is written only from files that are " + lower_ending(output) +
+                      " already; name an output that ends in " + endings);
+}
+
 void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
   const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
   if (is_carried(arguments, product, output)) {
-    if (!has_product_ending(output))
-      throw CLI::ValidationError(
-          "apply", output.string() + " must end in " + product_endings() + conversion_advice(output));
+    if (!has_product_ending(product))
+      throw UnknownEnding("apply: " + product.string() + " must end in " + product_endings() +
+                          conversion_advice(product));
     return;
   }
-  if (has_product_ending(output) && !can_write_product(output))
-    throw CLI::ValidationError("apply", output.string() + " must have the ending of " + product.string());
+  if (keeps_kind(product, output) && !can_write_product(output)) refuse_refinement(product);
+  const bool is_known = has_product_ending(product) || can_read_product(product);
+  if (is_known && has_product_ending(output) && !can_write_product(output))
+    refuse_conversion(product, output);
   if (has_parts)
     throw CLI::ValidationError("apply",
                                "parts that keep their shape are known only in a file that keeps its kind");
   require_mesh_ending("apply", output);
   if (!can_read_product(product))
-    throw CLI::ValidationError(
-        "apply", product.string() + " must end in " + read_product_endings() + conversion_advice(product));
+    throw UnknownEnding("apply: " + product.string() + " must end in " + read_product_endings() +
+                        conversion_advice(product));
 }
 
 std::vector<RigidPart> parts(const ApplyArguments& arguments) {
@@ -105,6 +137,9 @@ std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments)
   for (const std::string& product : arguments.products) {
     const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
                                                    : fs::path(arguments.output);
+    if (arguments.frames && takes_any_kind(path))
+      throw CLI::ValidationError("--frames",
+                                 "writes several files, which " + path.string() + " is not; name a file");
     require_known_endings(arguments, product, path);
     plan.push_back(frame_paths(path, arguments.frames));
   }
@@ -157,10 +192,12 @@ ProductSummary apply_one(const ApplyArguments& arguments, const std::string& nam
   const bool measure_chords = !arguments.report.empty() && can_read_product(name);
   std::optional<double> refine;
   if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);
+  std::vector<fs::path> targets;
+  for (const fs::path& output : outputs) targets.push_back(output_target(output));
   if (!is_carried(arguments, name, outputs.front()))
-    return convert_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
+    return convert_product(name, targets, *map.elastic, map.target_from_source, times(arguments),
                            {motion, refine, measure_chords});
-  return apply_to_product(name, outputs, *map.elastic, map.target_from_source, times(arguments),
+  return apply_to_product(name, targets, *map.elastic, map.target_from_source, times(arguments),
                           {motion, parts(arguments), refine, measure_chords, progress});
 }
 
@@ -185,7 +222,7 @@ void print_summary(const fs::path& output, const ProductSummary& summary) {
 void run(const ApplyArguments& arguments, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const Progress& progress = context.progress;
-  if (!arguments.out_dir.empty() && !writes_are_held()) fs::create_directories(arguments.out_dir);
+  if (!arguments.out_dir.empty() && !writes_are_held()) make_directories(arguments.out_dir);
   const std::vector<std::vector<fs::path>> plan = plan_outputs(arguments);
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
   const fs::path map_file =

@@ -15,6 +15,7 @@
 #include "bespoke/error.h"
 #include "commands.h"
 #include "memory_option.h"
+#include "standard_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -119,6 +120,8 @@ void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts
   std::printf("%zu of %zu jobs would run, some %.3g s on one thread\n", count, graph.jobs.size(), seconds);
 }
 
+std::string log_of(const BatchArguments& arguments) { return output_target(arguments.log).string(); }
+
 /// Nothing without --pack.
 std::unique_ptr<PackedJobs> open_pack(const BatchArguments& arguments) {
   if (arguments.pack.empty()) return nullptr;
@@ -154,7 +157,7 @@ void run(const BatchArguments& arguments) {
   if (arguments.dry_run)
     print_plan(graph, forecasts, pack.get());
   else
-    run_jobs({arguments.manifest, style_of(arguments), arguments.log}, graph, forecasts, options, maps,
+    run_jobs({arguments.manifest, style_of(arguments), log_of(arguments)}, graph, forecasts, options, maps,
              pages ? &*pages : nullptr);
 }
 

@@ -8,9 +8,12 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/strings.h"
 #include "commands.h"
+#include "nearest_name.h"
 #include "page_output.h"
+#include "standard_output.h"
 
 namespace bespoke::command {
 namespace {
@@ -30,15 +33,24 @@ constexpr std::array commands{
 // What the batch decides for all of its jobs.
 constexpr std::array keys_of_the_batch{"threads", "quiet", "help", "html"};
 
-std::string command_names() {
+std::vector<std::string> names_of_commands() {
   std::vector<std::string> names;
   for (const JobCommand& command : commands) names.emplace_back(command.name);
-  return alternatives(names);
+  return names;
 }
 
 std::string upper_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
   return text;
+}
+
+std::vector<std::string> keys_of(const CLI::App& command) {
+  std::vector<std::string> keys;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) keys.push_back(name);
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_positional()) keys.push_back(lower_case(option->get_name(true)));
+  return keys;
 }
 
 /// The option that a key names: `--key`, or the positional KEY.
@@ -49,8 +61,8 @@ const CLI::Option& option_of(const CLI::App& command, const std::string& key) {
   const bool is_key = key == lower_case(key) && !key.empty();
   if (!option && is_key) option = command.get_option_no_throw(upper_case(key));
   if (!option)
-    throw InvalidInput("unknown key \"" + key + "\"; `bespoke " + command.get_name() +
-                       " --help` lists the options");
+    throw InvalidInput("unknown key \"" + key + "\"" + suggestion(key, keys_of(command)) + "; `bespoke " +
+                       command.get_name() + " --help` lists the options");
   return *option;
 }
 
@@ -96,6 +108,14 @@ std::vector<std::string> arguments_of(const ManifestJob& line, const CLI::App& c
   return arguments;
 }
 
+/// A batch keeps records of files, which a stream is not.
+void require_files(const std::vector<JobFile>& outputs) {
+  for (const JobFile& output : outputs)
+    if (is_standard_output(output.path) || is_stream(output.path))
+      throw InvalidInput(output.role + " " + output.path.string() +
+                         " is no file; a job of a batch writes files only");
+}
+
 std::string joined(const std::vector<std::string>& values) {
   std::string text;
   for (const std::string& value : values) text += (text.empty() ? "" : ",") + value;
@@ -115,7 +135,8 @@ JobPlanner::Parser& JobPlanner::parser_of(const std::string& command) {
   const auto known = std::find_if(commands.begin(), commands.end(),
                                   [&](const JobCommand& row) { return row.name == command; });
   if (known == commands.end())
-    throw InvalidInput("unknown command \"" + command + "\"; a job is " + command_names());
+    throw InvalidInput("unknown command \"" + command + "\"" + suggestion(command, names_of_commands()) +
+                       "; a job is " + alternatives(names_of_commands()));
   parser = std::make_shared<Parser>();
   known->add(parser->app, [this](PlannedRun planned) { planned_ = std::move(planned); });
   parser->command = parser->app.get_subcommand(command);
@@ -137,6 +158,7 @@ BatchJob JobPlanner::plan(const ManifestJob& line) {
 }
 
 BatchJob JobPlanner::job_of(const ManifestJob& line, PlannedRun planned, const std::string& command) const {
+  require_files(planned.outputs);
   BatchJob job;
   job.line = line.line;
   job.command = line.command;

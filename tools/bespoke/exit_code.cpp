@@ -6,6 +6,7 @@
 #include <new>
 
 #include "bespoke/error.h"
+#include "bespoke/unknown_ending.h"
 #include "interruption.h"
 
 namespace bespoke::command {
@@ -27,6 +28,8 @@ int exit_code_of(const std::function<void()>& body) {
   } catch (const Interrupted& error) {
     fail(done, error.what());
     return 128 + interruption();
+  } catch (const UnknownEnding& error) {
+    return fail(wrong_arguments, error.what());
   } catch (const InvalidInput& error) {
     return fail(bad_input, error.what());
   } catch (const FormatError& error) {

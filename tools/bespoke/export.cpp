@@ -8,6 +8,7 @@
 #include "bespoke/exchange/image_formats.h"
 #include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/unknown_ending.h"
 #include "commands.h"
 #include "length_option.h"
 #include "name_option.h"
@@ -92,8 +93,7 @@ void export_grid(const ExportArguments& arguments, const RunContext& context) {
 bool is_glb(const std::filesystem::path& path) { return path.extension() == ".glb"; }
 
 void require_morph_arguments(const ExportArguments& arguments) {
-  if (!is_glb(arguments.output))
-    throw CLI::ValidationError("--morph", arguments.output + " must end in .glb");
+  if (!is_glb(arguments.output)) throw UnknownEnding("--morph: " + arguments.output + " must end in .glb");
   if (arguments.product.empty()) throw CLI::ValidationError("--morph", "--product MESH says what morphs");
   if (!is_glb(arguments.product)) require_mesh_ending("--product", arguments.product);
 }

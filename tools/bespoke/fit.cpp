@@ -5,11 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "bespoke/anchors/anchor_files.h"
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/page/view_scene.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/fit_patches.h"
@@ -145,6 +147,8 @@ void write_pages(const HtmlPages& pages, const FitArguments& arguments, const Ma
 void run(const FitArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   require_map_ending(arguments.output);
+  if (!arguments.html.empty() && is_stream(arguments.output))
+    throw CLI::ValidationError("--html", "shows the map from its file; give -o the name of a file");
   const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
   const bool quiet = arguments.run.quiet;
@@ -158,7 +162,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
     require_same_connectivity(source, *fitted, arguments.fitted);
   }
   Anchors anchors;
-  if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source, &target});
   for (const std::string& model : {arguments.source, arguments.target}) {
     require_unit_of_format(model, anchors.unit);
     if (anchors.unit.empty()) anchors.unit = unit_of_format(model);

@@ -68,7 +68,7 @@ void run(const GradeArguments& arguments) {
   require_one_kind_of_sizes(arguments);
   const fs::path& out_dir = arguments.request.out_dir;
   if (fs::exists(out_dir) && !fs::is_directory(out_dir))
-    throw FileError(out_dir.string() + ": is no directory");
+    throw FileError(out_dir.string() + ": is no directory but a file; name another");
   OpenedMaps maps;
   const GradeSizes sizes = arguments.sizes.empty() ? sizes_between(arguments.target, arguments.anchors,
                                                                    arguments.between.value_or(0), out_dir)

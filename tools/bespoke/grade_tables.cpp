@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "batch_display.h"
-#include "bespoke/anchors/anchors.h"
+#include "bespoke/anchors/anchor_files.h"
+#include "bespoke/atomic_file.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/grading/grade_table.h"
@@ -29,7 +30,7 @@ AnchorPlaces places_of(const Anchors& anchors, Vector3 AnchorPair::*side) {
 }
 
 Anchors anchors_of(const GradeSize& size) {
-  return size.anchors.empty() ? Anchors{} : read_anchors(size.anchors);
+  return size.anchors.empty() ? Anchors{} : read_anchor_file(size.anchors);
 }
 
 void require_same_unit(const std::string& a, const std::string& b, const std::string& b_name) {
@@ -67,7 +68,7 @@ std::vector<GradedMeasure> read_measures_of_size(const fs::path& table) {
 }
 
 void write_tables(const fs::path& directory, const std::string& csv, const std::string& markdown) {
-  fs::create_directories(directory);
+  make_directories(directory);
   OutputFiles files;
   files.write_text(directory / "measures.csv", csv);
   files.write_text(directory / "measures.md", markdown);

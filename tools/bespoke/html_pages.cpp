@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "bespoke/atomic_file.h"
 #include "bespoke/catalog/map_index.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
@@ -105,7 +106,7 @@ HtmlPages::HtmlPages(fs::path directory, const std::vector<ShownMap>& maps)
     : directory_(std::move(directory)), index_(directory_ / "index.html") {
   require_pages();
   if (fs::exists(directory_) && !fs::is_directory(directory_))
-    throw FileError(directory_.string() + ": is no directory");
+    throw FileError(directory_.string() + ": is no directory but a file; name another");
   std::map<std::string, fs::path> page_of;
   std::set<std::string> taken{"index"};
   for (const ShownMap& shown : maps) {
@@ -153,11 +154,7 @@ std::vector<BatchJob> HtmlPages::picture_jobs(OpenedMaps& maps) const {
   return jobs;
 }
 
-void HtmlPages::make_directory() const {
-  std::error_code error;
-  fs::create_directories(directory_, error);
-  if (error) throw FileError(directory_.string() + ": cannot be made: " + error.message());
-}
+void HtmlPages::make_directory() const { make_directories(directory_); }
 
 bool HtmlPages::has_index() const { return fs::exists(index_); }
 

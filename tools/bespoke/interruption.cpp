@@ -19,6 +19,8 @@ void remember_interruptions() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  // A reader that goes is an error of writing, which takes other outputs back.
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 int interruption() { return received.load(); }

@@ -6,20 +6,20 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "interruption.h"
+#include "nearest_name.h"
 #include "page_output.h"
 #include "versions.h"
 
 namespace {
 
-/// Without this the parser says only that a subcommand is missing.
-void require_known_subcommand(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return;
-  for (const CLI::App* subcommand : app.get_subcommands({}))
-    if (subcommand->check_name(argv[1])) return;
-  throw CLI::ParseError("there is no subcommand '" + std::string(argv[1]) + "'", CLI::ExitCodes::ExtrasError);
+/// The subcommand, as far as it was recognised.
+const CLI::App& chosen_command(const CLI::App& app) {
+  const CLI::App* chosen = &app;
+  while (!chosen->get_subcommands().empty()) chosen = chosen->get_subcommands().front();
+  return *chosen;
 }
 
-/// The command that explains the subcommand, as far as it was recognised.
+/// The command that explains the subcommand.
 std::string help_command(const CLI::App& app) {
   std::string command = app.get_name();
   for (const CLI::App* chosen = &app; !chosen->get_subcommands().empty();) {
@@ -73,12 +73,12 @@ int main(int argc, char** argv) {
   remember_interruptions();
   return exit_code_of([&] {
     try {
-      require_known_subcommand(app, argc, argv);
+      require_known_subcommands(app, {argv + 1, argv + argc});
       app.parse(argc, argv);
     } catch (const CLI::Success& request) {
       app.exit(request);  // --help and --version print and are done
     } catch (const CLI::ParseError& error) {
-      throw CLI::ParseError(error.what() + ("; see " + help_command(app)),
+      throw CLI::ParseError(explanation(chosen_command(app), error) + "; see " + help_command(app),
                             CLI::ExitCodes(error.get_exit_code()));
     }
   });

@@ -8,8 +8,9 @@
 namespace bespoke::command {
 
 /// Refuses, before any work is done, what would fail or destroy something after it: an output that is also an
-/// input, two outputs of one name (CLI::ValidationError), an output that is a directory, or in one that does
-/// not exist (FileError).
+/// input, two outputs of one name (CLI::ValidationError), an output that is a directory, in one that does
+/// not exist, or a stream that takes no output (FileError). An output "-" takes standard output for itself
+/// (standard_output.h).
 void require_safe_outputs(const std::vector<std::filesystem::path>& inputs,
                           const std::vector<std::filesystem::path>& outputs);
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/anchors/anchor_files.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/page/pick_scene.h"
 #include "commands.h"
@@ -28,7 +29,7 @@ void run(const PickArguments& arguments) {
   const PickModel source{arguments.source, read_source(arguments.source)};
   const PickModel target{arguments.target, read_target(arguments.target).mesh};
   std::optional<Anchors> anchors;
-  if (!arguments.anchors.empty()) anchors = read_anchors(arguments.anchors);
+  if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source.mesh, &target.mesh});
   const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
   const std::string title = "Anchors of " + name(arguments.source) + " and " + name(arguments.target);
   OutputFiles outputs;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bespoke/page/map_report.h"
+#include "bespoke/unknown_ending.h"
 #include "commands.h"
 #include "map_models.h"
 #include "output_files.h"
@@ -26,7 +27,7 @@ bool is_html(const ReportArguments& arguments) { return fs::path(arguments.outpu
 
 void require_ending(const ReportArguments& arguments) {
   if (!is_html(arguments) && fs::path(arguments.output).extension() != ".md")
-    throw CLI::ValidationError("--output", arguments.output + " must end in .md or .html");
+    throw UnknownEnding("--output: " + arguments.output + " must end in .md or .html");
 }
 
 void run(const ReportArguments& arguments, const RunContext& context) {

@@ -6,7 +6,9 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "bespoke/anchors/detail/paired_sides.h"
 #include "bespoke/anchors/detail/point_files.h"
@@ -14,6 +16,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/strings.h"
+#include "bespoke/unknown_ending.h"
 
 namespace bespoke {
 namespace {
@@ -47,9 +50,12 @@ void require_files(const std::vector<std::filesystem::path>& paths, AnchorFormat
       throw InvalidInput(path.string() + ": is of another format than " + paths.front().string());
 }
 
+bool needs_models(AnchorFormat format) {
+  return format == AnchorFormat::wrap || format == AnchorFormat::indices;
+}
+
 void require_models(AnchorFormat format, const AnchorFileOptions& options) {
-  const bool needs_them = format == AnchorFormat::wrap || format == AnchorFormat::indices;
-  if (needs_them && (options.source == nullptr || options.target == nullptr))
+  if (needs_models(format) && (options.source == nullptr || options.target == nullptr))
     throw InvalidInput(std::string("the format ") + std::string(name_of(anchor_formats, format)) +
                        " names places of the models: give both");
 }
@@ -158,6 +164,68 @@ std::string counted_with(const std::vector<Each>& list, const char* one, const c
   return count == 0 ? "" : std::to_string(count) + " " + (count == 1 ? one : more);
 }
 
+// ---- a file of one side
+
+/// How the names of such files end.
+std::string_view side_ending(AnchorFormat format) {
+  switch (format) {
+    case AnchorFormat::meshlab:
+      return ".pp";
+    case AnchorFormat::markups:
+      return ".mrk.json";
+    case AnchorFormat::fiducials:
+      return ".fcsv";
+    case AnchorFormat::landmarks:
+      return ".pts";
+    default:
+      return ".json";
+  }
+}
+
+/// Wrap's lists, whose files often end in .json alone; our own JSON is an object.
+bool is_list_of_lists(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  char first = 0, second = 0;
+  return file >> first >> second && first == '[' && second == '[';
+}
+
+/// As a shell takes it.
+std::string quoted(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./+,:=@%";
+  if (name.find_first_not_of(plain) == std::string::npos) return name;
+  std::string text = "'";
+  for (const char letter : name) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  return text + "'";
+}
+
+/// The only other file of this format in the directory; none where there are several.
+std::optional<std::filesystem::path> other_side(const std::filesystem::path& path, AnchorFormat format) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<fs::path> others;
+  const fs::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+    const fs::path other = path.parent_path() / entry.path().filename();
+    if (other == path || !entry.is_regular_file(error)) continue;
+    const std::string name = lower_case(other.filename().string());
+    const bool is_named_so = name.ends_with(side_ending(format));
+    if (is_named_so && anchor_format_of(other) == format) others.push_back(other);
+  }
+  return others.size() == 1 ? std::optional(others.front()) : std::nullopt;
+}
+
+[[noreturn]] void refuse_one_side(const std::filesystem::path& path, AnchorFormat format) {
+  const std::filesystem::path other =
+      other_side(path, format).value_or(path.parent_path() / ("OTHER" + std::string(side_ending(format))));
+  std::string line = "bespoke anchors convert " + quoted(path) + " " + quoted(other);
+  if (needs_models(format)) line += " --source SOURCE --target TARGET";
+  throw InvalidInput(path.string() + ": has the points of one model only, as the format " +
+                     std::string(name_of(anchor_formats, format)) +
+                     " does; join it with the file of the other model, the source's first: " + line + " -o " +
+                     quoted(path.parent_path() / "anchors.json") + "; then give that file");
+}
+
 std::string of(const char* what, const std::string& owners) { return owners.empty() ? "" : what + owners; }
 
 }  // namespace
@@ -172,7 +240,7 @@ AnchorFormat anchor_format_of(const std::filesystem::path& path) {
   if (name.ends_with(".pts")) return AnchorFormat::landmarks;
   if (name.ends_with(".txt")) return AnchorFormat::indices;
   if (!name.ends_with(".json"))
-    throw InvalidInput(
+    throw UnknownEnding(
         path.string() +
         ": unknown ending; known are .json, .csv, .pp, .mrk.json, .fcsv, .pts, .wrap.json and .txt");
   // Wrap's files have no ending of their own; they are arrays.
@@ -194,6 +262,16 @@ Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const
   return paired(parse_side(text_of(paths[0]), format, paths[0].string(), options.source, options.models),
                 parse_side(text_of(paths[1]), format, paths[1].string(), options.target, options.models),
                 paths);
+}
+
+Anchors read_anchor_file(const std::filesystem::path& path, const AnchorFileOptions& options) {
+  // What is no file can be read only once, so its format cannot be looked at first.
+  if (!path.has_extension() || !std::filesystem::is_regular_file(path)) return read_anchors(path);
+  const AnchorFormat format = anchor_format_of(path);
+  const bool is_wrap = lower_case(path.filename().string()).ends_with(".wrap.json");
+  if (format == AnchorFormat::wrap && !is_wrap && !is_list_of_lists(path)) return read_anchors(path);
+  if (!has_file_per_side(format)) return read_anchor_files({path}, options);
+  refuse_one_side(path, format);
 }
 
 bool has_curves(AnchorFormat format) {

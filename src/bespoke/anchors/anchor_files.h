@@ -37,7 +37,7 @@ inline constexpr std::array anchor_formats{Named<AnchorFormat>{"json", AnchorFor
 enum class PatientSystem { lps, ras };
 
 /// By the ending of a file's name, and for .json by what stands in it where it is there already. Throws
-/// InvalidInput for an unknown ending.
+/// UnknownEnding.
 AnchorFormat anchor_format_of(const std::filesystem::path& path);
 
 /// Whether each side has a file of its own.
@@ -60,6 +60,11 @@ bool has_curves(AnchorFormat format);
 /// FileError, FormatError naming file and place, InvalidInput where a model or a file is missing.
 Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths,
                           const AnchorFileOptions& options = {});
+
+/// The same of one file that has both sides. A file of one side is refused with the `anchors convert` line
+/// that joins it with the other one, where that lies beside it: InvalidInput. A name without an ending is
+/// read as JSON.
+Anchors read_anchor_file(const std::filesystem::path& path, const AnchorFileOptions& options = {});
 
 /// The text of a file of AnchorFormat::json.
 std::string anchors_json(const Anchors& anchors);

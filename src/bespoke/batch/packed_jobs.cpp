@@ -130,7 +130,7 @@ PackedJobs::PackedJobs(fs::path archive, Access access)
     if (!fs::exists(archive_)) return;
     file_ = std::make_unique<RandomAccessFile>(archive_, FileAccess::read);
   } else {
-    if (archive_.has_parent_path()) fs::create_directories(archive_.parent_path());
+    if (archive_.has_parent_path()) make_directories(archive_.parent_path());
     file_ = std::make_unique<RandomAccessFile>(archive_, FileAccess::write_alone);
     allow_many_open_files();
   }

@@ -212,7 +212,7 @@ class Scheduler {
 
   void run_in_place(const BatchJob& job, JobResult& result) {
     for (const JobFile& output : job.outputs)
-      if (output.path.has_parent_path()) fs::create_directories(output.path.parent_path());
+      if (output.path.has_parent_path()) make_directories(output.path.parent_path());
     const std::vector<RecordedFile> inputs = records_.inputs_of(job);
     run_on_threads(result.threads, [&] { directories_.note([&] { result.findings = job.run({}); }); });
     records_.write(job, inputs, result.findings);

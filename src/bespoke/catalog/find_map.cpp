@@ -23,6 +23,20 @@ void require_digits(const std::string& hash, const char* role) {
                        std::to_string(min_digits) + " hexadecimal digits or more");
 }
 
+/// Whether all of them are copies of one file.
+bool are_copies(const std::vector<const CatalogEntry*>& entries) {
+  return !entries.front()->sha256.empty() &&
+         std::all_of(entries.begin(), entries.end(),
+                     [&](const CatalogEntry* entry) { return entry->sha256 == entries.front()->sha256; });
+}
+
+bool have_same_models(const std::vector<const CatalogEntry*>& entries) {
+  return std::all_of(entries.begin(), entries.end(), [&](const CatalogEntry* entry) {
+    return entry->source.hash == entries.front()->source.hash &&
+           entry->target.hash == entries.front()->target.hash;
+  });
+}
+
 std::string listed(const std::vector<const CatalogEntry*>& entries) {
   std::string text;
   for (std::size_t i = 0; i < std::min(named_maps, entries.size()); ++i)
@@ -51,6 +65,10 @@ const CatalogEntry& find_map(const Catalog& catalog, const ModelHashes& models) 
   if (found.empty())
     throw InvalidInput("no map leads from the source " + source + " to the target " + target +
                        "; from this source there are " + listed(from_source));
+  if (are_copies(found)) return *found.front();
+  if (have_same_models(found))
+    throw InvalidInput(std::to_string(found.size()) + " maps lead from the source " + source +
+                       " to the same target: " + listed(found) + "; give one of them as MAP, without --from");
   throw InvalidInput("the target must be named, or the map itself: from the source " + source +
                      " there are " + listed(found));
 }

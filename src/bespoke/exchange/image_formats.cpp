@@ -5,6 +5,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/exchange/detail/image_files.h"
+#include "bespoke/unknown_ending.h"
 
 namespace bespoke {
 namespace {
@@ -23,8 +24,8 @@ const ImageFormat& format_of(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   for (const ImageFormat& format : image_formats)
     if (name.ends_with(format.ending)) return format;
-  throw InvalidInput(path.string() + ": unknown ending '" + path.extension().string() +
-                     "'; displacement images are written as " + image_endings());
+  throw UnknownEnding(path.string() + ": unknown ending '" + path.extension().string() +
+                      "'; displacement images are written as " + image_endings());
 }
 
 }  // namespace

@@ -7,9 +7,11 @@
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/strings.h"
+#include "bespoke/unknown_ending.h"
 
 namespace bespoke {
 namespace {
@@ -43,7 +45,8 @@ const Format* find_format(const fs::path& path) {
 
 const Format& known_format(const fs::path& path) {
   if (const Format* const format = find_format(path)) return *format;
-  throw InvalidInput(path.string() + ": the name must end in " + product_endings() + conversion_advice(path));
+  throw UnknownEnding(path.string() + ": the name must end in " + product_endings() +
+                      conversion_advice(path));
 }
 
 std::vector<PartPoints> find_parts(const Format& format, const InputFile& file,
@@ -77,8 +80,8 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
                        std::to_string(motion.frames) + " frames; the numbers must be equal");
   const Format& format = known_format(input);
   for (const fs::path& output : outputs)
-    if (find_format(output) != &format)
-      throw InvalidInput(output.string() + ": must have the ending of " + input.string());
+    if (find_format(output) != &format && !is_stream(output))
+      throw UnknownEnding(output.string() + ": must have the ending of " + input.string());
   auto file = std::make_unique<InputFile>(input);
   const std::vector<PartPoints> parts = find_parts(format, *file, options.parts, options.progress);
   std::vector<PartPoints> places = parts;

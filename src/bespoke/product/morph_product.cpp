@@ -9,6 +9,7 @@
 #include "bespoke/product/detail/gltf_additions.h"
 #include "bespoke/product/detail/gltf_carrier.h"
 #include "bespoke/product/morph_track.h"
+#include "bespoke/unknown_ending.h"
 
 namespace bespoke {
 namespace {
@@ -156,7 +157,7 @@ class Morpher {
 MorphSummary morph_product(const std::filesystem::path& input, const std::filesystem::path& output,
                            const PointMotion& motion, double seconds, const Progress& progress) {
   for (const std::filesystem::path& path : {input, output})
-    if (path.extension() != ".glb") throw InvalidInput(path.string() + ": the name must end in .glb");
+    if (path.extension() != ".glb") throw UnknownEnding(path.string() + ": the name must end in .glb");
   if (motion.frames == 0 || motion.frames % 2 != 0)
     throw InvalidInput("a motion of " + std::to_string(motion.frames) +
                        " frames; morphing needs two a target, the first half way");

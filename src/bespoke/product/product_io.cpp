@@ -15,6 +15,7 @@
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/strings.h"
+#include "bespoke/unknown_ending.h"
 
 namespace bespoke {
 namespace {
@@ -83,14 +84,14 @@ std::string conversion_advice(const std::filesystem::path& path) {
 Product read_product(const std::filesystem::path& path) {
   const FaceFormat* const format = find_face_format(path);
   if (!format)
-    throw InvalidInput(path.string() + ": the name must end in " + read_product_endings() +
-                       conversion_advice(path));
+    throw UnknownEnding(path.string() + ": the name must end in " + read_product_endings() +
+                        conversion_advice(path));
   return format->read(InputFile(path));
 }
 
 void write_product(const std::filesystem::path& path, const Product& product) {
   if (!can_write_product(path))
-    throw InvalidInput(path.string() + ": the name must end in " + written_product_endings());
+    throw UnknownEnding(path.string() + ": the name must end in " + written_product_endings());
   require_writable(path, product);
   WrittenFaces faces{product, {}, needs_doubles(product.vertices)};
   if (product.has_normals) faces.normals = vertex_normals({product.vertices, triangulated(product)});

@@ -33,7 +33,7 @@ void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArra
 }
 
 /// As the text of a JSON file, whatever the file was.
-std::string anchors_of_file(const fs::path& path) { return anchors_json(read_anchors(path)); }
+std::string anchors_of_file(const fs::path& path) { return anchors_json(read_anchor_file(path)); }
 
 }  // namespace
 

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/output_stream.h"
 #include "bespoke/product/detail/gltf_carrier.h"
 #include "bespoke/product/detail/gltf_frame.h"
 #include "bespoke/product/detail/product_formats.h"
@@ -16,6 +17,14 @@ fs::path buffer_path(const fs::path& output, std::size_t buffer, std::size_t buf
   std::string name = output.stem().string();
   if (buffers > 1) name.append("_").append(std::to_string(buffer));
   return output.parent_path() / name.append(".bin");
+}
+
+/// A stream has no neighbours.
+void require_place_for_buffers(const GltfFile& file, const std::vector<OutputFile>& outputs) {
+  for (const OutputFile& output : outputs)
+    if (is_stream(output.name()))
+      throw InvalidInput(file.path.string() + ": has buffers in files of their own, which cannot go into " +
+                         output.name().string() + "; pack it into a .glb, or name a file");
 }
 
 /// Which buffers are files beside the .gltf.
@@ -80,6 +89,7 @@ CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs
   }
 
   const std::vector<std::size_t> beside = buffers_beside(file);
+  if (!beside.empty()) require_place_for_buffers(file, outputs);
   for (const OutputFile& output : outputs)
     for (const std::size_t buffer : beside)
       summary.companions.push_back(buffer_path(output.name(), buffer, file.buffers.size()));
