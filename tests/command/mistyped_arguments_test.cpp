@@ -23,15 +23,15 @@ struct Mistake {
 TEST(MistypedArguments, SuggestTheNearestName) {
   const Mistake mistakes[] = {
       {{"fit", "a.obj", "b.obj", "--anchor", "x.json", "-o", "m.vdb"},
-       "there is no option --anchor; did you mean --anchors?; see bespoke fit --help"},
-      {{"fit", "a.obj", "b.obj", "--anchros=x.json", "-o", "m.vdb"}, "--anchros; did you mean --anchors?"},
-      {{"fit", "a.obj", "b.obj", "--outptu", "m.vdb"}, "--outptu; did you mean --output?"},
+       "there is no option --anchor (did you mean --anchors?); see bespoke fit --help"},
+      {{"fit", "a.obj", "b.obj", "--anchros=x.json", "-o", "m.vdb"}, "--anchros (did you mean --anchors?)"},
+      {{"fit", "a.obj", "b.obj", "--outptu", "m.vdb"}, "--outptu (did you mean --output?)"},
       {{"fit", "a.obj", "b.obj", "-o", "m.vdb", "--conf", "c.txt"}, "did you mean --confidence-out?"},
-      {{"apply", "m.vdb", "p.obj", "--out_dir", "x"}, "--out_dir; did you mean --out-dir?"},
-      {{"batch", "jobs.jsonl", "--keepgoing"}, "--keepgoing; did you mean --keep-going?"},
-      {{"aply", "m.vdb"}, "there is no subcommand 'aply'; did you mean apply?"},
-      {{"chekc", "m.vdb"}, "there is no subcommand 'chekc'; did you mean check?"},
-      {{"anchors", "convrt", "a.pp", "b.pp"}, "there is no subcommand 'convrt'; did you mean convert?"}};
+      {{"apply", "m.vdb", "p.obj", "--out_dir", "x"}, "--out_dir (did you mean --out-dir?)"},
+      {{"batch", "jobs.jsonl", "--keepgoing"}, "--keepgoing (did you mean --keep-going?)"},
+      {{"aply", "m.vdb"}, "there is no subcommand 'aply' (did you mean apply?)"},
+      {{"chekc", "m.vdb"}, "there is no subcommand 'chekc' (did you mean check?)"},
+      {{"anchors", "convrt", "a.pp", "b.pp"}, "there is no subcommand 'convrt' (did you mean convert?)"}};
   for (const Mistake& mistake : mistakes) expect_refusal(bespoke(mistake.arguments), 1, mistake.message);
 }
 
@@ -48,8 +48,8 @@ TEST(MistypedArguments, OfJobsSuggestNamesToo) {
              "{\"command\":\"check\",\"map\":\"m.vdb\",\"outptu\":\"x\"}\n{\"command\":\"aply\"}\n");
   const ProgramResult batch = bespoke({"batch", pair.file("jobs.jsonl")});
   EXPECT_EQ(batch.exit_code, 2);
-  EXPECT_THAT(batch.err, HasSubstr("unknown key \"outptu\"; did you mean output?"));
-  EXPECT_THAT(batch.err, HasSubstr("unknown command \"aply\"; did you mean apply?"));
+  EXPECT_THAT(batch.err, HasSubstr("unknown key \"outptu\" (did you mean output?)"));
+  EXPECT_THAT(batch.err, HasSubstr("unknown command \"aply\" (did you mean apply?)"));
 }
 
 TEST(UnknownEndings, HaveOneExitCode) {

@@ -1,4 +1,6 @@
 import json
+import os
+from concurrent.futures import ThreadPoolExecutor
 
 import bespoke
 import numpy as np
@@ -212,6 +214,25 @@ def test_meshes_come_back_as_written(pair, tmp_path):
     (tmp_path / "mesh.obj").write_text("v 0 0\n")
     with pytest.raises(bespoke.FormatError, match="line 1|:1"):
         bespoke.read_mesh(tmp_path / "mesh.obj")
+
+
+def test_pipes_are_written_into(pair, tmp_path):
+    bespoke.write_mesh(tmp_path / "mesh.ply", pair.source)
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    (tmp_path / "link.ply").symlink_to(pipe)
+    with ThreadPoolExecutor(1) as pool:
+        read = pool.submit(pipe.read_bytes)
+        bespoke.write_mesh(tmp_path / "link.ply", pair.source)
+        assert read.result() == (tmp_path / "mesh.ply").read_bytes()
+    assert pipe.is_fifo()
+    assert (tmp_path / "link.ply").is_symlink()
+
+
+def test_anchors_of_one_model_name_the_line_that_joins_them(tmp_path):
+    (tmp_path / "woman.pp").write_text("<PickedPoints/>")
+    with pytest.raises(bespoke.InvalidInput, match="bespoke anchors convert .*woman.pp"):
+        bespoke.read_anchors(tmp_path / "woman.pp")
 
 
 def test_anchors_come_with_their_accuracy(tmp_path):

@@ -47,7 +47,7 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
     least = mistakes;
     nearest = &name;
   }
-  return nearest ? "; did you mean " + *nearest + "?" : "";
+  return nearest ? " (did you mean " + *nearest + "?)" : "";
 }
 
 std::vector<std::string> option_names(const CLI::App& command) {

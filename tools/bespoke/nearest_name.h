@@ -6,7 +6,7 @@
 
 namespace bespoke::command {
 
-/// "; did you mean NAME?" for the name that a mistyped word begins, or that takes the fewest letters
+/// " (did you mean NAME?)" for the name that a mistyped word begins, or that takes the fewest letters
 /// inserted, left out, changed or swapped (optimal string alignment); empty where none is close.
 std::string suggestion(const std::string& word, const std::vector<std::string>& names);
 
