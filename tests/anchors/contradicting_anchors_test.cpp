@@ -62,7 +62,7 @@ TEST(ContradictingAnchors, MayBeFarApartOrSoft) {
   EXPECT_TRUE(contradicting_anchors(anchors).empty());
 }
 
-// A hand that has turned over: its fingers' tips go where one similarity of all anchors would not take them.
+// A hand that has flipped: its fingers' tips go where one similarity of all anchors would not take them.
 TEST(ContradictingAnchors, MayTurnWithThoseAroundThem) {
   Anchors anchors = similar_with_twins();
   const Vector3 center = anchors.pairs.front().a, image = anchors.pairs.front().b;

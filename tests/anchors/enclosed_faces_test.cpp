@@ -33,7 +33,7 @@ bool contains(const std::vector<int>& sorted, Eigen::Index face) {
   return std::binary_search(sorted.begin(), sorted.end(), static_cast<int>(face));
 }
 
-/// Everything above the height is enclosed and nothing below it, but for faces that the line runs through.
+/// Everything above the height is enclosed and nothing below it, except for faces that the line runs through.
 void expect_cap_above(const TriangleMesh& sphere, double height, const EnclosedFaces& found) {
   for (Eigen::Index face = 0; face < sphere.faces.cols(); ++face) {
     if (contains(found.crossed, face)) continue;
@@ -129,7 +129,7 @@ TEST(EnclosedFaces, AreRefusedWhereTheLineLeavesTheSurface) {
   const TriangleMesh sphere = shapes::icosphere(3);
   EXPECT_THAT(complaint(sphere, 100 * circle_at(0.5)), HasSubstr("leaves the surface near"));
   EXPECT_THAT(complaint(sphere, circle_at(0.1, 3)), HasSubstr("more points along it"));
-  // Half of a circle: the way back cuts through the sphere.
+  // Half of a circle: the closing line cuts through the sphere.
   EXPECT_THAT(complaint(sphere, circle_at(0.3).leftCols(45)), HasSubstr("leaves the surface near"));
 }
 

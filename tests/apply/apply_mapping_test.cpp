@@ -74,7 +74,7 @@ TEST(ApplyMapping, FollowsEquationNineteenAtTheMovingPoint) {
   const Points y = (rotation * x).colwise() + t * gamma.translation;
   const Points expected = (1 - t) * y + t * (gamma * map(inverse(gamma) * y));
   EXPECT_LT((applied.frames[1] - expected).norm(), 1e-13);
-  // E asked for at the resting points is another motion.
+  // E requested at the resting points is another motion.
   const Points at_rest =
       apply_mapping(map, gamma, x, {t}, {RotationPath::geodesic, MappingOrder::rigid_first}).frames[0];
   EXPECT_GT((applied.frames[1] - at_rest).norm(), 0.1);

@@ -39,7 +39,7 @@ double area(const Product& product) {
   for (Eigen::Index i = 0; i < faces.cols(); ++i) {
     const Vector3 a = product.vertices.col(faces(0, i)), b = product.vertices.col(faces(1, i)),
                   c = product.vertices.col(faces(2, i));
-    sum += 0.5 * (b - a).cross(c - a)[2];  // negative where a face is turned over
+    sum += 0.5 * (b - a).cross(c - a)[2];  // negative where a face is flipped
   }
   return sum;
 }
@@ -156,7 +156,7 @@ TEST(RefineProduct, RefusesWhatTakesTooMuch) {
     for (Eigen::Index i = 0; i < x.cols(); ++i) y(2, i) = x(0, i) > 0.7 ? 1 : 0;
     return y;
   };
-  EXPECT_THAT(refusal(0.1, jump), HasSubstr("ask for less"));
+  EXPECT_THAT(refusal(0.1, jump), HasSubstr("allow a larger one"));
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 /// A step whose leaves fill a cube, and so that parts of them lie in many blocks of the file: two levels,
-/// full but for the finer one's upper half.
+/// full except for the finer one's upper half.
 MapStep wide_step(unsigned seed) {
   MapStep step = test::small_asset().steps.front();
   step.pyramid = test::random_pyramid(2, seed);

@@ -62,7 +62,7 @@ TEST(Bake, ConvergesWithOrderTwo) {
 TEST(Bake, IsExactlyAffineBeyondTheBandAndContinuousIntoIt) {
   const AnalyticMap map = two_bumps();
   const BakedMap baked(map.affine(), bake(map, uniform(0.05)).pyramid);
-  const double length = 2.7;  // beyond the support and the leaves that hold its rim
+  const double length = 2.7;  // beyond the support and the leaves that hold its level boundary
   Points directions = Points::Random(3, 50);
   directions.colwise().normalize();
   for (Eigen::Index i = 0; i < directions.cols(); ++i) {

@@ -98,8 +98,8 @@ TEST(PyramidBuilder, RefinesOnlyWhereTheDetailIs) {
   }
 }
 
-// What a level adds just inside its rim drops to zero within one cell: harmless when it is small, or when
-// zero is what the map does.
+// What a level adds just inside its level boundary drops to zero within one cell: harmless when it is small,
+// or when zero is what the map does.
 TEST(PyramidBuilder, GradesEveryRim) {
   const AnalyticMap map = three_sizes();
   const Progress progress;

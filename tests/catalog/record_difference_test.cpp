@@ -27,7 +27,7 @@ TEST(RecordDifference, NamesFieldsAndOptionsThatDiffer) {
   b.record.tolerance = 0.25;
   a.record.options_json = R"({"tolerance": 0.5, "fit": {"steps": 3, "only": true}, "list": [1, 2]})";
   b.record.options_json = R"({"tolerance": 0.25, "fit": {"steps": 4}, "list": [1, 2], "more": "x"})";
-  b.record.bake_error.max *= 2;  // was found, not asked for
+  b.record.bake_error.max *= 2;  // was found, not requested
   EXPECT_THAT(record_difference(a, b).fields,
               ElementsAre(field("tolerance", "0.5", "0.25"), field("options.fit.steps", "3", "4"),
                           field("options.fit.only", "true", ""), field("options.more", "", "\"x\"")));

@@ -116,7 +116,7 @@ TEST(Certify, SeesTheCheckerboardThatCentralDifferencesPass) {
       return Vector3(Vector3::Constant((i + j + k) % 2 == 0 ? amplitude : -amplitude));
     });
   };
-  // Every second cell turns over: ∂u/∂x alternates between ±2 a: with three equal components the least det is
+  // Every second cell flips: ∂u/∂x alternates between ±2 a: with three equal components the least det is
   // 1 − 6 a (at a corner).
   EXPECT_EQ(certify(checkerboard(0.16), {}).folded, 0u);
   EXPECT_GT(certify(checkerboard(0.16), {}).min_determinant, 1 - 6 * 0.1601 - 1e-6);

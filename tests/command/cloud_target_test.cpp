@@ -57,8 +57,8 @@ TEST_F(CloudTarget, GivesTheMapOfTheMeshWithinItsSpacing) {
   const double spacing = stage["spacing"];
   EXPECT_LT(stage["distances"]["p95"], spacing / 10);
 
-  // Both fits lay the source onto their surface; along it they may differ by as much as the surfaces' normals
-  // do.
+  // Both fits register the source to their surface; along it they may differ by as much as the surfaces'
+  // normals do.
   const Points onto_mesh = carried("mesh.vdb"), onto_cloud = carried("cloud.vdb");
   EXPECT_LT((onto_mesh - onto_cloud).colwise().norm().maxCoeff(), spacing);
   const ClosestPointTree target(read_triangle_mesh(pair_.file("target.obj")));

@@ -49,7 +49,7 @@ TEST(InvertCommand, LeadsBackAsTheCellsOfTheMapDo) {
   const auto moved = [&](const char* name) {
     return (read_obj_points(pair.file(name)) - product).colwise().norm().maxCoeff();
   };
-  // Float files add their rounding: once for what goes in, a few times more where the way back stretches.
+  // Float files add their rounding: once for what goes in, a few times more where the inverse stretches.
   const double rounding = 10 * float_rounding(product);
 
   const ProgramResult cells = bespoke(

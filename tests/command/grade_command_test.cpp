@@ -95,7 +95,7 @@ TEST_F(GradeCommand, FillsTheSizesBetweenFromOneMap) {
 }
 
 TEST_F(GradeCommand, GoesOnWithTheOtherSizes) {
-  // A line is no model that the source could be laid onto.
+  // A line is no model that the source could be registered to.
   write_text(file("flat.obj"), "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   write_text(file("sizes.csv"), "size,target,anchors\nS," + file("flat.obj") + "," + file("anchors.json") +
                                     "\nM," + file("target.obj") + "," + file("anchors.json") + "\n");

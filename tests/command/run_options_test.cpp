@@ -63,7 +63,7 @@ TEST_F(EverySubcommand, IsSilentWhenQuiet) {
   }
   for (const Arguments& arguments : {check(), measure()}) {
     const ProgramResult result = run(arguments, {"-q"});
-    EXPECT_THAT(result.out, Not(IsEmpty())) << arguments[0];  // what it is asked for
+    EXPECT_THAT(result.out, Not(IsEmpty())) << arguments[0];  // what it is requested
     EXPECT_THAT(result.err, IsEmpty()) << arguments[0];
   }
 }

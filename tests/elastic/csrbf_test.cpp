@@ -133,7 +133,7 @@ void expect_good_advice(const Points& sources, CsrbfOptions options) {
   ASSERT_FALSE(estimate.within_limits);
   ASSERT_GT(estimate.advised_lambda, 0);
   ASSERT_LT(estimate.advised_lambda, options.lambda);
-  // The advice is no more careful than the limits ask for.
+  // The advice is no more careful than the limits require.
   CsrbfOptions larger = options;
   larger.lambda = 1.1 * estimate.advised_lambda;
   EXPECT_FALSE(estimate_csrbf(sources, larger).within_limits);

@@ -74,7 +74,7 @@ TEST(FaceRotations, StartFromTheReferencesBranch) {
 }
 
 TEST(FaceRotations, OfAFoldedFaceAreItsNeighbours) {
-  // The middle of a strip is turned over.
+  // The middle of a strip is flipped.
   const TriangleMesh source = shapes::square_grid(6);
   Points fitted = source.vertices;
   const int vertex = 3 * 7 + 3;

@@ -73,7 +73,7 @@ TEST(PartMap, HasTheBitsOfTheLevelsWhereTheWholeHasNoAtlas) {
   expect_bits_of_the_whole(whole, 5);
 }
 
-// Never another value than the whole's, wherever it is asked.
+// Never another value than the whole's, wherever it is queried.
 void expect_the_whole_or_a_refusal(const Pyramid& whole) {
   const auto loaded = loaded_map({}, whole);
   const PartMap part({}, test::part_of(whole, {Vector3(-1, -2, 1), Vector3(0, 0, 2)}));

@@ -79,7 +79,7 @@ TEST(MovePoints, WithoutRotationIsLinearInTimeWhereverEIsAskedForAtRest) {
                 1e-13);
 }
 
-/// Ψ(t) with E asked for wherever the order asks for it.
+/// Ψ(t) with E requested wherever the order requires it.
 template <class Elastic>
 Points psi(const Elastic& elastic, const Points& x, const RigidTransform& target_from_source, double t,
            MappingOrder order) {

@@ -34,7 +34,8 @@ SurfacePoint closest_on_face(const TriangleMesh& mesh, Eigen::Index face, const 
   return ClosestPointTree(one).closest(x).value();
 }
 
-// The variational law of a closest point y of a convex set: (x − y)·(z − y) ≤ 0 for all of its corners z.
+// The variational property of a closest point y of a convex set: (x − y)·(z − y) ≤ 0 for all of its corners
+// z.
 void expect_closest_on_triangle(const TriangleMesh& mesh, const Vector3& x, const SurfacePoint& at) {
   for (const int corner : mesh.faces.col(at.face)) {
     const Vector3 z = mesh.vertices.col(corner);

@@ -161,7 +161,7 @@ void OpenMap(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(read_asset(std::getenv("BESPOKE_MAP")));
 }
 
-// What a ring asks for: a twentieth of the source's extent about the middle of its box. Of a file that
+// What a ring requires: a twentieth of the source's extent about the middle of its box. Of a file that
 // is not read in parts, nothing.
 void OpenPart(benchmark::State& state) {
   const Box source = asset().record.source.box;

@@ -106,7 +106,7 @@ BENCHMARK(evaluate)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime();
 
-/// Guides of 10,242 vertices, and of four times as many, as a step of a chain asks for them.
+/// Guides of 10,242 vertices, and of four times as many, as a step of a chain requires them.
 void guides(benchmark::State& state) {
   const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
   const Points fitted = test::random_rotation(1) * source.vertices;

@@ -55,8 +55,8 @@ BENCHMARK_CAPTURE(fit, deformation_graph, SurfaceFitMethod::deformation_graph)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// What every fit asks of a laid source of 10,242 vertices, and of four times as many: the strain around 36
-/// anchors.
+/// What every fit asks of a registered source of 10,242 vertices, and of four times as many: the strain
+/// around 36 anchors.
 void strain(benchmark::State& state) {
   const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
   const Points registered = bumpy_sphere(static_cast<int>(state.range(0))).vertices;

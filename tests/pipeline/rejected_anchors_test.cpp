@@ -21,8 +21,8 @@ bool has(const std::vector<std::size_t>& all, std::size_t index) {
 }
 
 TEST(RejectedAnchors, AreWrongPairsAndNoRightOneThatOnlyItsNeighboursHold) {
-  // 3 has slipped; 5 is right, but lies elsewhere where 4, which is right whatever is left out, does not
-  // hold it.
+  // 3 is an outlier; 5 is right, but lies elsewhere where 4, which is right whatever is left out,
+  // does not hold it.
   const auto outliers_and_inliers = [](const std::vector<std::size_t>& left_out) {
     std::vector<RejectedAnchor> rejected;
     for (const std::size_t index : left_out)
@@ -58,7 +58,7 @@ TEST(RejectedAnchors, AreToldByTheDistanceOfTheLastTime) {
 }
 
 TEST(RejectedAnchors, AreReinstatedNearestFirstEachBesideThoseStillRejected) {
-  // 4 is right once 3, which has slipped, is left out; 5 once 4 is back.
+  // 4 is right once 3, which is an outlier, is left out; 5 once 4 is back.
   std::vector<std::size_t> asked;
   const auto reinstate = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
     asked.push_back(anchor);

@@ -35,7 +35,7 @@ TEST_F(GltfFaces, AreJoinedAcrossSeams) {
 TEST_F(GltfFaces, LieWhereNodesShowThem) {
   GltfScene scene = seamed_square();
   scene.root["nodes"] = {{{"mesh", 0}, {"translation", {10, 0, 0}}},
-                         {{"mesh", 0}, {"scale", {-2, 1, 1}}}};  // mirrored: its faces are turned over
+                         {{"mesh", 0}, {"scale", {-2, 1, 1}}}};  // mirrored: its faces are flipped
   scene.root["scenes"] = {{{"nodes", {0, 1}}}};
   const Product product = read_product(file("a.glb", scene.glb()));
   EXPECT_EQ(product.vertices,

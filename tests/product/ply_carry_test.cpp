@@ -73,7 +73,7 @@ TEST_F(CarryPly, MovesPointsAndNormalsAndNothingElse) {
     const std::string out = carried("a.ply", expected, bend_motion());
     const std::size_t body = odd_ply(format, "").size();
     for (int i = 0; i < 3; ++i) {
-      // Behind the camera's 9 bytes and the records before, each of 34 bytes but for the tags of 2; behind
+      // Behind the camera's 9 bytes and the records before, each of 34 bytes except for the tags of 2; behind
       // y, red and x.
       const std::size_t z = body + 9 + static_cast<std::size_t>(i * 34 + i * (i - 1) + 1 + 2 * i + 13);
       const double length = std::sqrt(1.0 + i * i);

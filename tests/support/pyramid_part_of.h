@@ -8,7 +8,7 @@
 
 namespace bespoke::test {
 
-/// What points in the box ask for of a pyramid in memory.
+/// What points in the box require of a pyramid in memory.
 inline PyramidPart part_of(const Pyramid& whole, const Box& box) {
   PyramidPart part;
   part.read.origin = whole.origin;

@@ -253,7 +253,7 @@ TEST(RepairMisorientedFaces, JudgesEveryPatchOnItsOwnAndInAnyPlace) {
   const auto pockets = [&](double first, double second) {
     return with_pocket({with_pocket(grid, one, first), grid.faces}, two, second);
   };
-  // Both turn over since: the first into its shape, the second out of it.
+  // Both flip since: the first into its shape, the second out of it.
   const Points shape = pockets(0.2, 0.2);
   const TriangleMesh before{turn * pockets(-0.2, 0.2), grid.faces};
   const Points after = turn * pockets(0.2, -0.2);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr NodeLevel every_vertex{1, 1, 100000, 100000};
 
-/// Pairs between two surfaces whose vertices all speak for their areas.
+/// Pairs between two surfaces whose vertices all represent their areas.
 std::vector<PlanePair> pairs_between(const TriangleMesh& source, const TriangleMesh& target,
                                      const NodeLevel& level = every_vertex) {
   const TargetSurface from(source), to(target);

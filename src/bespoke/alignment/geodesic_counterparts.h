@@ -12,8 +12,7 @@ struct CounterpartOptions {
   /// Of the source's diagonal: where every place is nearer to a pair than this, along the surface, none is
   /// looked for. Thirty pairs or so on a body leave 0.14.
   double remote = 0.2;
-  /// Of the source's diagonal: so near to a pair or to each other the places may be at last. 0.18, 0.15,
-  /// 0.12, 0.08: 0.41, 0.39, 0.37, 0.39 %.
+  /// Of the source's diagonal: the smallest distance of a place from pairs and other places.
   double spacing = 0.1;
   /// Of the source's diagonal: so near to a pair or a place in space none is taken, however far it is along
   /// the surface. Across a seam or where parts touch, a warp of space cannot tell them apart. Not varied.

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::size_t min_pairs_to_swap = 6;  // four are met by the affine tail alone
 
-/// Of the energy. Of all interchanges of two anchors of fifteen pairs of models it finds 6,779 of 6,899,
-/// those of bodies in two poses least (361 of 435); 0.5 finds 6,651. Of right anchors with noise of 3 % of
-/// the diagonal it takes none for swapped in 1,500 sets, 0.8 takes three.
+/// Of the energy: finds 98 % of all interchanges, and none in noise of 3 % of the diagonal.
 constexpr double largest_ratio = 0.7;
 
 SwappedAnchors best_interchange(const BiharmonicWarp& warp, std::size_t count) {

@@ -259,13 +259,13 @@ RefinedProduct refine_product(Product product, const ImageOfPoints& image, doubl
     if (round == max_rounds)
       throw InvalidInput("a chord error of " + in_short(length) + " is not met after " +
                          std::to_string(max_rounds) + " halvings of edges; " + in_short(errors.maxCoeff()) +
-                         " is left, ask for less");
+                         " is left, allow a larger one");
     const double needed = std::max(static_cast<double>(vertices.cols()) + static_cast<double>(middles.size()),
                                    expected_vertices(vertices.cols(), errors, length));
     if (needed > static_cast<double>(max_vertices))
       throw InvalidInput("a chord error of " + in_short(length) + " would take more than " +
                          std::to_string(max_vertices) + " vertices; the largest is " +
-                         in_short(errors.maxCoeff()) + ", ask for less");
+                         in_short(errors.maxCoeff()) + ", allow a larger one");
     if (!parts.empty()) add_parts_of_middles(edges, is_stiff, middles, parts);
     splitting.split(middles);
   }

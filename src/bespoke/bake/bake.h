@@ -31,9 +31,7 @@ struct BakeOptions {
   /// The source, in its frame: the error is measured in the finest cells that it passes through. Without it,
   /// in some cells of every leaf. Must outlive the call.
   const TriangleMesh* surface = nullptr;
-  /// Degrees: leaves are added where the baked map turns a face of `surface` farther against the map. The
-  /// shared cases take files x 0.98 to 1.02 (10: 0.99 to 1.05). Where leaves are few, these places need them:
-  /// d08's vertices end 0.0083 % of the diagonal from where the map itself takes them, not 0.0100 %.
+  /// Degrees: leaves are added where the baked map turns a face of `surface` farther against the map.
   double max_face_turn = 15;
   /// What follows the map, where it is a step of a chain: errors are measured where it takes them. Must
   /// outlive the call.

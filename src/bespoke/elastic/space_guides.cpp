@@ -15,8 +15,7 @@ namespace bespoke {
 namespace {
 
 // Of λ. A layer's centres are λ/4 apart, so that guides of the first layer must be farther from its centres
-// on the surface. Besides 0.4: 0.3 changes products by 5 % either way; both 0.4 and 0.2 halve the change of
-// clearance at up to twice the time of a chain.
+// on the surface.
 constexpr double offset_share = 0.4;
 constexpr double min_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
 // By which guides may part or come together: 3 leaves folds to repair on an adult and a toddler, 1.5 drops

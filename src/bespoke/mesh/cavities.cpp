@@ -16,9 +16,7 @@ namespace {
 
 /// Directions in which a vertex looks, evenly spread over the half-space of its normal.
 constexpr int ray_count = 32;
-/// Of them, that an enclosed vertex may have free: an eye socket sees so much of the open between its lids.
-/// On six heads and bodies 1.8 to 15 % of the area is enclosed then; 0 and 6: up to 3.9 % of it less, at most
-/// 0.2 % more. Of an open hand nothing is, of a fist 4 %; 0 and 6: nothing, 6 %.
+/// Of them, that an enclosed vertex may have free: an eye socket is exposed between its lids.
 constexpr int max_free = 4;
 /// Vertices queried at first, evenly chosen; from those enclosed on, their neighbours are.
 constexpr std::size_t seeds = 4000;

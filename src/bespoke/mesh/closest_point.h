@@ -37,12 +37,7 @@ struct ClosestPointQuery {
 /// Bounding-volume tree over the triangles of a mesh; for exact closest-point queries. Copies what it
 /// needs. Queries are thread-safe and, at equal distance, return the face of least index. Faces without area
 /// count too when no normal is given.
-///
-/// Microseconds of one core per query, 13,380 queries on a body of 39,998 faces at up to 0.2 / 2 / 50 % of
-/// the diagonal from it: 1.0 / 1.9 / 6.9, with normals 1.1 / 2.1 / 7.4, built in 22 ms. Embree 3.13's point
-/// query with a callback in double precision, which leaves out weights and ties: 1.1 / 2.4 / 7.4, with
-/// normals 1.2 / 2.4 / 8.9, built in 14 ms. So there is no Embree here (closest_point_benchmark, with
-/// Debian's libembree-dev; the least CPU time of five runs on a busy two-core machine).
+/// As fast as Embree's point queries (closest_point_benchmark; tests/accuracy/tuning.md).
 class ClosestPointTree {
  public:
   /// Throws InvalidInput when the mesh has no faces or non-finite vertices.
@@ -51,7 +46,7 @@ class ClosestPointTree {
   ClosestPointTree(ClosestPointTree&&) noexcept;
   ClosestPointTree& operator=(ClosestPointTree&&) noexcept;
 
-  /// For the mesh this was built from with its vertices elsewhere: the same answers as a new tree, made in a
+  /// For the mesh this was built from with its vertices elsewhere: the same results as a new tree, made in a
   /// fraction of the time, and slower to query the more the mesh was deformed. Throws as the constructor.
   ClosestPointTree moved(const TriangleMesh& mesh) const;
   /// The same where face_normals() of the mesh are known: 3×m.

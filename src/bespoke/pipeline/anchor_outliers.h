@@ -14,15 +14,15 @@ namespace bespoke {
 /// registered vertices, 3×n, target frame, mesh units.
 class AnchorOutlierTest {
  public:
-  /// rated: `given`, perhaps with pairs of curves behind. What is referred to must outlive this.
+  /// estimated: `given`, perhaps with pairs of curves behind. What is referred to must outlive this.
   AnchorOutlierTest(const TriangleMesh& source, const TriangleMesh& target, const Anchors& given,
                     const EstimatedAnchors& estimated);
 
   /// Suspects: pairs that a registration with all of them misses, or matches only by a strain around them
   /// (surface_strain.h) as of a stretch to twice the length; half of that for pairs that the others
-  /// contradict. Where these are more than a third, they tell no wrong pair from its neighbours, and those
-  /// that the others contradict are left; none where these are more than a third too, or among fewer than
-  /// seven pairs. Numbers among those given, ascending.
+  /// contradict. Where these are more than a third, they do not separate a wrong pair from its neighbours,
+  /// and those that the others contradict are left; none where these are more than a third too, or among
+  /// fewer than seven pairs. Numbers among those given, ascending.
   std::vector<std::size_t> suspects(const Points& registered, const AnchorAudit& audit) const;
 
   /// Of these pairs, which must be tested ones, those that the registered source misses: they lie

@@ -116,12 +116,12 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 /// A stage that ran.
 struct StageLine {
   std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "counterparts",
-                     ///< "surface-fit", "bare", "contact", "elastic", "curves", "patches", "bake"
+                     ///< "surface-fit", "uncovered", "contact", "elastic", "curves", "patches", "bake"
   std::string line;
 };
 
 /// In their order; "cloud" for a target that was one, "seams" for models that have some, "alignment" without
-/// anchors only, "accuracy", "counterparts" and "bare" only where they found something.
+/// anchors only, "accuracy", "counterparts" and "uncovered" only where they found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

@@ -4,10 +4,9 @@
 
 namespace bespoke {
 
-/// Conjugate gradients (Hestenes, Stiefel) for the three rows of a right-hand side at once: A x = b with A
-/// n×n, symmetric positive definite, x and b 3×n. `solution` holds the start and becomes the result;
+/// Conjugate gradients (Hestenes, Stiefel 1952) for the three rows of a right-hand side at once: A x = b with
+/// A n×n, symmetric positive definite, x and b 3×n. `solution` holds the start and becomes the result;
 /// `residual` is that of the start. A row that is solved stays as it is. Returns the number of steps.
-/// Hestenes, Stiefel 1952.
 ///
 /// `System` offers, all const:
 ///   Points multiply(const Points& x)                    A x

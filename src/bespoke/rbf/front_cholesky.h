@@ -11,22 +11,8 @@ namespace bespoke {
 
 /// Cholesky factor of a symmetric positive definite matrix with the pattern of a radius graph, front by front
 /// with dense kernels (Duff and Reid's multifrontal method).
-///
-/// Seconds of CPU and MB for ordering, factor and the six solves of a fit, λ in % of the
-/// diagonal:
-///
-///     model    centres  λ  entries a row   this        SimplicialLLT   CHOLMOD
-///     shoe       4,448  3     40           0.06   10    0.08   12      0.07  11
-///     dress      7,297  3     96           0.26   35    0.32   40      0.23  30
-///     girths    10,526  3    135           0.62   48    0.60   90      0.47  57
-///     glove      5,594  5    111           0.24   31    0.65   35      0.28  28
-///     girths    10,526  5    338           1.39  144    2.26  208      0.94 109
-///     body d01  13,380  3    602           3.2   171   22.2   457      3.1  252
-///     body d01  13,380  5  1,218           8.3   244      –     –      6.4  448
-///
-/// Eigen's column by column factor falls behind with the entries of a row. CHOLMOD (5.12, supernodal, with
-/// OpenBLAS) is up to a third faster, but that part of it is under the GPL, which this library is not
-/// (cholesky_benchmark, with Debian's libsuitesparse-dev; two busy cores, so the digits are rough).
+/// Eigen's column-by-column factor is up to seven times slower; CHOLMOD's supernodal one is up to a third
+/// faster, but under the GPL (cholesky_benchmark; tests/accuracy/tuning.md).
 class FrontCholesky {
  public:
   /// values: one per entry of the graph. `tree` and `graph` must outlive this. Throws SolverError when a

@@ -154,10 +154,10 @@ void require_usable(const TriangleMesh& source, const Points& fitted, const Cont
                        std::to_string(source.vertices.cols()) + "; the numbers must be equal");
   if (!(options.gap >= 0 && options.reach >= options.gap && options.compression > 0 &&
         options.compression < 1))
-    throw InvalidInput("a contact gap of " + std::to_string(options.gap) + " with a reach of " +
+    throw InvalidInput("a contact offset of " + std::to_string(options.gap) + " with a reach of " +
                        std::to_string(options.reach) + " and a compression of " +
                        std::to_string(options.compression) +
-                       "; gap ≥ 0, reach ≥ gap and 0 < compression < 1 must hold");
+                       "; offset ≥ 0, reach ≥ offset and 0 < compression < 1 must hold");
 }
 
 /// Beyond a tenth of the gap a vertex is elsewhere; what fades out below it is not worth naming.

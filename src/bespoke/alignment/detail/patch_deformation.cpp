@@ -14,7 +14,7 @@ struct DeformationSettings {
   double first_length = 0.2;  // of the target's radius: what the similarities leave
   double last_length = 0.5;   // of the patches' spacing: below it one patch outweighs its neighbours
   int iterations = 40;
-  // Of 3, 10, 30, 100, 300: curled fingers need less than 30, wrong starts stay wrong with 10 and more.
+  // Curled fingers need less; wrong starts stay wrong with more (tests/accuracy/tuning.md).
   double stiffness = 20;
   double free_floating = 1e-9;  // weight that keeps a patch without matches where it is
   // What patches of differently meshed copies of one surface leave: measured on a remeshed head (0.014 and

@@ -32,10 +32,8 @@ inline constexpr std::uint64_t block_hashes_from = std::uint64_t{1} << 26;
 
 TrailerForm form_for(std::uint64_t content_size);
 
-/// Bytes of a block of a file that is written here: some 20 leaves. For the ring of the shared case d04 and a
-/// map of 969 MB (that of d04 with levels of noise below) a reader reads 43 MB, half of them the grids'
-/// trees; with blocks of 1 MiB 80 MB, and with blocks of 16 KiB, whose hashes take four times as much, 40 MB.
-/// Other sizes are read as well.
+/// Bytes of a block of a file that is written here: some 20 leaves. Larger blocks read more than a product
+/// needs, smaller ones have more hashes. Other sizes are read as well.
 inline constexpr std::size_t block_size = std::size_t{1} << 16;
 
 /// What a trailer says.

@@ -10,9 +10,7 @@ namespace {
 
 constexpr std::uint64_t error_seed = 3;
 // Points of an error above this share of the tolerance are refined when a round does not meet it: what one
-// sample finds just below, the next will find just above. Shares of 0.85, 0.75 and 0.65 took eight of the
-// shared cases 31, 24 and 18 full measurements, each of them a thirtieth of a fit's time, and files 1.00,
-// 1.01 and 1.03 times as large. Widened, its square, its cube, and so on.
+// sample finds just below, the next will find just above. Widened, its square, its cube, and so on.
 constexpr double worst_share = 0.75;
 // Of BakeOptions::error_points: points on the surface that the record counts, or that a search takes with
 // several in a cell, and points of a search at most.

@@ -105,11 +105,7 @@ bool PyramidBuilder::add_worst_refused() {
 }
 
 // Those above half of the largest. Rounds take turns: errors as they are, without which a few steep places
-// fold or turn faces over, and errors times the size of a voxel, without which these places take all. Of
-// strong poses' maps, mean errors of vertices by the first alone and in turn: a body that raises its arms
-// 0.258, 0.213 % (its exact map 0.193), another person's 0.412, 0.385 (0.363), four more x 1.000; flipped
-// faces of all 46, 27. Times the area of a voxel's side: 0.211, 0.382, 21 faces, but in d09 a head's detail
-// goes short (surf p95 0.65 instead of 0.44).
+// fold or flip faces, and errors times the size of a voxel, without which these places take all.
 std::vector<RefusedOctant> PyramidBuilder::worst_refused(std::size_t most) {
   const bool by_size = std::exchange(next_by_size_, !next_by_size_);
   const auto rank = [&](const RefusedOctant& octant) {

@@ -7,8 +7,7 @@
 namespace bespoke {
 namespace {
 
-// Of the bounding-box diagonal; half the default λ. At 5 % the shared pairs of one pose turn by 43° at most
-// and the posed ones by 78° at least; at 2 % single wrinkles count, at 10 % fingers vanish in the hand.
+// Of the bounding-box diagonal; half the default λ. Separates poses from wrinkles, and fingers from the hand.
 constexpr double region_radius = 0.05;
 
 }  // namespace

@@ -20,8 +20,7 @@ namespace {
 constexpr double on_surface = 1e-3;
 
 /// s of Eq. 11. With scaled_stiffness s grows with the vertices: displacements then spread over some 0.08 of
-/// the square root of the surface's area (√s edges). Measured on eight pairs of bodies, heads, a hand and a
-/// foot, of 4,514 to 14,062 vertices, where s from 1 to 300 was tried; 1 at least, the printed equation.
+/// the square root of the surface's area (√s edges). 1 at least, the printed equation.
 double stiffness_of(const SurfaceFitOptions& options, Eigen::Index vertices) {
   constexpr double printed = 1, per_vertex = 0.005;
   if (options.stiffness) return *options.stiffness;

@@ -49,13 +49,11 @@ class NodeSystem {
   void start_from(const Points& vertices);
 
   /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
-  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ outlier scale gain))²)     robust point
-  ///   to plane
+  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ gain))²)         Cauchy, point to plane
   ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
   ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)², by areas grown as the shape
-  ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, turned and scaled as around
-  ///   the
-  ///     node now; the scale half-way to the median one).
+  ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, rotated and scaled as
+  ///     around the node now; the scale half-way to the median one): as similar as possible.
   /// Returns where the vertices go, 3×n. Throws SolverError.
   Points solve(const NodeGoals& goals);
 
