@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 set(BESPOKE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bespoke)
 
-# The tree says who may use a header: those under detail/ belong to the rooms they stand in.
+# The tree says who may use a header: those under detail/ are private to their modules.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/bespoke DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
         FILES_MATCHING PATTERN "*.h" PATTERN "detail" EXCLUDE)
 

@@ -1,8 +1,8 @@
 option(BESPOKE_UNITY "Compile each directory of a target as one unit" OFF)
 
 # bespoke_units(TARGET): with BESPOKE_UNITY, the sources of each of the target's directories are compiled as one unit,
-# so that headers are read once a room: from nothing in half of the time. An edit compiles its room, 7 to 55 s in
-# place of 1 to 11. Names in anonymous namespaces must therefore differ within a directory; a source that has options
+# so that headers are read once a directory: a clean build takes half of the time. An edit compiles its directory, 7 to
+# 55 s in place of 1 to 11. Names in anonymous namespaces must therefore differ within a directory; a source that has options
 # of its own stays alone.
 function(bespoke_units target)
   if(NOT BESPOKE_UNITY)
@@ -11,8 +11,8 @@ function(bespoke_units target)
   get_target_property(sources ${target} SOURCES)
   foreach(source IN LISTS sources)
     if(source MATCHES "\\.cpp$")
-      get_filename_component(room "${source}" DIRECTORY)
-      string(MAKE_C_IDENTIFIER "unit_${room}" group)
+      get_filename_component(folder "${source}" DIRECTORY)
+      string(MAKE_C_IDENTIFIER "unit_${folder}" group)
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
     endif()
   endforeach()

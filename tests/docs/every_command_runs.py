@@ -44,14 +44,14 @@ def main():
     run = set(sys.argv[1:])
     paths = [path.relative_to(ROOT) for path in ROOT.rglob("*.md")]
     texts = {str(path): (ROOT / path).read_text() for path in paths if not set(path.parts) & set(BUILT)}
-    laws = {
+    properties = {
         "every block of commands is run": pages_not_run(texts, run),
         "pages that are run exist": sorted(run - set(texts)),
         "what is not run is found": what_is_not_run_is_found(),
     }
-    for law, exceptions in laws.items():
-        print(f"{'broken' if exceptions else 'held'}: {law}", *exceptions, sep="\n  ")
-    sys.exit(any(laws.values()))
+    for prop, exceptions in properties.items():
+        print(f"{'broken' if exceptions else 'held'}: {prop}", *exceptions, sep="\n  ")
+    sys.exit(any(properties.values()))
 
 
 if __name__ == "__main__":

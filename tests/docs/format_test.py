@@ -118,7 +118,7 @@ def main():
         stored = {name: VECTORS / f"{name}.vdb.gz" for name in ("map", "chain")}
         for name, path in stored.items():
             (scratch / f"{name}.vdb").write_bytes(gzip.decompress(path.read_bytes()))
-        laws = {
+        properties = {
             "stored maps are small": [str(path) for path in stored.values() if path.stat().st_size > LARGEST],
             "the command gives the images": command_gives_the_images(bespoke, scratch, scratch),
             "the command proves the maps": command_proves_the_maps(bespoke, scratch),
@@ -128,7 +128,7 @@ def main():
         if importlib.util.find_spec("numpy") and importlib.util.find_spec("pyopenvdb"):
             new = scratch / "new"
             subprocess.run(["/usr/bin/python3", "-B", VECTORS / "make_vectors.py", new], check=True)
-            laws |= {
+            properties |= {
                 "the reader gives the images": reader_gives_the_images(scratch, scratch),
                 "the formula gives the images": formula_gives_the_images(load_vectors()),
                 "maps written anew give the images": command_gives_the_images(bespoke, new, scratch),
@@ -136,9 +136,9 @@ def main():
             }
         else:
             print("skipped: what needs pyopenvdb and NumPy (tools/setup)")
-    for law, exceptions in laws.items():
-        print(f"{'broken' if exceptions else 'held'}: {law}", *exceptions, sep="\n  ")
-    sys.exit(any(laws.values()))
+    for prop, exceptions in properties.items():
+        print(f"{'broken' if exceptions else 'held'}: {prop}", *exceptions, sep="\n  ")
+    sys.exit(any(properties.values()))
 
 
 if __name__ == "__main__":

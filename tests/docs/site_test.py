@@ -79,16 +79,16 @@ def main():
     subprocess.run([ROOT / "tools" / "docs", "--no-setup", "--out", out], check=True)
     docs, site = load_docs(), out / "html"
     pages = {path: Page(path) for path in site.rglob("*.html")}
-    laws = {
+    properties = {
         "links lead somewhere": links_lead_somewhere(site, pages),
         "every page is on the site": every_page_is_on_the_site(docs, site, pages),
         "every page is in the menu": every_page_is_in_the_menu(docs, site, pages),
         "links to nothing are named": links_to_nothing_are_named(docs, out),
         "every public header is in the reference": every_public_header_is_in_the_reference(site),
     }
-    for law, exceptions in laws.items():
-        print(f"{'broken' if exceptions else 'held'}: {law}", *exceptions, sep="\n  ")
-    sys.exit(any(laws.values()))
+    for prop, exceptions in properties.items():
+        print(f"{'broken' if exceptions else 'held'}: {prop}", *exceptions, sep="\n  ")
+    sys.exit(any(properties.values()))
 
 
 if __name__ == "__main__":

@@ -38,8 +38,8 @@ std::set<std::string> directories() {
   return names;
 }
 
-/// The rooms that the files of a room include, other than itself.
-std::set<std::string> included_rooms(const std::string& module) {
+/// The modules that the files of a module include, other than itself.
+std::set<std::string> included_modules(const std::string& module) {
   std::set<std::string> modules;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library / module)) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
@@ -51,21 +51,21 @@ std::set<std::string> included_rooms(const std::string& module) {
 }
 
 /// What the page says after "Includes:", up to the end of the sentence.
-std::set<std::string> rooms_on_page(const std::string& page) {
+std::set<std::string> modules_on_page(const std::string& page) {
   const std::vector<std::string> sentences = matches(page, "\n- Includes:([^.]*)\\.");
   if (sentences.size() != 1) return {"no sentence that begins with \"- Includes:\""};
   const std::vector<std::string> names = matches(sentences.front(), "`([a-z0-9_]+)`");
   return {names.begin(), names.end()};
 }
 
-/// The rooms in the order of the table on the library's page.
-std::vector<std::string> rooms_in_order() {
+/// The modules in the order of the table on the library's page.
+std::vector<std::string> modules_in_order() {
   return matches(test::read_text(library / "README.md"),
                  "\n\\| \\[`([a-z0-9_]+)`\\]\\(\\1/README\\.md\\) \\|");
 }
 
 TEST(ModulePages, TableListsEveryModule) {
-  const std::vector<std::string> modules = rooms_in_order();
+  const std::vector<std::string> modules = modules_in_order();
   EXPECT_EQ(std::set<std::string>(modules.begin(), modules.end()), directories());
 }
 
@@ -77,22 +77,22 @@ TEST(ModulePages, HaveAtMostFortyLines) {
   }
 }
 
-TEST(ModulePages, NameTheRoomsThatAreIncluded) {
+TEST(ModulePages, NameTheModulesThatAreIncluded) {
   for (const std::string& module : directories())
-    EXPECT_EQ(rooms_on_page(test::read_text(library / module / "README.md")), included_rooms(module))
+    EXPECT_EQ(modules_on_page(test::read_text(library / module / "README.md")), included_modules(module))
         << module;
 }
 
-TEST(ModulePages, RoomsIncludeOnlyThoseAboveThemInTheTable) {
+TEST(ModulePages, ModulesIncludeOnlyThoseAboveThemInTheTable) {
   std::vector<std::string> above;
-  for (const std::string& module : rooms_in_order()) {
-    EXPECT_THAT(included_rooms(module), IsSubsetOf(above)) << module;
+  for (const std::string& module : modules_in_order()) {
+    EXPECT_THAT(included_modules(module), IsSubsetOf(above)) << module;
     above.push_back(module);
   }
 }
 
-// A header in ROOM/detail/ may be named by the files of ROOM and by the tests alone.
-TEST(ModulePages, DetailsStayInTheirRooms) {
+// A header in MODULE/detail/ may be named by the files of MODULE and by the tests alone.
+TEST(ModulePages, DetailsStayInTheirModules) {
   for (const char* tree : {"src", "samples", "tools"})
     for (const fs::directory_entry& entry :
          fs::recursive_directory_iterator(fs::path(BESPOKE_SOURCE_DIR) / tree)) {

@@ -1,6 +1,6 @@
-"""Laws of the Blender add-on, run inside Blender: blender -b --factory-startup -P blender_test.py -- DIRECTORY COMMAND ADD_ONS
+"""Properties of the Blender add-on, run inside Blender: blender -b --factory-startup -P blender_test.py -- DIRECTORY COMMAND ADD_ONS
 
-DIRECTORY holds source.obj, target.obj, anchors.json, product.obj and map.vdb. Prints the name of every law that held.
+DIRECTORY holds source.obj, target.obj, anchors.json, product.obj and map.vdb. Prints the name of every property that holds.
 """
 
 import json
@@ -358,7 +358,7 @@ def enable():
     bpy.context.preferences.addons["bespoke_maps"].preferences.command = COMMAND
 
 
-LAWS = (
+PROPERTIES = (
     loaded_map_shows_its_grids,
     carried_vertices_agree_with_apply,
     scaled_objects_reach_the_same_places,
@@ -378,14 +378,14 @@ LAWS = (
 
 enable()
 broken = 0
-for law in LAWS:
+for prop in PROPERTIES:
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     enable()
     try:
-        law()
-        print("held:", law.__name__)
+        prop()
+        print("held:", prop.__name__)
     except Exception:
         traceback.print_exc()
-        print("broken:", law.__name__)
+        print("broken:", prop.__name__)
         broken += 1
 sys.exit(1 if broken else 0)

@@ -1,6 +1,6 @@
-"""Laws of the ParaView plugin, run in pvbatch: pvbatch paraview_test.py DIRECTORY PLUGIN
+"""Properties of the ParaView plugin, run in pvbatch: pvbatch paraview_test.py DIRECTORY PLUGIN
 
-DIRECTORY holds map.vdb, source.obj, product.obj and moved.obj, where the command carries the product. Prints the name of every law.
+DIRECTORY holds map.vdb, source.obj, product.obj and moved.obj, where the command carries the product. Prints the name of every property.
 """
 
 import sys
@@ -77,11 +77,11 @@ def contour_of_the_distance_is_the_source():
         assert abs(low + high) < 0.1 * voxel and abs(high - radius) < 0.5 * voxel, (low, high, voxel)
 
 
-for law in (
+for prop in (
     carried_points_agree_with_apply,
     normals_follow_and_cells_stay,
     lattice_holds_the_map_at_its_nodes,
     contour_of_the_distance_is_the_source,
 ):
-    law()
-    print("held:", law.__name__, flush=True)
+    prop()
+    print("held:", prop.__name__, flush=True)

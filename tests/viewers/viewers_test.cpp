@@ -12,7 +12,7 @@ using ::testing::Not;
 
 const std::string viewers = BESPOKE_SOURCE_DIR "/samples/viewers";
 const std::string plugin = viewers + "/paraview/plugin/bespoke_maps.py";
-const std::string laws = BESPOKE_SOURCE_DIR "/tests/viewers";
+const std::string scripts = BESPOKE_SOURCE_DIR "/tests/viewers";
 
 // What vdb_print and the NanoVDB tools say of an asset is tested with the asset.
 TEST(VdbView, ShowsAMap) {
@@ -21,7 +21,7 @@ TEST(VdbView, ShowsAMap) {
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
   const ProgramResult run =
-      run_program({"/usr/bin/python3", laws + "/vdb_view_draws.py", pair.file("map.vdb")});
+      run_program({"/usr/bin/python3", scripts + "/vdb_view_draws.py", pair.file("map.vdb")});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
 }
 
@@ -32,7 +32,7 @@ TEST(Blender, PropertiesOfTheAddOnHold) {
   const std::string directory = std::filesystem::path(pair.file("map.vdb")).parent_path();
   const ProgramResult run =
       run_program({"blender", "-b", "--factory-startup", "--python-exit-code", "1", "-P",
-                   laws + "/blender_laws.py", "--", directory, BESPOKE_COMMAND, viewers + "/blender"});
+                   scripts + "/blender_test.py", "--", directory, BESPOKE_COMMAND, viewers + "/blender"});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("held: t_moves_meshes_where_the_add_on_is_absent"));
   EXPECT_THAT(run.out, Not(HasSubstr("broken: "))) << run.err;
@@ -59,7 +59,7 @@ class ParaView : public ::testing::Test {
 
 TEST_F(ParaView, PropertiesOfThePluginHold) {
   const std::string directory = std::filesystem::path(pair_.file("map.vdb")).parent_path();
-  const ProgramResult result = run({"pvbatch", laws + "/paraview_laws.py", directory, plugin});
+  const ProgramResult result = run({"pvbatch", scripts + "/paraview_test.py", directory, plugin});
   EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
   EXPECT_THAT(result.out, HasSubstr("held: contour_of_the_distance_is_the_source"));
 }

@@ -11,7 +11,7 @@ namespace bespoke {
 
 UncoveredArea uncovered_area(const TriangleMesh& target, const TriangleMesh& registered, double reach) {
   constexpr std::size_t samples = 5000;  // of a share of 1 % a standard deviation of 0.14 %
-  if (!(reach > 0)) throw InvalidInput("bare_area needs a reach above 0, got " + std::to_string(reach));
+  if (!(reach > 0)) throw InvalidInput("uncovered_area needs a reach above 0, got " + std::to_string(reach));
   const Points places = positions(sample_surface(target, samples), target);
   const SignedDistance::Values values = SignedDistance(registered)(places);
   UncoveredArea uncovered;
