@@ -14,12 +14,9 @@ int main(int argc, char** argv) try {
   const bespoke::TriangleMesh source = bespoke::read_triangle_mesh(argv[1]);
   const bespoke::TriangleMesh target = bespoke::read_triangle_mesh(argv[2]);
   const bespoke::Anchors anchors = bespoke::read_anchors(argv[3]);
-
-  const double diagonal = bespoke::diagonal(source.vertices);
-  const bespoke::MadeMap made =
-      bespoke::make_map({source, target, anchors}, bespoke::default_options(diagonal));
+  const bespoke::MakeMapOptions options = bespoke::default_options(bespoke::diagonal(source.vertices));
+  const bespoke::MadeMap made = bespoke::make_map({source, target, anchors}, options);
   bespoke::write_asset(argv[5], made.asset);
-
   const bespoke::ProductSummary moved = bespoke::apply_to_product(
       argv[4], {argv[6]}, *made.fit.elastic, made.fit.target_from_source, /*times=*/{1.0});
   std::printf("%s\n", to_string(moved.points).c_str());

@@ -55,6 +55,15 @@ def every_page_is_in_the_menu(docs, site, pages):
     return [str(page) for page in docs.pages() if (site / page.with_suffix(".html")) not in listed]
 
 
+def every_page_has_contents_and_search(site, pages):
+    """A page without the site's menu and its search field is a dead end."""
+    texts = {path: path.read_text() for path in pages}
+    lacking = [path for path, text in texts.items() if "sidebar-tree" not in text or 'action="' not in text]
+    index = (site / "searchindex.js").read_text()
+    unknown = [word for word in ("contact", "troubleshooting", "landmark") if word[:6] not in index]
+    return [str(path.relative_to(site)) for path in lacking] + unknown
+
+
 def links_to_nothing_are_named(docs, out):
     gathered = docs.Gathered(out / "scratch")
     gathered.link(Path("samples/viewers/README.md"), "nowhere.md", "")
@@ -83,6 +92,7 @@ def main():
         "links lead somewhere": links_lead_somewhere(site, pages),
         "every page is on the site": every_page_is_on_the_site(docs, site, pages),
         "every page is in the menu": every_page_is_in_the_menu(docs, site, pages),
+        "every page has contents and search": every_page_has_contents_and_search(site, pages),
         "links to nothing are named": links_to_nothing_are_named(docs, out),
         "every public header is in the reference": every_public_header_is_in_the_reference(site),
     }

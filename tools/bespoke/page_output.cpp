@@ -31,8 +31,8 @@ std::string quoted(const std::string& word) {
 void require_pages() {
   if (page_template().empty())
     throw FileError(
-        "this bespoke was built without its pages, for want of Node.js: install npm (tools/setup does), "
-        "configure with -DBESPOKE_BUILD_PAGES=ON and build again");
+        "this bespoke was built without its pages, which need npm: install it (tools/setup --pages), configure "
+        "and build again; `bespoke report` needs none");
 }
 
 std::string whole_page(const std::string& scene) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the jobs that carry one design to many bodies, and the anchors of each.
 
-usage: season.py BODY BODY_LANDMARKS PRODUCT OUT NAME=TARGET,LANDMARKS ... > season.jsonl
+usage: make_manifest.py BODY BODY_LANDMARKS PRODUCT OUT NAME=TARGET,LANDMARKS ... > season.jsonl
 
 A landmark file is one of anchors; on the design's own body its points `a` count, on a customer's its points `b`. Two of
 one name make a pair, so that nobody has to pick points twice: once on the design's body, once on each customer.
