@@ -6,7 +6,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 # What GoogleTest, page_commands.py and other scripts print where they skip.
-REASONS = (re.compile(r": Skipped\n(.+)"), re.compile(r"^(?:skipped: |not here: )?(.+)$", re.MULTILINE))
+REASONS = (re.compile(r": Skipped\n(.+)"), re.compile(r"^(?:skipped: )?(.+)$", re.MULTILINE))
 
 
 def reason(case):
