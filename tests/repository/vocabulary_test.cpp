@@ -55,7 +55,7 @@ const std::vector<Word> words = {
     {"claims?|claimed", "reciprocal correspondence", {"src/bespoke/asset/asset.cpp"}},  // of a damaged file
     {"rooms?(?! for| of)", "module", {}},
     {"from nothing", "clean build", {}},
-    {"contact gap|contact-gap", "contact offset", {}},
+    {"contact gap|contact-gap", "contact offset", {"CHANGELOG.md"}},
     {"unrated|rated", "with an estimated sigma", {}},
     {"most_\\w+|least_(?!squares|determinant)\\w+", "max_, min_", {}},
 };
