@@ -17,7 +17,7 @@ using ::testing::Not;
 
 FitSummary summary_of_all_stages() {
   FitSummary summary;
-  summary.rigid = {false, std::numbers::pi / 2, summarize({0.5, 1.5}), 7};
+  summary.rigid = {false, std::numbers::pi / 2, std::nullopt, summarize({0.5, 1.5}), 7};
   summary.coarse.emplace().residuals = summarize({0.25});
   summary.surface.emplace().iterations = 42;
   summary.elastic.found = MultiscaleSummary{{2, 1}, {10, 40}, {0.9, 0.5}, {}, 12, 7};

@@ -69,6 +69,20 @@ TEST(MapDistortion, IsThatOfTheSingularValues) {
   EXPECT_EQ(distortion.flips, 0u);
 }
 
+TEST(MapDistortion, OfAnAffineMapIsThatOfItsLinearPart) {
+  const LinearInBall affine(Matrix3::Zero(), diagonal_matrix(3, 2, 0.5));
+  const MapDistortion distortion = map_distortion(affine, {.samples = 5000});
+  EXPECT_EQ(distortion.samples, 0u);
+  EXPECT_EQ(distortion.flips, 0u);
+  for (const Spread& spread : {distortion.conformal, distortion.area}) {
+    EXPECT_EQ(spread.count, 1u);
+    EXPECT_NEAR(spread.min, 6, 1e-12);
+    EXPECT_NEAR(spread.max, 6, 1e-12);
+  }
+  EXPECT_NEAR(distortion.volume.median, 3, 1e-12);
+  EXPECT_NEAR(distortion.min_determinant, 3, 1e-12);
+}
+
 TEST(MapDistortion, SeesWhatIsTurnedInsideOut) {
   const MapDistortion distortion = map_distortion(LinearInBall(diagonal_matrix(-2, 0, 0)), {.samples = 5000});
   EXPECT_EQ(distortion.flips, distortion.samples);

@@ -43,6 +43,28 @@ TEST(ProductQuality, OfAShellThatShrinksIntoTheBody) {
   EXPECT_NEAR(shrunk.distortion.edge_length.median, 0.9 / 1.1, 1e-12);
 }
 
+TEST(ProductQuality, TellsWhatSinksFromWhatWasInside) {
+  const Spheres spheres;
+  const TriangleMesh shell = shapes::moved(shapes::icosphere(3), scaling(1.1));
+  const ProductQuality shrunk = product_quality(shell, shell.vertices * (0.9 / 1.1), spheres.bodies);
+  EXPECT_EQ(shrunk.sinking.share, 1);
+  EXPECT_NEAR(shrunk.sinking.deepest, 0.11, 0.01);
+  EXPECT_TRUE(shrunk.sinking.is_notable());
+
+  const TriangleMesh cavity = shapes::moved(shapes::icosphere(3), scaling(0.95));
+  const ProductQuality deeper = product_quality(cavity, cavity.vertices * 0.9, spheres.bodies);
+  EXPECT_EQ(deeper.penetration_after.area_share, 1);
+  EXPECT_EQ(deeper.sinking.share, 0);
+
+  // One of two equal shells sinks: half of the area, and of the vertices.
+  const AffineMap aside{1.1 * Matrix3::Identity(), {5, 0, 0}};
+  const TriangleMesh two = shapes::joined(shell, shapes::moved(shapes::icosphere(3), aside));
+  Points after = two.vertices;
+  after.leftCols(shell.vertices.cols()) *= 0.9 / 1.1;
+  EXPECT_NEAR(product_quality(two, after, spheres.bodies).sinking.share, 0.5, 0.001);
+  EXPECT_EQ(product_quality({two.vertices, Faces(3, 0)}, after, spheres.bodies).sinking.share, 0.5);
+}
+
 TEST(ProductQuality, SeesFacesInsideWhoseVerticesAreNot) {
   const Spheres spheres;
   TriangleMesh sheet = shapes::moved(shapes::square_grid(1), {4 * Matrix3::Identity(), {-2, -2, 0}});
@@ -120,6 +142,18 @@ TEST(MappingQuality, OfAnExactMapIsPerfectButForWhatItIsGiven) {
   EXPECT_NEAR(quality.products[0].distortion.edge_length.p1, 2, 1e-12);
   EXPECT_NEAR(quality.products[0].clearance_after.median, 2 * quality.products[0].clearance_before.median,
               1e-12);
+}
+
+TEST(MappingQuality, OfASphereOntoALargerOneIsTheDifferenceOfRadii) {
+  Case spheres;
+  spheres.target.vertices = spheres.target_from_source * (3 * spheres.source.vertices);
+  const MappingQuality quality = spheres.measure();
+  EXPECT_NEAR(quality.surfaces.a_to_b.median, 1, 0.02);
+  EXPECT_NEAR(quality.surfaces.hausdorff, 1, 0.02);
+  // The shell at 1.5 goes to radius 3, half outside of the source and on the target.
+  EXPECT_NEAR(quality.products[0].clearance_before.median, 0.5, 0.01);
+  EXPECT_NEAR(quality.products[0].clearance_after.median, 0, 1e-12);
+  EXPECT_EQ(quality.products[0].sinking.share, 0);
 }
 
 TEST(MappingQuality, NamesTheProductAtFault) {

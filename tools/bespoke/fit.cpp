@@ -19,6 +19,7 @@
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
+#include "bespoke/product/vertex_groups.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
 #include "fit_warnings.h"
@@ -93,9 +94,15 @@ TriangleMesh read_model(const std::string& role, const std::string& path, bool q
 }
 
 void print_stages(const MadeMap& made, const Anchors& anchors) {
+  const Certificate certificate = whole_certificate(made.asset);
+  const auto print_certificate = [&] {
+    std::printf("%-12s %s\n", "certificate", to_string(certificate).c_str());
+  };
+  // What matters most comes first.
+  if (!certificate.is_bijection()) print_certificate();
   for (const StageLine& stage : stage_lines(made.fit.summary, anchors))
     std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
-  std::printf("%-12s %s\n", "certificate", to_string(whole_certificate(made.asset)).c_str());
+  if (certificate.is_bijection()) print_certificate();
   if (!anchors.pairs.empty())
     std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
   std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
@@ -180,8 +187,12 @@ void run(const FitArguments& arguments, const RunContext& context) {
   estimate_anchor_sigmas(anchors, arguments, size, size_scale);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
-  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
-                           target_model.cloud ? &*target_model.cloud : nullptr};
+  const MakeMapInput input{source,
+                           target,
+                           anchors,
+                           fitted ? &*fitted : nullptr,
+                           target_model.cloud ? &*target_model.cloud : nullptr,
+                           [&] { return vertex_groups(arguments.source, source.vertices); }};
   const MakeMapOptions options = make_options(arguments, size, size_scale);
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
@@ -202,7 +213,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (pages) write_pages(*pages, arguments, input, made, context);
 
   context.findings.figures = figures(made);
-  warn_of_misses(context, source, options, made);
+  warn_of_misses(context, input, options, made);
   if (quiet) return;
   print_stages(made, anchors);
   std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);

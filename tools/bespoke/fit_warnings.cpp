@@ -8,6 +8,7 @@
 
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
+#include "bespoke/number_format.h"
 
 namespace bespoke::command {
 namespace {
@@ -47,13 +48,20 @@ void warn_of_missed_tolerance(const RunContext& context, const BakeOptions& opti
   context.warn(text + cause_of_missed_tolerance(options, bake));
 }
 
-constexpr double visible = 0.01;  // of the source's diagonal
+constexpr double visible = 0.01;  // of the target's diagonal
 
-/// "0.2, 1.5 % of the source's diagonal".
+/// Of a length on the target: "0.2, 1.5 % of the target's diagonal".
 std::string visible_length(double length, double diagonal) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.4g, %.2g %% of the source's diagonal", length, 100 * length / diagonal);
-  return text;
+  return format_number(length, 4) + ", " + format_number(100 * length / diagonal, 2) +
+         " % of the target's diagonal";
+}
+
+/// Everything else that is said of such a map holds only where it does not fold.
+void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate) {
+  if (certificate.is_bijection()) return;
+  context.warn("the map is not proved to be one-to-one: " + to_string(certificate) +
+               "; products there may be turned inside out (bespoke check lists the places, "
+               "--require-certified refuses such a map)");
 }
 
 /// A target of another kind, or elsewhere than its anchors, still gets some map.
@@ -97,10 +105,14 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
   warn_of_contradictions(context, anchors);
 }
 
-void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
+void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
                     const MadeMap& made) {
   const FitSummary& summary = made.fit.summary;
-  const double size = diagonal(source.vertices);
+  const double size = diagonal(input.target.vertices);
+  warn_of_missing_certificate(context, whole_certificate(made.asset));
+  if (summary.parts)
+    context.warn(to_string(*summary.parts) +
+                 "; if the target has such a part, give an anchor on it, else leave it out of the source");
   if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
   if (summary.counterparts) warn_of_inferred_parts(context, *summary.counterparts);
   if (summary.uncovered) warn_of_uncovered_target(context, *summary.uncovered);

@@ -12,9 +12,9 @@ namespace bespoke::command {
 void warn_of_input(const RunContext& context, const TriangleMesh& source, const TriangleMesh& target,
                    const Anchors& anchors);
 
-/// Where a map is not what was asked for: a source that is not on the target, vertices that the map misses, a
-/// bake that misses its tolerance.
-void warn_of_misses(const RunContext& context, const TriangleMesh& source, const MakeMapOptions& options,
+/// Where a map is not what was asked for: first of all that it is not certified, then a source that is not on
+/// the target, vertices that the map misses, a bake that misses its tolerance.
+void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
                     const MadeMap& made);
 
 }  // namespace bespoke::command

@@ -1,5 +1,7 @@
 #include "bespoke/anchors/size_ratio.h"
 
+#include <cmath>
+
 #include "bespoke/median.h"
 
 namespace bespoke {
@@ -21,6 +23,12 @@ double typical_size(const Points& places) {
 double size_ratio(const Anchors& anchors, const TriangleMesh& source, const TriangleMesh& target) {
   if (tells_size(anchors)) return typical_size(target_points(anchors)) / typical_size(source_points(anchors));
   return diagonal(target.vertices) / diagonal(source.vertices);
+}
+
+bool tells_two_units(double size_ratio) {
+  constexpr double largest_size_ratio = 8;
+  if (!(size_ratio > 0 && std::isfinite(size_ratio))) return false;
+  return size_ratio > largest_size_ratio || 1 / size_ratio > largest_size_ratio;
 }
 
 const char* measured_by(const Anchors& anchors) {

@@ -34,14 +34,9 @@ void require_usable(const TriangleMesh& source, const Anchors& anchors, const Fi
                          "\" is not finite, its weight is not above 0, or its sigma below 0");
 }
 
-/// Files of meshes name no unit. Beyond this factor the models are in two: a doll is a sixth of a person, a
-/// centimetre a tenth of a decimetre.
-constexpr double largest_size_ratio = 8;
-
 /// ratio: of the models' sizes, by what they were measured.
 void require_one_unit(double ratio, const std::string& what) {
-  if (!(ratio > 0 && std::isfinite(ratio))) return;  // what is wrong with these is told where they are used
-  if (ratio <= largest_size_ratio && 1 / ratio <= largest_size_ratio) return;
+  if (!tells_two_units(ratio)) return;
   throw InvalidInput("the target is " + format_number(ratio, 3) + " times as large as the source by " + what +
                      ", as if they were in two units; bring one of them, and its anchors, to the unit of the "
                      "other, or allow any size (--any-size), and the map goes from one unit to the other");
@@ -83,6 +78,18 @@ JoinedModels joined_models(FittedMapping& result, const TriangleMesh& source, co
   return joined;
 }
 
+/// What summaries list of vertices, by other numbers: one a vertex.
+void renumber_lists(FitSummary& summary, const std::vector<int>& numbers) {
+  const auto renumber = [&](int& vertex) { vertex = numbers[static_cast<std::size_t>(vertex)]; };
+  if (std::optional<SurfaceFitSummary>& surface = summary.surface)
+    for (std::vector<int>* vertices :
+         {&surface->cavity_vertices, &surface->excluded_vertices, &surface->stretched_vertices})
+      std::for_each(vertices->begin(), vertices->end(), renumber);
+  if (summary.contact)
+    for (ReleasedVertex& released : summary.contact->released) renumber(released.vertex);
+  for (UnmetVertex& unmet : summary.elastic.unmet) renumber(unmet.vertex);
+}
+
 /// From the vertices of the joined source to those of the source.
 void part_at_seams(FittedMapping& result, const JoinedMesh& source) {
   result.fitted_vertices = result.fitted_vertices(Eigen::all, source.of_vertex).eval();
@@ -92,13 +99,29 @@ void part_at_seams(FittedMapping& result, const JoinedMesh& source) {
       confidence.push_back(result.confidence[static_cast<std::size_t>(vertex)]);
     result.confidence = std::move(confidence);
   }
-  const auto renumber = [&](int& vertex) { vertex = source.first[static_cast<std::size_t>(vertex)]; };
-  if (std::optional<SurfaceFitSummary>& surface = result.summary.surface)
-    for (std::vector<int>* vertices :
-         {&surface->cavity_vertices, &surface->excluded_vertices, &surface->stretched_vertices})
-      std::for_each(vertices->begin(), vertices->end(), renumber);
-  if (result.summary.contact)
-    for (ReleasedVertex& released : result.summary.contact->released) renumber(released.vertex);
+  renumber_lists(result.summary, source.first);
+}
+
+/// The source laid on the target, its parts held apart. Returns the anchors as the fit took them.
+Anchors register_joined(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
+                        const Anchors& anchors, const FitOptions& options, const Progress& progress) {
+  const JoinedModels joined = joined_models(result, source, target, options);
+  Anchors estimated =
+      register_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
+  hold_parts_apart(result, joined.source.mesh, options, progress);
+  part_at_seams(result, joined.source);
+  return estimated;
+}
+
+/// Empty where all of the source is registered. Patches may name any of its parts.
+std::optional<RegisteredParts> separable_parts(const TriangleMesh& source, const TriangleMesh& target,
+                                               const Anchors& anchors, const FitOptions& options) {
+  const SurfaceFitOptions& fit = options.surface_fit;
+  if (fit.method != SurfaceFitMethod::deformation_graph || !fit.repair_models || !anchors.patches.empty())
+    return std::nullopt;
+  RegisteredParts parts = parts_to_register(source, target, anchors);
+  if (parts.is_whole()) return std::nullopt;
+  return parts;
 }
 
 /// Of places along the mapped curve from its counterpart, mesh units.
@@ -122,21 +145,55 @@ void measure_lines(FittedMapping& result, const TriangleMesh& source, const Tria
 
 }  // namespace
 
+const TriangleMesh& registered_source(const FittedMapping& fit, const TriangleMesh& source) {
+  return fit.registered ? fit.registered->mesh : source;
+}
+
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress) {
-  FittedMapping result;
   require_models(source, target, anchors, options);
-  const JoinedModels joined = joined_models(result, source, target, options);
-  const Anchors estimated =
-      register_source(result, joined.source.mesh, joined.target.mesh, anchors, options, progress);
-  hold_parts_apart(result, joined.source.mesh, options, progress);
-  part_at_seams(result, joined.source);
+  FittedMapping result;
+  Anchors estimated;
+  if (std::optional<RegisteredParts> parts = separable_parts(source, target, anchors, options)) {
+    do {
+      result = {};
+      result.registered = std::make_shared<const PartialMesh>(parts->mesh(source));
+      estimated = register_joined(result, result.registered->mesh, target, anchors, options, progress);
+    } while (keep_uncovered(*parts, source, target, result.target_from_source * result.fitted_vertices));
+    result.summary.parts = {parts->components.count(), loose_parts(*parts)};
+  } else {
+    estimated = register_joined(result, source, target, anchors, options, progress);
+  }
 
   // IV.D, IV.E: E.
-  fit_elastic_map(result, source, estimated, options, progress);
+  const TriangleMesh& registered = registered_source(result, source);
+  fit_elastic_map(result, registered, estimated, options, progress);
   result.anchor_residual = anchor_residuals(result, anchors);
-  measure_lines(result, source, target, anchors);
+  measure_lines(result, registered, target, anchors);
   return result;
+}
+
+FittedMapping with_loose_parts(FittedMapping fit, const TriangleMesh& source) {
+  if (!fit.registered) return fit;
+  const std::vector<int>& numbers = fit.registered->vertices;
+  Points x = source.vertices;
+  for (std::size_t k = 0; k < fit.step_sources.size(); ++k) {
+    x(Eigen::all, numbers) = fit.step_sources[k];
+    fit.step_sources[k] = x;
+    x = (*fit.elastic->steps()[k])(x);
+  }
+  x(Eigen::all, numbers) = fit.fitted_vertices;
+  fit.fitted_vertices = std::move(x);
+  if (!fit.confidence.empty()) {
+    std::vector<double> confidence(static_cast<std::size_t>(source.vertices.cols()), 0.0);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      confidence[static_cast<std::size_t>(numbers[i])] = fit.confidence[i];
+    fit.confidence = std::move(confidence);
+  }
+  for (int& vertex : fit.pairs.referenced) vertex = numbers[static_cast<std::size_t>(vertex)];
+  renumber_lists(fit.summary, numbers);
+  fit.registered.reset();
+  return fit;
 }
 
 FittedMapping fit_source_surface(const TriangleMesh& source, const TriangleMesh& target,
@@ -189,9 +246,9 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
     weights = Eigen::VectorXd::Ones(sources.cols());
   }
   result.target_from_source = align_rigidly(sources, targets, weights);
-  result.summary.rigid = {by_vertices, rotation_angle(result.target_from_source),
-                          summarize(distances(result.target_from_source * sources, targets)),
-                          rigid_watch.seconds()};
+  result.summary.rigid = rigid_summary(result.target_from_source, sources, targets, weights);
+  result.summary.rigid.by_vertices = by_vertices;
+  result.summary.rigid.seconds = rigid_watch.seconds();
 
   result.fitted_vertices = inverse(result.target_from_source) * fitted.vertices;
   hold_parts_apart(result, source, options, progress);

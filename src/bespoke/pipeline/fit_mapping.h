@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/mapping/elastic_chain.h"
+#include "bespoke/mesh/mesh_components.h"
 #include "bespoke/pipeline/elastic_steps.h"
 #include "bespoke/pipeline/fit_summary.h"
 #include "bespoke/rigid/rigid_transform.h"
@@ -40,7 +41,17 @@ struct FittedMapping {
   FitSummary summary;
   ElasticPairs pairs;            ///< what E was fitted to
   std::optional<StepPlan> plan;  ///< of a chain whose steps follow a path; empty for others, and for one step
+  /// The parts of the source that have a counterpart; empty for all. What is said above of the source and its
+  /// vertices is then said of this mesh.
+  std::shared_ptr<const PartialMesh> registered;
 };
+
+/// What the map was fitted to: the source, or its registered parts.
+const TriangleMesh& registered_source(const FittedMapping& fit, const TriangleMesh& source);
+
+/// The same of all vertices of the source: those of loose parts lie where the map takes them, and have no
+/// confidence.
+FittedMapping with_loose_parts(FittedMapping fit, const TriangleMesh& source);
 
 /// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
 /// and σ get a σ first; swapped ones, and outliers, are left out of everything but the residuals
@@ -48,8 +59,10 @@ struct FittedMapping {
 /// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
 /// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
 /// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with
-/// certainty), MemoryLimitError. Curves and borders of patches (anchors.h) take a surface fitting more, which
-/// finds where along them their points lie; the borders are curves that every patch has.
+/// certainty), MemoryLimitError. Loose parts of the source, without a counterpart on the target, are left out
+/// of the fit (registered_parts.h), but for the printed method and models taken as given. Curves and borders
+/// of patches (anchors.h) take a surface fitting more, which finds where along them their points lie; the
+/// borders are curves that every patch has.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 

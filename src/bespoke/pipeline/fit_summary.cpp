@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <numbers>
 
+#include "bespoke/anchors/size_ratio.h"
 #include "bespoke/number_format.h"
+#include "bespoke/rigid/similarity_alignment.h"
 
 namespace bespoke {
 
@@ -12,12 +14,29 @@ std::string to_string(const SeamSummary& summary) {
          std::to_string(summary.target) + " of the target";
 }
 
+RigidSummary rigid_summary(const RigidTransform& target_from_source, const Points& sources,
+                           const Points& targets, const Eigen::VectorXd& weights) {
+  RigidSummary summary;
+  summary.rotation = rotation_angle(target_from_source);
+  const Similarity similarity = align_similarly(sources, targets, weights);
+  if (tells_two_units(similarity.scale)) {
+    summary.scale = similarity.scale;
+    summary.residuals = summarize(distances(similarity * sources, targets));
+  } else {
+    summary.residuals = summarize(distances(target_from_source * sources, targets));
+  }
+  return summary;
+}
+
 std::string to_string(const RigidSummary& summary) {
   char line[300];
-  std::snprintf(line, sizeof line, "%zu %s, turned by %.4g degrees, residual p95 %.4g max %.4g",
-                summary.residuals.count, summary.by_vertices ? "vertices" : "anchors",
-                summary.rotation * 180 / std::numbers::pi, summary.residuals.p95, summary.residuals.max);
-  return line;
+  std::snprintf(line, sizeof line, "%zu %s, turned by %.4g degrees, ", summary.residuals.count,
+                summary.by_vertices ? "vertices" : "anchors", summary.rotation * 180 / std::numbers::pi);
+  std::string text = line;
+  if (summary.scale) text += "scaled by " + format_number(*summary.scale, 4) + ", ";
+  std::snprintf(line, sizeof line, "residual p95 %.4g max %.4g", summary.residuals.p95,
+                summary.residuals.max);
+  return text + line;
 }
 
 std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
@@ -112,6 +131,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   std::vector<StageLine> lines;
   if (summary.cloud) lines.push_back({"cloud", to_string(*summary.cloud)});
   if (has_any(summary.seams)) lines.push_back({"seams", to_string(summary.seams)});
+  if (summary.parts) lines.push_back({"parts", to_string(*summary.parts)});
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});

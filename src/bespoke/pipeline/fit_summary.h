@@ -12,8 +12,10 @@
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/fit_unanchored.h"
+#include "bespoke/pipeline/registered_parts.h"
 #include "bespoke/pipeline/unmet_vertices.h"
 #include "bespoke/quality/uncovered_area.h"
+#include "bespoke/rigid/rigid_transform.h"
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/contact.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -23,9 +25,16 @@ namespace bespoke {
 struct RigidSummary {
   bool by_vertices = false;  ///< pairs of vertices, without enough anchors
   double rotation = 0;       ///< radians, 0 … π
-  Statistics residuals;      ///< |Γ(q) − q'|, mesh units
+  /// Of models in two units (size_ratio.h), how many target units a source unit is: the residuals are then
+  /// those of the similarity of least squares.
+  std::optional<double> scale;
+  Statistics residuals;  ///< |Γ(q) − q'|, mesh units of the target
   double seconds = 0;
 };
+
+/// All but `by_vertices` and `seconds`. Pairs 3×k, in their own frames, weights k, of which two differ.
+RigidSummary rigid_summary(const RigidTransform& target_from_source, const Points& sources,
+                           const Points& targets, const Eigen::VectorXd& weights);
 
 struct CoarseSummary {
   Statistics residuals;  ///< of the anchors after the warp, mesh units
@@ -87,6 +96,7 @@ inline bool has_any(const SeamSummary& summary) { return summary.source + summar
 struct FitSummary {
   std::optional<PointCloudSummary> cloud;  ///< the target's, if it was one
   SeamSummary seams;
+  std::optional<LoosePartsSummary> parts;       ///< empty where all parts of the source are registered
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   RigidSummary rigid;
@@ -115,13 +125,15 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 
 /// A stage that ran.
 struct StageLine {
-  std::string name;  ///< "cloud", "seams", "alignment", "accuracy", "rigid", "coarse", "counterparts",
-                     ///< "surface-fit", "uncovered", "contact", "elastic", "curves", "patches", "bake"
+  std::string name;  ///< "cloud", "seams", "parts", "alignment", "accuracy", "rigid", "coarse",
+                     ///< "counterparts", "surface-fit", "uncovered", "contact", "elastic", "curves", "patches",
+                     ///< "bake"
   std::string line;
 };
 
-/// In their order; "cloud" for a target that was one, "seams" for models that have some, "alignment" without
-/// anchors only, "accuracy", "counterparts" and "uncovered" only where they found something.
+/// In their order; "cloud" for a target that was one, "seams" for models that have some, "parts" for a source
+/// with loose ones, "alignment" without anchors only, "accuracy", "counterparts" and "uncovered" only where
+/// they found something.
 std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anchors);
 
 }  // namespace bespoke

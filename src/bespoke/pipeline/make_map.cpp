@@ -94,6 +94,14 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
   return record;
 }
 
+void name_loose_parts(FitSummary& summary, const MakeMapInput& input) {
+  if (!summary.parts || !input.read_source_groups) return;
+  const std::vector<std::string> groups = input.read_source_groups();
+  for (LoosePart& part : summary.parts->loose)
+    if (const auto vertex = static_cast<std::size_t>(part.first_vertex); vertex < groups.size())
+      part.name = groups[vertex];
+}
+
 }  // namespace
 
 MakeMapOptions default_options(double source_diagonal, double size_scale) {
@@ -113,8 +121,12 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
                  ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
                  : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
   if (input.target_cloud) made.fit.summary.cloud = *input.target_cloud;
-  BakedSteps baked =
-      bake_fitted_map(made.fit, input.source, input.anchors, options.fit, options.bake, progress);
+  // The bake may replace the fit, but not what was registered.
+  const std::shared_ptr<const PartialMesh> registered = made.fit.registered;
+  BakedSteps baked = bake_fitted_map(made.fit, registered ? registered->mesh : input.source, input.anchors,
+                                     options.fit, options.bake, progress);
+  made.fit = with_loose_parts(std::move(made.fit), input.source);
+  name_loose_parts(made.fit.summary, input);
   made.fit.summary.bake = std::move(baked.whole);
   if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/pipeline/fit_mapping.h"
@@ -36,6 +39,9 @@ struct MakeMapInput {
   const TriangleMesh* fitted = nullptr;
   /// What the target was made of, if it is the surface of a point cloud: the record names that.
   const PointCloudSummary* target_cloud = nullptr;
+  /// Names of the groups that the source's vertices belong to, one a vertex, for loose parts; called where
+  /// there are any.
+  std::function<std::vector<std::string>()> read_source_groups = nullptr;
 };
 
 struct MadeMap {

@@ -72,12 +72,12 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
   progress.step("rigid", 0, 0);
   result.target_from_source =
       align_rigidly(pairs.sources.leftCols(count), pairs.targets.leftCols(count), pairs.weights.head(count));
+  summary.rigid = rigid_summary(result.target_from_source, pairs.sources.leftCols(count),
+                                pairs.targets.leftCols(count), pairs.weights.head(count));
   const RigidTransform source_from_target = inverse(result.target_from_source);
   pairs.targets = (source_from_target * pairs.targets).eval();
   const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
-  summary.rigid = {false, rotation_angle(result.target_from_source),
-                   summarize(distances(pairs.sources.leftCols(count), pairs.targets.leftCols(count))),
-                   rigid_watch.seconds()};
+  summary.rigid.seconds = rigid_watch.seconds();
 
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
@@ -280,8 +280,9 @@ void register_by_surfaces(FittedMapping& result, const TriangleMesh& source, con
   result.target_from_source = fit.target_from_source;
   result.fitted_vertices = std::move(fit.surface.vertices);
   result.confidence = std::move(fit.surface.confidence);
-  summary.rigid = {true, rotation_angle(fit.target_from_source),
-                   summarize(distances(source.vertices, fit.start)), 0};
+  summary.rigid.by_vertices = true;
+  summary.rigid.rotation = rotation_angle(fit.target_from_source);
+  summary.rigid.residuals = summarize(distances(source.vertices, fit.start));
   summary.surface = std::move(fit.surface.summary);
   summary.surface_method = options.surface_fit.method;
   summary.unanchored = std::move(fit.summary);

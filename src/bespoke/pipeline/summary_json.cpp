@@ -104,10 +104,13 @@ Json to_json(const UnanchoredSummary& summary) {
 }
 
 Json to_json(const RigidSummary& summary) {
-  return {{"pairs_of", summary.by_vertices ? "vertices" : "anchors"},
-          {"pairs", summary.residuals.count},
-          {"rotation_degrees", summary.rotation * 180 / std::numbers::pi},
-          {"residual", to_json(summary.residuals)}};
+  Json json = {{"pairs_of", summary.by_vertices ? "vertices" : "anchors"},
+               {"pairs", summary.residuals.count},
+               {"rotation_degrees", summary.rotation * 180 / std::numbers::pi},
+               {"residual", to_json(summary.residuals)}};
+  // Only where there is one: the records of all other fits stay as they were.
+  if (summary.scale) json["scale"] = *summary.scale;
+  return json;
 }
 
 Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
@@ -218,6 +221,17 @@ Json to_json(const ElasticSummary& summary) {
   return json;
 }
 
+Json to_json(const LoosePartsSummary& summary) {
+  Json list = Json::array();
+  for (const LoosePart& part : summary.loose)
+    list.push_back({{"name", part.name},
+                    {"component", part.component},
+                    {"first_vertex", part.first_vertex},
+                    {"vertices", part.vertices},
+                    {"faces", part.faces}});
+  return {{"parts", summary.parts}, {"loose_parts", std::move(list)}};
+}
+
 Json to_json(const std::vector<CurveSummary>& curves) {
   Json list = Json::array();
   for (const CurveSummary& curve : curves)
@@ -250,6 +264,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
     add("seams",
         {{"joined_source_vertices", summary.seams.source}, {"joined_target_vertices", summary.seams.target}},
         0);
+  if (summary.parts) add("parts", to_json(*summary.parts), 0);
   if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);

@@ -57,19 +57,26 @@ struct PointDistortions {
   std::vector<double> conformal, area, volume;
 };
 
+/// Of one Jacobian into place i.
+void set(PointDistortions& to, std::size_t i, const Matrix3& jacobian) {
+  const Vector3 singular = Eigen::JacobiSVD<Matrix3>(jacobian).singularValues();
+  to.conformal[i] = singular(0) / singular(2);
+  to.area[i] = singular(0) * singular(1);
+  to.volume[i] = jacobian.determinant();
+}
+
+PointDistortions of_size(std::size_t count) {
+  return {std::vector<double>(count), std::vector<double>(count), std::vector<double>(count)};
+}
+
 PointDistortions distortions(const ElasticMap& map, const Points& x) {
   const Points gradient = map.displacement_gradient(x);
   const Matrix3 linear = map.affine().linear;
   const auto count = static_cast<std::size_t>(x.cols());
-  PointDistortions result{std::vector<double>(count), std::vector<double>(count), std::vector<double>(count)};
+  PointDistortions result = of_size(count);
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Matrix3 jacobian = linear + gradient.middleCols<3>(3 * static_cast<Eigen::Index>(i));
-      const Vector3 singular = Eigen::JacobiSVD<Matrix3>(jacobian).singularValues();
-      result.conformal[i] = singular(0) / singular(2);
-      result.area[i] = singular(0) * singular(1);
-      result.volume[i] = jacobian.determinant();
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      set(result, i, linear + gradient.middleCols<3>(3 * static_cast<Eigen::Index>(i)));
   });
   return result;
 }
@@ -117,10 +124,17 @@ MapDistortion map_distortion(const ElasticMap& map, const MapDistortionOptions& 
   }
   for (const double volume : all.volume) result.flips += !(volume > 0);
   result.samples = all.volume.size();
+  if (result.samples == 0) {  // affine everywhere
+    PointDistortions affine = of_size(1);
+    set(affine, 0, map.affine().linear);
+    all.area = affine.area;
+    all.volume = affine.volume;
+    if (std::isfinite(affine.conformal[0])) all.conformal = affine.conformal;
+  }
   result.conformal = spread(std::move(all.conformal));
   result.area = spread(std::move(all.area));
   result.volume = spread(std::move(all.volume));
-  result.min_determinant = result.samples > 0 ? result.volume.min : map.affine().linear.determinant();
+  result.min_determinant = result.volume.min;
   return result;
 }
 

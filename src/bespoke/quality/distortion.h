@@ -31,10 +31,10 @@ std::string to_string(const Spread& spread);
 /// What a map does to space near its source, from the singular values s₁ ≥ s₂ ≥ s₃ ≥ 0 of ∇E at points where
 /// u ≠ 0. The rigid part of a mapping changes none of these. No unit.
 struct MapDistortion {
-  std::size_t samples = 0;
-  Spread conformal;  ///< s₁ / s₃, 1 where angles are kept; points with s₃ = 0 are left out
-  Spread area;       ///< s₁ s₂, the largest factor of an area
-  Spread volume;     ///< det ∇E, negative where the map is turned inside out
+  std::size_t samples = 0;  ///< 0 of a map that is affine: the values are those of its affine part, once
+  Spread conformal;         ///< s₁ / s₃, 1 where angles are kept; points with s₃ = 0 are left out
+  Spread area;              ///< s₁ s₂, the largest factor of an area
+  Spread volume;            ///< det ∇E, negative where the map is turned inside out
   double min_determinant = 0;
   std::size_t flips = 0;  ///< samples with det ∇E ≤ 0
 };

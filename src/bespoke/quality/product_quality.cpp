@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "bespoke/error.h"
 #include "bespoke/quality/detail/surface_samples.h"
@@ -15,11 +16,15 @@ struct Clearances {
   SignedDistance::Values samples;
 };
 
+/// What counts as inside, mesh units.
+struct InsideTolerances {
+  double source = 0, target = 0;
+};
+
 Penetration penetration(const Clearances& clearances, double tolerance) {
   const auto count_inside = [&](const SignedDistance::Values& values) {
     std::size_t inside = 0;
-    for (std::size_t i = 0; i < values.distance.size(); ++i)
-      inside += values.sided[i] && values.distance[i] < -tolerance;
+    for (std::size_t i = 0; i < values.distance.size(); ++i) inside += values.distance[i] < -tolerance;
     return inside;
   };
   Penetration result;
@@ -28,8 +33,21 @@ Penetration penetration(const Clearances& clearances, double tolerance) {
     result.area_share = static_cast<double>(count_inside(clearances.samples)) /
                         static_cast<double>(clearances.samples.distance.size());
   for (const SignedDistance::Values* values : {&clearances.vertices, &clearances.samples})
-    for (std::size_t i = 0; i < values->distance.size(); ++i)
-      if (values->sided[i]) result.deepest = std::max(result.deepest, -values->distance[i]);
+    for (const double distance : values->distance) result.deepest = std::max(result.deepest, -distance);
+  return result;
+}
+
+/// The same places before and after.
+Sinking sinking(const SignedDistance::Values& before, const SignedDistance::Values& after,
+                const InsideTolerances& tolerances) {
+  Sinking result;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < after.distance.size(); ++i) {
+    if (before.distance[i] < -tolerances.source || !(after.distance[i] < -tolerances.target)) continue;
+    ++count;
+    result.deepest = std::max(result.deepest, -after.distance[i]);
+  }
+  if (count > 0) result.share = double(count) / double(after.distance.size());
   return result;
 }
 
@@ -75,11 +93,22 @@ ProductQuality product_quality(const TriangleMesh& before, const Points& after, 
                              bodies.from_source(positions(samples, before))};
   const Clearances at_target{bodies.from_target(after), bodies.from_target(positions(samples, moved))};
   compare_clearances(at_source.vertices, at_target.vertices, quality);
-  quality.penetration_before =
-      penetration(at_source, options.inside_tolerance * diagonal(bodies.source.vertices));
-  quality.penetration_after =
-      penetration(at_target, options.inside_tolerance * diagonal(bodies.target.vertices));
+  const InsideTolerances tolerances{options.inside_tolerance * diagonal(bodies.source.vertices),
+                                    options.inside_tolerance * diagonal(bodies.target.vertices)};
+  quality.penetration_before = penetration(at_source, tolerances.source);
+  quality.penetration_after = penetration(at_target, tolerances.target);
+  quality.sinking = samples.faces.empty() ? sinking(at_source.vertices, at_target.vertices, tolerances)
+                                          : sinking(at_source.samples, at_target.samples, tolerances);
   return quality;
+}
+
+std::string to_string(const Sinking& sinking) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "%.1f %% of it lies inside the target, though not inside the source before, at most %.4g "
+                "deep",
+                100 * sinking.share, sinking.deepest);
+  return text;
 }
 
 }  // namespace bespoke

@@ -15,6 +15,18 @@ struct Penetration {
   double deepest = 0;        ///< of vertices and samples, mesh units, ≥ 0
 };
 
+/// What of a product lies inside of the target although it was not inside of the source.
+struct Sinking {
+  double share = 0;    ///< of its area, from samples; of its vertices where it has no faces; in [0, 1]
+  double deepest = 0;  ///< of these places, mesh units, ≥ 0
+
+  /// Worth a warning: what a garment's hems and a body's floats leave stays far below.
+  bool is_notable() const { return share > 0.02; }
+};
+
+/// "7.1 % of its area lies inside the target, though not inside the source before, at most 0.8 deep; …"
+std::string to_string(const Sinking& sinking);
+
 /// What carrying a product across did to it and to its fit.
 struct ProductQuality {
   std::size_t vertices = 0;
@@ -28,6 +40,7 @@ struct ProductQuality {
   std::size_t unsided_vertices = 0;  ///< nearest to a boundary of the body before or after, so left out
   Penetration penetration_before;
   Penetration penetration_after;
+  Sinking sinking;
   std::size_t self_intersections_before = 0;  ///< pairs of faces, see self_intersections
   std::size_t self_intersections_after = 0;
 };

@@ -9,6 +9,7 @@
 #include "bespoke/mesh/equal_positions.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
+#include "bespoke/quality/winding_number.h"
 
 namespace bespoke {
 namespace {
@@ -21,11 +22,16 @@ TriangleMesh joined_at_equal_positions(const TriangleMesh& mesh) {
   return joined;
 }
 
+/// Whether as many faces run along every edge one way as the other: winding numbers are whole.
+bool is_closed(const MeshEdges& table) {
+  return std::all_of(table.edges.begin(), table.edges.end(),
+                     [](const MeshEdge& edge) { return edge.forward == edge.backward; });
+}
+
 // 3×3m, column 3 f + k: the sum of the normals of the faces along the edge opposite to corner k of face f.
 // Zero marks an edge without sides: a boundary, or two faces back to back.
-Points edge_normals(const TriangleMesh& mesh, const Points& face_normals) {
+Points edge_normals(const TriangleMesh& mesh, const MeshEdges& table, const Points& face_normals) {
   constexpr double back_to_back = 1e-9;  // far above the rounding of a sum of unit normals
-  const MeshEdges table = mesh_edges(mesh);
   Points of_edges = Points::Zero(3, static_cast<Eigen::Index>(table.edges.size()));
   for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face)
     for (const int edge : table.of_face.col(face))
@@ -51,7 +57,18 @@ struct SignedDistance::Surface {
         normals(face_normals(joined)),
         at_vertices(vertex_normals(joined, normals)),
         vertex_on_boundary(boundary_vertices(joined)),
-        at_edges(edge_normals(joined, normals)) {}
+        winding(mesh) {
+    const MeshEdges table = mesh_edges(joined);
+    closed = is_closed(table);
+    at_edges = edge_normals(joined, table, normals);
+  }
+
+  /// behind: of the closest point, by the normal there.
+  bool is_inside(const Vector3& x, bool behind) const {
+    if (!closed && behind) return true;
+    const double number = winding(x);
+    return (closed ? std::abs(number) : number) > 0.5;
+  }
 
   // The weight of an edge's point is exactly zero for the opposite corner, and so on: see ClosestPointTree.
   Vector3 normal_at(const SurfacePoint& at) const {
@@ -71,6 +88,8 @@ struct SignedDistance::Surface {
   Points normals, at_vertices;
   std::vector<char> vertex_on_boundary;
   Points at_edges;  // 3×3m, column 3 f + k: of the edge opposite to corner k of face f
+  WindingNumber winding;
+  bool closed = false;
 };
 
 SignedDistance::SignedDistance(const TriangleMesh& mesh) : surface_(std::make_unique<const Surface>(mesh)) {}
@@ -87,7 +106,8 @@ SignedDistance::Values SignedDistance::operator()(const Points& x) const {
       const SurfacePoint at = *surface_->tree.closest(point);
       const Vector3 normal = surface_->normal_at(at);
       const double distance = std::sqrt(at.squared_distance);
-      values.distance[i] = (point - at.point).dot(normal) < 0 ? -distance : distance;
+      const bool is_inside = surface_->is_inside(point, (point - at.point).dot(normal) < 0);
+      values.distance[i] = is_inside ? -distance : distance;
       values.sided[i] = !normal.isZero(0);
     }
   });

@@ -7,10 +7,11 @@
 
 namespace bespoke {
 
-/// Distance from a surface with the side: positive on the side that the normals point to (outside of a closed
-/// body), negative on the other, by the angle-weighted normal at the closest point (Bærentzen, Aanæs 2005),
-/// which is right for every consistently oriented manifold. Vertices at one position count as one, so that
-/// seams do no harm. Queries are thread-safe.
+/// Distance from a surface with the side: positive outside, negative inside. Inside of a closed surface is
+/// where the generalised winding number (winding_number.h) is not 0, so that nested shells enclose what is
+/// between them. Inside of an open one is where that number exceeds 1/2, and what lies behind the closest
+/// point by its angle-weighted normal (Bærentzen, Aanæs 2005), as behind a sheet. Vertices at one position
+/// count as one, so that seams do no harm. Queries are thread-safe.
 class SignedDistance {
  public:
   /// Throws InvalidInput for a mesh that is not valid.
@@ -21,8 +22,8 @@ class SignedDistance {
 
   struct Values {
     std::vector<double> distance;  ///< mesh units; its amount is right everywhere
-    /// 1 where the side is known; 0 where the closest point lies on a boundary of the surface, so that there
-    /// is none, or where the normals there cancel.
+    /// 0 where the closest point lies on a boundary of the surface, or where the normals there cancel: the
+    /// distance is not one across the surface, and negative only where the winding number says inside.
     std::vector<char> sided;
   };
   /// At the columns of x (3×n). Parallel inside.

@@ -32,6 +32,7 @@ Json to_json(const ProductQuality& product) {
           {"unsided_vertices", product.unsided_vertices},
           {"penetration_before", to_json(product.penetration_before)},
           {"penetration_after", to_json(product.penetration_after)},
+          {"newly_inside", {{"share", product.sinking.share}, {"deepest", product.sinking.deepest}}},
           {"self_intersections_before", product.self_intersections_before},
           {"self_intersections_after", product.self_intersections_after}};
 }
@@ -58,6 +59,9 @@ std::string product_text(const std::string& name, const ProductQuality& product)
     text += " (" + std::to_string(product.unsided_vertices) + " lie beyond the body's boundary)";
   text += "\n  inside the body before:    " + penetration_text(product.penetration_before) + "\n";
   text += "  inside the body after:     " + penetration_text(product.penetration_after) + "\n";
+  if (product.sinking.share > 0)
+    text += "  newly inside:              " + figure(100 * product.sinking.share) + " %, deepest " +
+            figure(product.sinking.deepest) + "\n";
   text += "  self-intersecting pairs of faces: " + std::to_string(product.self_intersections_before) +
           " before, " + std::to_string(product.self_intersections_after) + " after\n";
   return text;
@@ -77,6 +81,7 @@ std::string quality_text(const MappingQuality& quality, const std::vector<std::s
   text += "conformal s1/s3:     " + to_string(map.conformal) + "\n";
   text += "area s1 s2:          " + to_string(map.area) + "\n";
   text += "volume det:          " + to_string(map.volume) + "\n";
+  if (map.samples == 0) text += "the map is affine: these are the values of its linear part\n";
   text += "flips: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
           " points of the band, " + std::to_string(quality.flipped_faces) + " of " +
           std::to_string(quality.source_faces) + " source faces; least det " + figure(map.min_determinant) +

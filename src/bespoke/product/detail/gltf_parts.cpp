@@ -1,3 +1,5 @@
+#include <array>
+#include <map>
 #include <string>
 
 #include "bespoke/product/detail/gltf_nodes.h"
@@ -30,6 +32,21 @@ class PartReader {
           add(primitive, shown.scene_from_mesh, result);
     if (result.points.cols() == 0) refuse_part(part.name, known(), file_.path);
     return result;
+  }
+
+  /// Names of the nodes that show a mesh, by the places of its vertices.
+  std::map<std::array<double, 3>, std::string> names_of_places() const {
+    const std::vector<GltfPart> nodes = file_.root().elements("nodes");
+    std::map<std::array<double, 3>, std::string> names;
+    for (const GltfShown& shown : scene_.shown) {
+      if (!nodes[shown.node].has("name")) continue;
+      PartPoints found{{}, Points(3, 0), Points(3, 0)};
+      for (const GltfPart& primitive : meshes_[shown.mesh].elements("primitives"))
+        add(primitive, shown.scene_from_mesh, found);
+      for (const auto& x : found.points.colwise())
+        names.try_emplace({x[0], x[1], x[2]}, nodes[shown.node].text("name"));
+    }
+    return names;
   }
 
  private:
@@ -76,6 +93,16 @@ std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector
     result.push_back(reader.read(part));
   }
   return result;
+}
+
+std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices) {
+  const std::map<std::array<double, 3>, std::string> names = PartReader(file).names_of_places();
+  std::vector<std::string> groups;
+  for (const auto& x : vertices.colwise()) {
+    const auto at = names.find({x[0], x[1], x[2]});
+    groups.push_back(at == names.end() ? std::string() : at->second);
+  }
+  return groups;
 }
 
 }  // namespace bespoke

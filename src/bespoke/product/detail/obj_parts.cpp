@@ -154,4 +154,27 @@ std::vector<PartPoints> find_obj_parts(const InputFile& file, const std::vector<
   return parts_of(parts, coordinates);
 }
 
+std::vector<std::string> find_obj_groups(const InputFile& file) {
+  const ObjContent content = check_obj_product(file, {});
+  std::vector<std::string> groups(static_cast<std::size_t>(content.counts[0]));
+  std::string group, object;
+  TextCutter cutter(file.path(), 1, count_obj);
+  walk_blocks(
+      file, 0, [&](const Window& window) { return cutter(window); },
+      [&](const TextBlock& block) { return read_runs(block, file.path()); },
+      [&](const TextBlock&, std::vector<Run>&& runs) {
+        const auto whole = [](const std::vector<std::string>& names) {
+          return names.empty() ? std::string() : names.back();
+        };
+        for (const Run& run : runs) {
+          if (run.names[0]) group = whole(*run.names[0]);
+          if (run.names[1]) object = whole(*run.names[1]);
+          for (const std::uint32_t position : run.positions)
+            groups.at(position) = group.empty() ? object : group;
+        }
+      },
+      {});
+  return groups;
+}
+
 }  // namespace bespoke

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "bespoke/product/carry_product.h"
@@ -40,5 +41,9 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
                                        const Progress& progress);
 std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
                                         const Progress& progress);
+
+/// The groups of vertex_groups (vertex_groups.h): of every position of the file; of the vertices, 3×n.
+std::vector<std::string> find_obj_groups(const InputFile& file);
+std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices);
 
 }  // namespace bespoke

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// For each vertex of the model in `path`, 3×n as read_product reads it, the name of the group that it
+/// belongs to: an OBJ file's group or, without one, its object; a glTF node. Empty names where a vertex has
+/// none, and for other formats. Throws FileError and FormatError.
+std::vector<std::string> vertex_groups(const std::filesystem::path& path, const Points& vertices);
+
+}  // namespace bespoke
