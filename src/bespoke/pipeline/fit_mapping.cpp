@@ -160,7 +160,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
       result.registered = std::make_shared<const PartialMesh>(parts->mesh(source));
       estimated = register_joined(result, result.registered->mesh, target, anchors, options, progress);
     } while (keep_uncovered(*parts, source, target, result.target_from_source * result.fitted_vertices));
-    result.summary.parts = {parts->components.count(), loose_parts(*parts)};
+    if (!parts->is_whole()) result.summary.parts = {parts->components.count(), loose_parts(*parts)};
   } else {
     estimated = register_joined(result, source, target, anchors, options, progress);
   }

@@ -124,6 +124,7 @@ bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const Tr
   constexpr std::size_t samples = 5000;
   constexpr double clearly_nearer = 0.5;  // of the registered parts' distance
   constexpr double enough = 0.25;         // of the component's area as it lies on the target
+  if (parts.is_whole()) return false;
   std::vector<char> is_loose;
   for (const char kept : parts.is_kept) is_loose.push_back(!kept);
   const PartialMesh kept = parts.mesh(source);
