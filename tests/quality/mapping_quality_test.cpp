@@ -43,26 +43,26 @@ TEST(ProductQuality, OfAShellThatShrinksIntoTheBody) {
   EXPECT_NEAR(shrunk.distortion.edge_length.median, 0.9 / 1.1, 1e-12);
 }
 
-TEST(ProductQuality, TellsWhatSinksFromWhatWasInside) {
+TEST(ProductQuality, TellsNewPenetrationFromOld) {
   const Spheres spheres;
   const TriangleMesh shell = shapes::moved(shapes::icosphere(3), scaling(1.1));
   const ProductQuality shrunk = product_quality(shell, shell.vertices * (0.9 / 1.1), spheres.bodies);
-  EXPECT_EQ(shrunk.sinking.share, 1);
-  EXPECT_NEAR(shrunk.sinking.deepest, 0.11, 0.01);
-  EXPECT_TRUE(shrunk.sinking.is_notable());
+  EXPECT_EQ(shrunk.new_penetration.share, 1);
+  EXPECT_NEAR(shrunk.new_penetration.deepest, 0.11, 0.01);
+  EXPECT_TRUE(shrunk.new_penetration.is_notable());
 
   const TriangleMesh cavity = shapes::moved(shapes::icosphere(3), scaling(0.95));
   const ProductQuality deeper = product_quality(cavity, cavity.vertices * 0.9, spheres.bodies);
   EXPECT_EQ(deeper.penetration_after.area_share, 1);
-  EXPECT_EQ(deeper.sinking.share, 0);
+  EXPECT_EQ(deeper.new_penetration.share, 0);
 
-  // One of two equal shells sinks: half of the area, and of the vertices.
+  // One of two equal shells penetrates: half of the area, and of the vertices.
   const AffineMap aside{1.1 * Matrix3::Identity(), {5, 0, 0}};
   const TriangleMesh two = shapes::joined(shell, shapes::moved(shapes::icosphere(3), aside));
   Points after = two.vertices;
   after.leftCols(shell.vertices.cols()) *= 0.9 / 1.1;
-  EXPECT_NEAR(product_quality(two, after, spheres.bodies).sinking.share, 0.5, 0.001);
-  EXPECT_EQ(product_quality({two.vertices, Faces(3, 0)}, after, spheres.bodies).sinking.share, 0.5);
+  EXPECT_NEAR(product_quality(two, after, spheres.bodies).new_penetration.share, 0.5, 0.001);
+  EXPECT_EQ(product_quality({two.vertices, Faces(3, 0)}, after, spheres.bodies).new_penetration.share, 0.5);
 }
 
 TEST(ProductQuality, SeesFacesInsideWhoseVerticesAreNot) {
@@ -153,7 +153,7 @@ TEST(MappingQuality, OfASphereOntoALargerOneIsTheDifferenceOfRadii) {
   // The shell at 1.5 goes to radius 3, half outside of the source and on the target.
   EXPECT_NEAR(quality.products[0].clearance_before.median, 0.5, 0.01);
   EXPECT_NEAR(quality.products[0].clearance_after.median, 0, 1e-12);
-  EXPECT_EQ(quality.products[0].sinking.share, 0);
+  EXPECT_EQ(quality.products[0].new_penetration.share, 0);
 }
 
 TEST(MappingQuality, NamesTheProductAtFault) {

@@ -18,6 +18,7 @@
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
+#include "penetration_check.h"
 #include "product_map.h"
 #include "standard_output.h"
 #include "time_option.h"
@@ -233,6 +234,9 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   // A batch knows which jobs share a map only where they name it.
   if (arguments.catalog.is_used()) context.maps.close(map_file);
 
+  const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
+  const PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "",
+                                         arguments.catalog.target);
   OutputFiles files;
   std::vector<AppliedProduct> applied;
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
@@ -241,6 +245,8 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
       summary = apply_one(arguments, name, plan[i], opened, progress);
+      if (std::string warning = new_penetration(name, opened); !warning.empty())
+        summary.warnings.push_back(std::move(warning));
     });
     files.add(plan[i]);
     files.add(summary.companions);

@@ -18,6 +18,12 @@ std::string target_hash(const CatalogOption& option) {
   return option.target.empty() ? option.target_hash : content_hash(read_target(option.target));
 }
 
+/// With a map that is named: what products are checked against.
+bool names_both_models(const CatalogOption& option) {
+  return !option.source.empty() && !option.target.empty() && option.source_hash.empty() &&
+         option.target_hash.empty();
+}
+
 }  // namespace
 
 void add_catalog_option(CLI::App& app, CatalogOption& option) {
@@ -26,7 +32,10 @@ void add_catalog_option(CLI::App& app, CatalogOption& option) {
          "Instead of MAP: find it in the catalogue of this directory (`bespoke catalog`), by its source "
          "and, where there are several, its target")
       ->type_name("DIR");
-  app.add_option("--source", option.source, "With --from: the model that the product was made for")
+  app.add_option(
+         "--source", option.source,
+         "With --from: the model that the product was made for. With both models, also of a MAP, products "
+         "that penetrate the target are warned of")
       ->type_name("MESH");
   app.add_option("--source-hash", option.source_hash,
                  "With --from: the first digits of its hash, as `info` prints it")
@@ -40,8 +49,12 @@ void add_catalog_option(CLI::App& app, CatalogOption& option) {
 void require_valid(const CatalogOption& option) {
   const bool names_source = !option.source.empty() || !option.source_hash.empty();
   const bool names_target = !option.target.empty() || !option.target_hash.empty();
+  if (!option.is_used() && names_both_models(option)) return;
   if (!option.is_used() && (names_source || names_target))
-    throw CLI::ValidationError("--from", "is missing: a source or a target is sought in its catalogue");
+    throw CLI::ValidationError(
+        "--from",
+        "is missing: a source or a target is sought in its catalogue; with a MAP, both "
+        "--source and --target are what products are checked against");
   if (option.is_used() && option.source.empty() == option.source_hash.empty())
     throw CLI::ValidationError("--from", "needs either --source MESH or --source-hash HASH");
   if (!option.target.empty() && !option.target_hash.empty())
@@ -49,9 +62,9 @@ void require_valid(const CatalogOption& option) {
 }
 
 std::vector<JobFile> inputs(const CatalogOption& option) {
-  if (!option.is_used()) return {};
-  return named_files(
-      {{"from", catalog_path(option.directory)}, {"source", option.source}, {"target", option.target}});
+  std::vector<JobFile> files = named_files({{"source", option.source}, {"target", option.target}});
+  if (option.is_used()) files.insert(files.begin(), {"from", catalog_path(option.directory)});
+  return files;
 }
 
 std::filesystem::path find_map(const CatalogOption& option) {

@@ -80,6 +80,10 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
                arguments.json ? quality_json(quality, names, asset.record.unit)
                               : quality_text(quality, names, asset.record.unit),
                context);
+  for (std::size_t i = 0; i < products.size(); ++i)
+    if (const NewPenetration& new_penetration = quality.products[i].new_penetration;
+        new_penetration.is_notable())
+      context.warn(products[i].name + ": " + to_string(new_penetration));
 }
 
 }  // namespace

@@ -28,7 +28,12 @@ std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
 
 OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {
   Asset asset = read_asset(path, options);
-  OpenedMap map{nullptr, asset.target_from_source, asset.path, asset.record.source.box.diagonal().norm()};
+  OpenedMap map{nullptr,
+                asset.target_from_source,
+                asset.path,
+                asset.record.source.box.diagonal().norm(),
+                asset.record.source.hash,
+                asset.record.target.hash};
   switch (form) {
     case MapForm::grids:
       map.elastic = std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bespoke/asset/asset_io.h"
@@ -23,6 +24,8 @@ struct OpenedMap {
   RigidTransform target_from_source;  ///< turned round in the inverse
   RotationPath path = RotationPath::geodesic;
   double source_diagonal = 0;  ///< of the source's bounding box, mesh units
+  /// Of the two models of the asset (content_hash), whichever way the map leads.
+  std::string source_hash = {}, target_hash = {};
 };
 
 /// Throws as read_asset; InvalidInput when the asset has no such map.

@@ -13,7 +13,11 @@ std::optional<OpenedPart> open_map_part(const std::filesystem::path& path, const
   std::optional<AssetPart> part = read_asset_part(path, box);
   if (!part) return std::nullopt;
   OpenedMap map{std::make_shared<ElasticChain>(loaded_chain(std::move(part->steps))),
-                part->target_from_source, part->path, part->record.source.box.diagonal().norm()};
+                part->target_from_source,
+                part->path,
+                part->record.source.box.diagonal().norm(),
+                part->record.source.hash,
+                part->record.target.hash};
   return OpenedPart{std::move(map), part->bytes_read, part->file_bytes};
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/quality/detail/surface_samples.h"
 #include "bespoke/quality/self_intersection.h"
 
@@ -38,9 +38,9 @@ Penetration penetration(const Clearances& clearances, double tolerance) {
 }
 
 /// The same places before and after.
-Sinking sinking(const SignedDistance::Values& before, const SignedDistance::Values& after,
-                const InsideTolerances& tolerances) {
-  Sinking result;
+NewPenetration new_penetration_of(const SignedDistance::Values& before, const SignedDistance::Values& after,
+                                  const InsideTolerances& tolerances) {
+  NewPenetration result;
   std::size_t count = 0;
   for (std::size_t i = 0; i < after.distance.size(); ++i) {
     if (before.distance[i] < -tolerances.source || !(after.distance[i] < -tolerances.target)) continue;
@@ -68,47 +68,71 @@ void compare_clearances(const SignedDistance::Values& before, const SignedDistan
   quality.clearance_change = summarize(std::move(change));
 }
 
-}  // namespace
-
-ProductQuality product_quality(const TriangleMesh& before, const Points& after, const Bodies& bodies,
-                               const ProductQualityOptions& options) {
+void require_product(const TriangleMesh& before, const Points& after) {
   if (after.cols() != before.vertices.cols())
     throw InvalidInput("product_quality got " + std::to_string(after.cols()) + " vertices after and " +
                        std::to_string(before.vertices.cols()) + " before");
   if (!before.vertices.allFinite() || !after.allFinite())
     throw InvalidInput("a vertex of the product is not finite");
-  const TriangleMesh moved{after, before.faces};
+}
+
+InsideTolerances tolerances(const Bodies& bodies, const ProductQualityOptions& options) {
+  return {options.inside_tolerance * diagonal(bodies.source.vertices),
+          options.inside_tolerance * diagonal(bodies.target.vertices)};
+}
+
+/// Of the same points of the product on both bodies.
+struct BothClearances {
+  Clearances source, target;
+
+  NewPenetration new_penetration(const InsideTolerances& inside) const {
+    return source.samples.distance.empty() ? new_penetration_of(source.vertices, target.vertices, inside)
+                                           : new_penetration_of(source.samples, target.samples, inside);
+  }
+};
+
+BothClearances clearances(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+                          const ProductQualityOptions& options) {
+  SurfaceSamples samples;
+  if (before.faces.cols() > 0) samples = sample_surface(before, options.samples);
+  return {{bodies.from_source(before.vertices), bodies.from_source(positions(samples, before))},
+          {bodies.from_target(after), bodies.from_target(positions(samples, {after, before.faces}))}};
+}
+
+}  // namespace
+
+ProductQuality product_quality(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+                               const ProductQualityOptions& options) {
+  require_product(before, after);
   ProductQuality quality;
   quality.vertices = static_cast<std::size_t>(after.cols());
   quality.faces = static_cast<std::size_t>(before.faces.cols());
-  SurfaceSamples samples;
   if (before.faces.cols() > 0) {
-    samples = sample_surface(before, options.samples);
     quality.distortion = mesh_distortion(before, after);
     quality.self_intersections_before = self_intersections(before).size();
-    quality.self_intersections_after = self_intersections(moved).size();
+    quality.self_intersections_after = self_intersections({after, before.faces}).size();
   }
-  // The same points of the product before and after.
-  const Clearances at_source{bodies.from_source(before.vertices),
-                             bodies.from_source(positions(samples, before))};
-  const Clearances at_target{bodies.from_target(after), bodies.from_target(positions(samples, moved))};
-  compare_clearances(at_source.vertices, at_target.vertices, quality);
-  const InsideTolerances tolerances{options.inside_tolerance * diagonal(bodies.source.vertices),
-                                    options.inside_tolerance * diagonal(bodies.target.vertices)};
-  quality.penetration_before = penetration(at_source, tolerances.source);
-  quality.penetration_after = penetration(at_target, tolerances.target);
-  quality.sinking = samples.faces.empty() ? sinking(at_source.vertices, at_target.vertices, tolerances)
-                                          : sinking(at_source.samples, at_target.samples, tolerances);
+  const BothClearances found = clearances(before, after, bodies, options);
+  const InsideTolerances inside = tolerances(bodies, options);
+  compare_clearances(found.source.vertices, found.target.vertices, quality);
+  quality.penetration_before = penetration(found.source, inside.source);
+  quality.penetration_after = penetration(found.target, inside.target);
+  quality.new_penetration = found.new_penetration(inside);
   return quality;
 }
 
-std::string to_string(const Sinking& sinking) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "%.1f %% of it lies inside the target, though not inside the source before, at most %.4g "
-                "deep",
-                100 * sinking.share, sinking.deepest);
-  return text;
+NewPenetration product_new_penetration(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+                                       const ProductQualityOptions& options) {
+  require_product(before, after);
+  return clearances(before, after, bodies, options).new_penetration(tolerances(bodies, options));
+}
+
+std::string to_string(const NewPenetration& new_penetration) {
+  return format_number(100 * new_penetration.share, 2) +
+         " % of it lies inside the target, though not inside the source before, at most " +
+         format_number(new_penetration.deepest, 4) +
+         " deep; the registered source is off the target there: look at it with `bespoke view`, and add "
+         "anchors";
 }
 
 }  // namespace bespoke

@@ -16,7 +16,7 @@ struct Penetration {
 };
 
 /// What of a product lies inside of the target although it was not inside of the source.
-struct Sinking {
+struct NewPenetration {
   double share = 0;    ///< of its area, from samples; of its vertices where it has no faces; in [0, 1]
   double deepest = 0;  ///< of these places, mesh units, ≥ 0
 
@@ -24,8 +24,9 @@ struct Sinking {
   bool is_notable() const { return share > 0.02; }
 };
 
-/// "7.1 % of its area lies inside the target, though not inside the source before, at most 0.8 deep; …"
-std::string to_string(const Sinking& sinking);
+/// "7.1 % of it lies inside the target, though not inside the source before, at most 0.8 deep; …", and what
+/// to do about it.
+std::string to_string(const NewPenetration& new_penetration);
 
 /// What carrying a product across did to it and to its fit.
 struct ProductQuality {
@@ -40,7 +41,7 @@ struct ProductQuality {
   std::size_t unsided_vertices = 0;  ///< nearest to a boundary of the body before or after, so left out
   Penetration penetration_before;
   Penetration penetration_after;
-  Sinking sinking;
+  NewPenetration new_penetration;
   std::size_t self_intersections_before = 0;  ///< pairs of faces, see self_intersections
   std::size_t self_intersections_after = 0;
 };
@@ -65,5 +66,9 @@ struct Bodies {
 /// or a value is not finite.
 ProductQuality product_quality(const TriangleMesh& before, const Points& after, const Bodies& bodies,
                                const ProductQualityOptions& options = {});
+
+/// Of it the new penetration alone. Throws as product_quality.
+NewPenetration product_new_penetration(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+                                       const ProductQualityOptions& options = {});
 
 }  // namespace bespoke

@@ -32,7 +32,8 @@ Json to_json(const ProductQuality& product) {
           {"unsided_vertices", product.unsided_vertices},
           {"penetration_before", to_json(product.penetration_before)},
           {"penetration_after", to_json(product.penetration_after)},
-          {"newly_inside", {{"share", product.sinking.share}, {"deepest", product.sinking.deepest}}},
+          {"newly_inside",
+           {{"share", product.new_penetration.share}, {"deepest", product.new_penetration.deepest}}},
           {"self_intersections_before", product.self_intersections_before},
           {"self_intersections_after", product.self_intersections_after}};
 }
@@ -59,9 +60,9 @@ std::string product_text(const std::string& name, const ProductQuality& product)
     text += " (" + std::to_string(product.unsided_vertices) + " lie beyond the body's boundary)";
   text += "\n  inside the body before:    " + penetration_text(product.penetration_before) + "\n";
   text += "  inside the body after:     " + penetration_text(product.penetration_after) + "\n";
-  if (product.sinking.share > 0)
-    text += "  newly inside:              " + figure(100 * product.sinking.share) + " %, deepest " +
-            figure(product.sinking.deepest) + "\n";
+  if (product.new_penetration.share > 0)
+    text += "  newly inside:              " + figure(100 * product.new_penetration.share) + " %, deepest " +
+            figure(product.new_penetration.deepest) + "\n";
   text += "  self-intersecting pairs of faces: " + std::to_string(product.self_intersections_before) +
           " before, " + std::to_string(product.self_intersections_after) + " after\n";
   return text;
