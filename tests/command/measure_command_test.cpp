@@ -3,7 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bespoke/product/mesh_io.h"
 #include "command/example_pair.h"
+#include "support/shapes.h"
 
 namespace bespoke::test {
 namespace {
@@ -27,6 +29,51 @@ TEST(MeasureCommand, PutsNumbersOnAMap) {
                            "Hausdorff", "conformal", "least det", "product.obj: 729 vertices",
                            "clearance kept within", "inside the body", "self-intersecting"})
     EXPECT_THAT(text.out, HasSubstr(part));
+}
+
+/// A ball onto an equal one, but by a fitted ball of 0.8 times its size, and a shell around it: what it makes
+/// of the shell lies inside.
+void write_penetrating(const ExamplePair& pair) {
+  const TriangleMesh sphere = shapes::icosphere(3);
+  const auto write = [&](const char* name, double size) {
+    write_triangle_mesh(pair.file(name), {size * sphere.vertices, sphere.faces});
+  };
+  write("source.obj", 1);
+  write("target.obj", 1.001);
+  write("fitted.obj", 0.8);
+  write("shell.obj", 1.1);
+  EXPECT_EQ(bespoke({"fit", pair.file("source.obj"), pair.file("target.obj"), "--fitted",
+                     pair.file("fitted.obj"), "-o", pair.file("map.vdb"), "--quiet"})
+                .exit_code,
+            0);
+}
+
+TEST(MeasureCommand, WarnsOfProductsThatPenetrateTheTargetAlone) {
+  const ExamplePair pair;
+  write_penetrating(pair);
+  const ProgramResult shell = measure(pair, {"--json", "--product", pair.file("shell.obj")});
+  ASSERT_EQ(shell.exit_code, 0) << shell.err;
+  EXPECT_THAT(shell.err, HasSubstr("shell.obj: 100 % of it lies inside the target, though not inside"));
+  EXPECT_EQ(nlohmann::json::parse(shell.out)["products"][0]["newly_inside"]["share"], 1);
+  EXPECT_EQ(measure(pair, {"--product", pair.file("fitted.obj")}).err, "");
+}
+
+TEST(ApplyCommand, WarnsOfProductsThatPenetrateTheTargetWhereBothModelsAreKnown) {
+  const ExamplePair pair;
+  write_penetrating(pair);
+  std::vector<std::string> apply{
+      "apply",    pair.file("map.vdb"),   pair.file("shell.obj"), "-o", pair.file("carried.obj"),
+      "--source", pair.file("source.obj")};
+  EXPECT_EQ(bespoke(apply).exit_code, 1);  // a source alone is sought in a catalogue
+  apply.insert(apply.end(), {"--target", pair.file("target.obj")});
+  const ProgramResult warned = bespoke(apply);
+  EXPECT_EQ(warned.exit_code, 0) << warned.err;
+  EXPECT_THAT(warned.err, HasSubstr("lies inside the target, though not inside the source"));
+  EXPECT_TRUE(pair.has("carried.obj"));
+  apply.back() = pair.file("shell.obj");
+  const ProgramResult refused = bespoke(apply);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("shell.obj: is not the model that the map was made of"));
 }
 
 TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {

@@ -128,7 +128,7 @@ NewPenetration product_new_penetration(const TriangleMesh& before, const Points&
 }
 
 std::string to_string(const NewPenetration& new_penetration) {
-  return format_number(100 * new_penetration.share, 2) +
+  return format_number(100 * new_penetration.share, 3) +
          " % of it lies inside the target, though not inside the source before, at most " +
          format_number(new_penetration.deepest, 4) +
          " deep; the registered source is off the target there: look at it with `bespoke view`, and add "
