@@ -71,9 +71,11 @@ TEST(ApplyCommand, WarnsOfProductsThatPenetrateTheTargetWhereBothModelsAreKnown)
   EXPECT_THAT(warned.err, HasSubstr("lies inside the target, though not inside the source"));
   EXPECT_TRUE(pair.has("carried.obj"));
   apply.back() = pair.file("shell.obj");
+  apply[4] = pair.file("refused.obj");
   const ProgramResult refused = bespoke(apply);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("shell.obj: is not the model that the map was made of"));
+  EXPECT_FALSE(pair.has("refused.obj"));
 }
 
 TEST(MeasureCommand, PutsTheSameNumbersIntoJson) {

@@ -244,9 +244,9 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     const std::string& name = arguments.products[i];
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
+      std::string penetration = new_penetration(name, opened);
       summary = apply_one(arguments, name, plan[i], opened, progress);
-      if (std::string warning = new_penetration(name, opened); !warning.empty())
-        summary.warnings.push_back(std::move(warning));
+      if (!penetration.empty()) summary.warnings.push_back(std::move(penetration));
     });
     files.add(plan[i]);
     files.add(summary.companions);

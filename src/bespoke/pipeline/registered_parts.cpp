@@ -7,7 +7,6 @@
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/seams.h"
-#include "bespoke/quality/detail/surface_samples.h"
 
 namespace bespoke {
 namespace {
@@ -75,8 +74,6 @@ double diagonal_of(const TriangleMesh& source, const MeshComponents& components,
   return box.diagonal().norm();
 }
 
-double area(const TriangleMesh& mesh) { return vertex_areas(mesh).sum(); }
-
 /// Where points near `before` come to lie when its vertices go to `after`: along with the nearest place.
 Points carried_along(const Points& x, const TriangleMesh& before, const Points& after) {
   const ClosestPointTree tree(before);
@@ -121,7 +118,7 @@ RegisteredParts parts_to_register(const TriangleMesh& source, const TriangleMesh
 
 bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const TriangleMesh& target,
                     const Points& registered) {
-  constexpr std::size_t samples = 5000;
+  constexpr Eigen::Index max_samples = 20000;
   constexpr double clearly_nearer = 0.5;  // of the registered parts' distance
   constexpr double enough = 0.25;         // of the component's area as it lies on the target
   if (parts.is_whole()) return false;
@@ -131,20 +128,23 @@ bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const Tr
   PartialMesh loose = kept_components(source, parts.components, is_loose);
   loose.mesh.vertices = carried_along(loose.mesh.vertices, kept.mesh, registered);
   const ClosestPointTree on_kept({registered, kept.mesh.faces}), on_loose(loose.mesh);
-  const Points places = positions(sample_surface(target, samples), target);
   const double reach = covered * diagonal(target.vertices);
-  const double share = places.cols() > 0 ? area(target) / double(places.cols()) : 0;
 
   std::vector<double> claimed(parts.is_kept.size(), 0), own(parts.is_kept.size(), 0);
   const auto component_of = [&](int face) {
     const int vertex = loose.vertices[static_cast<std::size_t>(loose.mesh.faces(0, face))];
     return static_cast<std::size_t>(parts.components.of_vertex[static_cast<std::size_t>(vertex)]);
   };
-  for (const auto& x : places.colwise()) {
+  // Every vertex of the target stands for its area, of a large one every so manieth for as many.
+  const Eigen::VectorXd target_areas = vertex_areas(target);
+  const Eigen::Index stride = std::max<Eigen::Index>(1, target_areas.size() / max_samples);
+  for (Eigen::Index i = 0; i < target_areas.size(); i += stride) {
+    if (!(target_areas[i] > 0)) continue;
+    const Vector3 x = target.vertices.col(i);
     const double distance = std::sqrt(on_kept.closest(x)->squared_distance);
     if (!(distance > reach)) continue;
     if (const auto at = on_loose.closest(x, {.max_distance = clearly_nearer * distance}))
-      claimed[component_of(at->face)] += share;
+      claimed[component_of(at->face)] += double(stride) * target_areas[i];
   }
   const Eigen::VectorXd areas = vertex_areas(loose.mesh);
   for (std::size_t i = 0; i < loose.vertices.size(); ++i)
