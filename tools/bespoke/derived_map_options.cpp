@@ -4,6 +4,7 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
+#include "fit_warnings.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -46,6 +47,7 @@ void write_derived_map(const DerivedMapOptions& options, const RunContext& conte
                               {"tolerance_met", derived.bake.tolerance_met},
                               {"bijection", whole_certificate(derived.asset).is_bijection()},
                               {"voxels", voxel_count(derived.asset)}};
+  warn_of_missing_certificate(context, whole_certificate(derived.asset));
   warn_of_missed_tolerance(context, derived);
   if (options.run.quiet) return;
   std::printf("%-12s %s\n", "bake", to_string(derived.bake).c_str());

@@ -56,14 +56,6 @@ std::string visible_length(double length, double diagonal) {
          " % of the target's diagonal";
 }
 
-/// Everything else that is said of such a map holds only where it does not fold.
-void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate) {
-  if (certificate.is_bijection()) return;
-  context.warn("the map is not proved to be one-to-one: " + to_string(certificate) +
-               "; products there may be turned inside out (bespoke check lists the places, "
-               "--require-certified refuses such a map)");
-}
-
 /// A target of another kind, or elsewhere than its anchors, still gets some map.
 void warn_of_uncovered_source(const RunContext& context, double diagonal, const SurfaceFitSummary& fit) {
   if (!(fit.after.median > visible * diagonal)) return;
@@ -103,6 +95,13 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
   warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
   warn_of_contradictions(context, anchors);
+}
+
+void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate) {
+  if (certificate.is_bijection()) return;
+  context.warn("the map is not proved to be one-to-one: " + to_string(certificate) +
+               "; products there may be turned inside out (bespoke check lists the places, fit "
+               "--require-certified refuses such maps)");
 }
 
 void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
