@@ -94,12 +94,18 @@ AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options
   return record;
 }
 
+/// With every byte that is not UTF-8 replaced: names in files may be in any encoding, those in JSON may not.
+std::string valid_utf8(const std::string& text) {
+  const std::string valid = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json::parse(valid).get<std::string>();
+}
+
 void name_loose_parts(FitSummary& summary, const MakeMapInput& input) {
   if (!summary.parts || !input.read_source_groups) return;
   const std::vector<std::string> groups = input.read_source_groups();
   for (LoosePart& part : summary.parts->loose)
     if (const auto vertex = static_cast<std::size_t>(part.first_vertex); vertex < groups.size())
-      part.name = groups[vertex];
+      part.name = valid_utf8(groups[vertex]);
 }
 
 }  // namespace
