@@ -146,7 +146,7 @@ TEST(MappingQuality, OfAnExactMapIsPerfectButForWhatItIsGiven) {
 
 TEST(MappingQuality, OfASphereOntoALargerOneIsTheDifferenceOfRadii) {
   Case spheres;
-  spheres.target.vertices = spheres.target_from_source * (3 * spheres.source.vertices);
+  spheres.target.vertices = spheres.target_from_source * Points(3 * spheres.source.vertices);
   const MappingQuality quality = spheres.measure();
   EXPECT_NEAR(quality.surfaces.a_to_b.median, 1, 0.02);
   EXPECT_NEAR(quality.surfaces.hausdorff, 1, 0.02);
