@@ -53,15 +53,14 @@ TEST(RigidSummary, BetweenTwoUnitsHasResidualsOfTheSimilarity) {
   const Points sources{{0, 9e4, 0, 0, 5e4}, {0, 0, 8e4, 0, 5e4}, {0, 0, 0, 7e4, 5e4}};
   Points targets = 1e-3 * sources;
   targets(2, 4) += 0.5;
-  const Eigen::VectorXd weights = Eigen::VectorXd::Ones(5);
-  const RigidSummary found = rigid_summary({}, sources, targets, weights);
+  const RigidSummary found = rigid_summary({}, sources, targets);
   ASSERT_TRUE(found.scale);
   EXPECT_NEAR(*found.scale, 1e-3, 1e-5);
   EXPECT_LT(found.residuals.max, 0.5);
   EXPECT_THAT(to_string(found), HasSubstr("scaled by 0.001"));
   EXPECT_TRUE(to_json(found).contains("scale"));
 
-  const RigidSummary one_unit = rigid_summary({}, sources, 2 * sources, weights);
+  const RigidSummary one_unit = rigid_summary({}, sources, 2 * sources);
   EXPECT_FALSE(one_unit.scale);
   EXPECT_NEAR(one_unit.residuals.max, 9e4, 1);
   EXPECT_FALSE(to_json(one_unit).contains("scale"));

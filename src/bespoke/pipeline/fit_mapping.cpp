@@ -246,7 +246,7 @@ FittedMapping fit_mapping_to_fitted(const TriangleMesh& source, const TriangleMe
     weights = Eigen::VectorXd::Ones(sources.cols());
   }
   result.target_from_source = align_rigidly(sources, targets, weights);
-  result.summary.rigid = rigid_summary(result.target_from_source, sources, targets, weights);
+  result.summary.rigid = rigid_summary(result.target_from_source, sources, targets);
   result.summary.rigid.by_vertices = by_vertices;
   result.summary.rigid.seconds = rigid_watch.seconds();
 

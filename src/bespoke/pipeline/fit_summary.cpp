@@ -15,10 +15,10 @@ std::string to_string(const SeamSummary& summary) {
 }
 
 RigidSummary rigid_summary(const RigidTransform& target_from_source, const Points& sources,
-                           const Points& targets, const Eigen::VectorXd& weights) {
+                           const Points& targets) {
   RigidSummary summary;
   summary.rotation = rotation_angle(target_from_source);
-  const Similarity similarity = align_similarly(sources, targets, weights);
+  const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
   if (tells_two_units(similarity.scale)) {
     summary.scale = similarity.scale;
     summary.residuals = summarize(distances(similarity * sources, targets));

@@ -32,9 +32,9 @@ struct RigidSummary {
   double seconds = 0;
 };
 
-/// All but `by_vertices` and `seconds`. Pairs 3×k, in their own frames, weights k, of which two differ.
+/// All but `by_vertices` and `seconds`. Pairs 3×k, in their own frames, of which two differ.
 RigidSummary rigid_summary(const RigidTransform& target_from_source, const Points& sources,
-                           const Points& targets, const Eigen::VectorXd& weights);
+                           const Points& targets);
 
 struct CoarseSummary {
   Statistics residuals;  ///< of the anchors after the warp, mesh units
@@ -126,8 +126,8 @@ std::string to_string(const std::vector<PatchSummary>& patches);
 /// A stage that ran.
 struct StageLine {
   std::string name;  ///< "cloud", "seams", "parts", "alignment", "accuracy", "rigid", "coarse",
-                     ///< "counterparts", "surface-fit", "uncovered", "contact", "elastic", "curves", "patches",
-                     ///< "bake"
+                     ///< "counterparts", "surface-fit", "uncovered", "contact", "elastic", "curves",
+                     ///< "patches", "bake"
   std::string line;
 };
 

@@ -72,8 +72,8 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
   progress.step("rigid", 0, 0);
   result.target_from_source =
       align_rigidly(pairs.sources.leftCols(count), pairs.targets.leftCols(count), pairs.weights.head(count));
-  summary.rigid = rigid_summary(result.target_from_source, pairs.sources.leftCols(count),
-                                pairs.targets.leftCols(count), pairs.weights.head(count));
+  summary.rigid =
+      rigid_summary(result.target_from_source, pairs.sources.leftCols(count), pairs.targets.leftCols(count));
   const RigidTransform source_from_target = inverse(result.target_from_source);
   pairs.targets = (source_from_target * pairs.targets).eval();
   const TriangleMesh target_in_source{source_from_target * target.vertices, target.faces};
