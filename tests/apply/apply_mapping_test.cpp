@@ -85,7 +85,8 @@ TEST(ApplyMapping, CountsWhoTookTheAffineFallback) {
   EXPECT_EQ(summary.points, 4u);
   EXPECT_EQ(summary.in_band, 3u);
   EXPECT_EQ(summary.affine_only, 1u);
-  EXPECT_THAT(to_string(summary), HasSubstr("4 points, 3 in the band, 1 by the affine part"));
+  EXPECT_THAT(to_string(summary),
+              HasSubstr("4 points: 3 within reach of the source, 1 beyond it and moved with the whole"));
 }
 
 TEST(ApplyMapping, OfManyPointsIsThatOfEach) {

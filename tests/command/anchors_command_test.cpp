@@ -41,11 +41,12 @@ TEST(AnchorsCommand, SaysWhatAFormatHasNoPlaceFor) {
   EXPECT_EQ(said({"x.json"}), "1 pair and 1 curve and 1 patch\n");
   EXPECT_EQ(
       said({"a.mrk.json", "b.mrk.json"}),
-      "1 pair and 1 curve; left out, for want of a place in the format: the unit (cm), the accuracies of "
+      "1 pair and 1 curve; left out, since the format has no place for it: the unit (cm), the accuracies of "
       "1 pair, 1 patch\n");
-  EXPECT_EQ(said({"a.pp", "b.pp"}),
-            "1 pair; left out, for want of a place in the format: the unit (cm), the accuracies of 1 pair, 1 "
-            "curve, 1 patch\n");
+  EXPECT_EQ(
+      said({"a.pp", "b.pp"}),
+      "1 pair; left out, since the format has no place for it: the unit (cm), the accuracies of 1 pair, 1 "
+      "curve, 1 patch\n");
 }
 
 TEST(AnchorsCommand, NamesWhatIsSuspicious) {

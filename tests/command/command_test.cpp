@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
 
 #include "command/example_pair.h"
 
@@ -46,6 +49,63 @@ TEST(Command, ExplainsItselfWithExamples) {
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.out, HasSubstr("Examples:\n  bespoke " + name));
   }
+}
+
+TEST(Command, ListsAllSubcommandsInGroups) {
+  const std::string help = bespoke({"--help"}).out;
+  const char* before = "Usage:";
+  for (const char* part : {"\nMake a map:\n", "\n  fit ", "\nUse it:\n", "\n  apply ", "\nLook at it:\n",
+                           "\n  view ", "\nMany maps and products:\n", "\n  batch ",
+                           "\nExchange with other programs:\n", "\n  export ", "\nExit codes"}) {
+    ASSERT_THAT(help, HasSubstr(part));
+    EXPECT_LT(help.find(before), help.find(part)) << part;
+    before = part;
+  }
+}
+
+/// The subcommands that a help lists, as completion finds them.
+std::vector<std::string> listed_subcommands(const std::string& help) {
+  std::vector<std::string> names;
+  std::istringstream lines(help);
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);)
+    if (std::regex_match(line, match, std::regex("  ([a-z]+)  .*"))) names.push_back(match[1]);
+  return names;
+}
+
+TEST(Command, HelpFitsATerminal) {
+  std::vector<std::vector<std::string>> commands{
+      {}, {"anchors", "convert"}, {"anchors", "audit"}, {"anchors", "suggest"}, {"fit", "-h"}};
+  for (const std::string& name : listed_subcommands(bespoke({"--help"}).out)) commands.push_back({name});
+  EXPECT_EQ(commands.size(), 5u + 17u);
+  for (std::vector<std::string> command : commands) {
+    if (command.empty() || command.back() != "-h") command.push_back("--help");
+    const ProgramResult help = bespoke(command);
+    EXPECT_EQ(help.exit_code, 0);
+    std::istringstream lines(help.out);
+    for (std::string line; std::getline(lines, line);) {
+      const auto columns = std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; });
+      // Examples stay on one line, to be copied.
+      if (!line.starts_with("  bespoke ") && !line.starts_with("  {")) EXPECT_LE(columns, 80) << line;
+    }
+  }
+}
+
+TEST(Command, ShortHelpOfFitHasSomeOfTheOptionsOfTheLong) {
+  const auto options = [](const std::string& help) {
+    const std::regex option("\n  (-[a-z],)?(--[a-z-]+)");
+    return std::distance(std::sregex_iterator(help.begin(), help.end(), option), std::sregex_iterator());
+  };
+  const std::string brief = bespoke({"fit", "-h"}).out, full = bespoke({"fit", "--help"}).out;
+  EXPECT_GE(options(brief), 10);
+  EXPECT_LE(options(brief), 16);
+  EXPECT_GT(options(full), 2 * options(brief));
+  EXPECT_THAT(brief, HasSubstr("`bespoke fit --help` has all"));
+  for (const char* group : {"\nInput:\n", "\nOutput:\n", "\nQuality:\n", "\nMany jobs:\n"}) {
+    EXPECT_THAT(brief, HasSubstr(group));
+    EXPECT_THAT(full, HasSubstr(group));
+  }
+  EXPECT_THAT(full, HasSubstr("\nMethod:\n"));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -28,8 +29,9 @@ using testing::Not;
 TEST_F(FitCommand, MapsTheSourceOntoTheTarget) {
   const ProgramResult fit = pair_.fit("map.vdb");
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
-  for (const char* text : {"source", "rigid", "surface-fit", "elastic", "bake", "certificate", "anchors"})
-    EXPECT_THAT(fit.out, HasSubstr(text));
+  for (const char* line : {"registered", "surfaces", "anchors", "error", "written", "next"})
+    EXPECT_THAT(fit.out, HasSubstr("\n" + std::string(line) + " ")) << line;
+  EXPECT_LE(std::count(fit.out.begin(), fit.out.end(), '\n'), 10);
   const ProgramResult apply =
       bespoke({"apply", pair_.file("map.vdb"), pair_.file("source.obj"), "-o", pair_.file("moved.obj")});
   ASSERT_EQ(apply.exit_code, 0) << apply.err;
@@ -346,10 +348,23 @@ TEST_F(FitCommand, SaysNothingWhenQuiet) {
   EXPECT_THAT(fit.err, IsEmpty());
 }
 
-TEST_F(FitCommand, PrintsPlainProgressWithoutATerminal) {
+TEST_F(FitCommand, PrintsWhatEveryStageFoundWhenVerbose) {
+  const ProgramResult fit = pair_.fit("map.vdb", {"--verbose"});
+  for (const char* line : {"source", "target", "rigid", "coarse", "surface-fit", "elastic", "bake",
+                           "certificate", "anchors", "vertices", "written"})
+    EXPECT_THAT("\n" + fit.out, HasSubstr("\n" + std::string(line) + " ")) << line;
+  EXPECT_EQ(pair_.fit("map.vdb", {"--verbose", "--quiet"}).exit_code, 1);
+}
+
+TEST_F(FitCommand, PrintsOneLineAStageWithoutATerminal) {
   const ProgramResult fit = pair_.fit("map.vdb");
   EXPECT_THAT(fit.err, HasSubstr("bake: "));
   EXPECT_THAT(fit.err, Not(HasSubstr("\r")));
+  EXPECT_THAT(fit.err, Not(HasSubstr("%")));
+  std::istringstream lines(fit.err);
+  std::set<std::string> stages;
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(stages.insert(line.substr(0, line.find(':'))).second) << line;
 }
 
 TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
@@ -364,7 +379,9 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));
-  EXPECT_THAT(fit.err, HasSubstr("are both in one unit, cm?"));
+  EXPECT_THAT(
+      fit.err,
+      HasSubstr("give the model and its anchors in one unit, cm (see troubleshooting.md#anchors-far-away)"));
 }
 
 TEST_F(FitCommand, RefusesADirectoryAsItsOutputBeforeAnyWork) {
@@ -405,12 +422,13 @@ TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
   EXPECT_EQ(inside.exit_code, 0) << inside.err;
   EXPECT_THAT(inside.err, HasSubstr("bespoke: warning: ")) << inside.err;
   EXPECT_THAT(inside.err, HasSubstr(" vertices unmet: "));
-  EXPECT_THAT(inside.err, HasSubstr("% of the source's diagonal, and products there with them"));
+  EXPECT_THAT(inside.err,
+              HasSubstr("% of the source's diagonal, and products there with them; bespoke view"));
 }
 
 TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
   std::vector<std::string> coarsely = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
-  EXPECT_THAT(pair_.fit("map.vdb", coarsely).err, Not(HasSubstr("half of the source")));
+  EXPECT_THAT(pair_.fit("map.vdb", coarsely).err, Not(HasSubstr("half of the registered source")));
   TriangleMesh piece = read_triangle_mesh(pair_.file("target.obj"));
   piece.faces = piece.faces.leftCols(piece.faces.cols() / 10).eval();
   write_triangle_mesh(pair_.file("target.obj"), piece);
@@ -420,20 +438,20 @@ TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
   coarsely.push_back("--anchor-sigma=0");
   fit = pair_.fit("map.vdb", coarsely);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
-  EXPECT_THAT(fit.err, HasSubstr("bespoke: warning: half of the source was laid "));
-  EXPECT_THAT(fit.err, HasSubstr("is it the right target, all of it, and are the anchors its own?"));
+  EXPECT_THAT(fit.err, HasSubstr("bespoke: warning: half of the registered source lies "));
+  EXPECT_THAT(fit.err, HasSubstr("check that it is the right target, all of it, with anchors of its own"));
 }
 
 TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesUncoveredUnlessAPatchExcludesIt) {
   const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
-  EXPECT_THAT(pair_.fit("map.vdb", quick).err, Not(HasSubstr("bare")));
+  EXPECT_THAT(pair_.fit("map.vdb", quick).err, Not(HasSubstr("uncovered")));
   const TriangleMesh target = read_triangle_mesh(pair_.file("target.obj"));
   const Vector3 beside = target.vertices.rowwise().maxCoeff() + Vector3(1, 0, 0);
   const TriangleMesh ball = shapes::moved(shapes::icosphere(2), {0.4 * Matrix3::Identity(), beside});
   write_triangle_mesh(pair_.file("target.obj"), shapes::joined(target, ball));
   ProgramResult fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
-  EXPECT_THAT(fit.err, HasSubstr(" % of the target is bare, at most "));
+  EXPECT_THAT(fit.err, HasSubstr(" % of the target is uncovered, at most "));
   EXPECT_THAT(fit.err, HasSubstr("bespoke anchors suggest"));
 
   json anchors = read_json("anchors.json");
@@ -443,7 +461,7 @@ TEST_F(FitCommand, WarnsOfATargetThatTheSourceLeavesUncoveredUnlessAPatchExclude
   write_text(pair_.file("anchors.json"), anchors.dump());
   fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
-  EXPECT_THAT(fit.err, Not(HasSubstr("bare")));
+  EXPECT_THAT(fit.err, Not(HasSubstr("uncovered")));
 }
 
 TEST_F(FitCommand, WarnsWhereDistancesAlongTheSurfacesToldPartsFarFromAllAnchors) {
@@ -467,8 +485,8 @@ TEST_F(FitCommand, WarnsWhereDistancesAlongTheSurfacesToldPartsFarFromAllAnchors
   EXPECT_EQ(few.exit_code, 0) << few.err;
   EXPECT_THAT(few.out, HasSubstr("\ncounterparts "));
   EXPECT_THAT(few.err,
-              HasSubstr(" places far from all anchors lay elsewhere than distances along the surfaces put "
-                        "them; laid by these too; pairs on those parts"));
+              HasSubstr(" places far from all anchors were registered elsewhere than geodesic distances put "
+                        "them; these now count as well; give pairs on those parts"));
   const ProgramResult enough = fit_by({0, 15, 30, 50, 65, 80});
   EXPECT_EQ(enough.exit_code, 0) << enough.err;
   EXPECT_THAT(enough.out + enough.err, Not(HasSubstr("counterparts")));

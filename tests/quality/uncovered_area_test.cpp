@@ -50,7 +50,7 @@ TEST(UncoveredArea, SaysWhereItIs) {
   uncovered.distance = 9.25;
   uncovered.farthest = Vector3(1, -2.5, 3);
   EXPECT_EQ(to_string(uncovered),
-            "2.9 % of the target is bare, at most 9.25 from the source, at (1, -2.5, 3)");
+            "2.9 % of the target is uncovered, at most 9.25 from the source, at (1, -2.5, 3)");
 }
 
 TEST(UncoveredArea, RefusesWhatIsNoReachAndNoMesh) {

@@ -17,6 +17,7 @@
 #include "bespoke/output_stream.h"
 #include "bespoke/pipeline/anchor_suggestions.h"
 #include "commands.h"
+#include "help.h"
 #include "length_option.h"
 #include "output_files.h"
 #include "run_options.h"
@@ -77,7 +78,7 @@ std::string written(const Anchors& anchors, AnchorFormat format) {
   std::string text = counted(kept.pairs.size(), "pair", "pairs");
   if (const std::string others = lines_and_parts(kept); !others.empty()) text += " and " + others;
   if (const std::string lost = left_out(anchors, format); !lost.empty())
-    text += "; left out, for want of a place in the format: " + lost;
+    text += "; left out, since the format has no place for it: " + lost;
   return text;
 }
 
@@ -123,26 +124,29 @@ void convert(const ConvertArguments& arguments) {
 void add_convert(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command =
-      app.add_subcommand("convert", "Turn pairs of points, and curves, into the format of another program");
+      app.add_subcommand("convert", "Convert anchors, and curves, to and from formats of other programs");
+  begin_group(*command, input_group);
   command
       ->add_option("INPUT", arguments->inputs,
-                   "Pairs; where a format has one file a side, the source's and the target's")
+                   "Anchors; where a format has one file for each model, the source's and the target's")
       ->required()
       ->expected(1, 2);
-  command->add_option("-o,--output", arguments->outputs, "File or files to write; endings say the formats")
-      ->required()
-      ->expected(1, 2);
-  add_model_options(*command, arguments->models, "needed for .wrap.json and .txt, which name places of it");
+  add_model_options(*command, arguments->models, "needed for .wrap.json and .txt, which name its vertices");
   command
       ->add_option("--coordinates", arguments->coordinates,
                    "Patient coordinates of the models, for 3D Slicer's files")
       ->check(CLI::IsMember({"LPS", "RAS"}))
       ->capture_default_str();
+  begin_group(*command, output_group);
+  command->add_option("-o,--output", arguments->outputs, "File or files to write; endings give the formats")
+      ->required()
+      ->expected(1, 2);
   command->footer(
-      "Endings: .json and .csv (both sides in one file), .pp (MeshLab), .mrk.json and .fcsv (3D Slicer), "
-      ".pts\n"
-      "(Landmark Editor), .wrap.json ([triangle, u, v] lists), .txt (two vertex numbers a line, from 0).\n"
-      "Curves go into .json and .mrk.json, patches into .json; what a format has no place for is listed.\n\n"
+      "Endings: .json and .csv (both models in one file), .pp (MeshLab), .mrk.json and .fcsv (3D Slicer), "
+      ".pts "
+      "(Landmark Editor), .wrap.json ([triangle, u, v] lists), .txt (two vertex numbers a line, from 0). "
+      "Curves "
+      "go into .json and .mrk.json, patches into .json; what a format has no place for is listed.\n\n"
       "Examples:\n"
       "  bespoke anchors convert woman.pp man.pp -o anchors.json\n"
       "  bespoke anchors convert anchors.json -o woman.mrk.json man.mrk.json");
@@ -195,9 +199,9 @@ void audit(const AuditArguments& arguments) {
 void add_audit(CLI::App& app) {
   auto arguments = std::make_shared<AuditArguments>();
   CLI::App* command = app.add_subcommand(
-      "audit",
-      "Say what is suspicious about pairs without fitting; fit also tries doubtful ones on the surfaces");
-  command->add_option("INPUT", arguments->inputs, "Pairs, in any format of `anchors convert`")
+      "audit", "Find suspicious anchors without a fit; `fit` also tests suspects on the surfaces");
+  begin_group(*command, input_group);
+  command->add_option("INPUT", arguments->inputs, "Anchors, in any format of `anchors convert`")
       ->required()
       ->expected(1, 2);
   add_model_options(*command, arguments->models, "more is checked with both");
@@ -261,29 +265,33 @@ void suggest(const SuggestArguments& arguments, const Progress& progress) {
 void add_suggest(CLI::App& app) {
   auto arguments = std::make_shared<SuggestArguments>();
   CLI::App* command =
-      app.add_subcommand("suggest", "Propose pairs where the fit is worst or least sure, to be checked");
+      app.add_subcommand("suggest", "Propose anchors where the fit is worst or least certain, to be checked");
+  begin_group(*command, input_group);
   command->add_option("SOURCE", arguments->source, "Source model")->required();
   command->add_option("TARGET", arguments->target, "Target model")->required();
-  command->add_option("--anchors", arguments->anchors, "Pairs so far, in any format of `anchors convert`")
+  command->add_option("--anchors", arguments->anchors, "Anchors so far, in any format of `anchors convert`")
       ->type_name("FILE")
       ->expected(1, 2);
-  command->add_option("-o,--output", arguments->outputs, "Pairs so far and those proposed, in any format")
+  begin_group(*command, output_group);
+  command->add_option("-o,--output", arguments->outputs, "Anchors so far and those proposed, in any format")
       ->type_name("FILE")
       ->required()
       ->expected(1, 2);
-  command->add_option("--count", arguments->count, "Pairs at most")
+  begin_group(*command, quality_group);
+  command->add_option("--count", arguments->count, "Propose at most so many")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   add_length_option(*command, "--tolerance", arguments->tolerance,
-                    "Nothing is proposed where the fits are surer than this, mesh units or % of the target's "
+                    "Nothing is proposed where the fits are closer to each other than this, mesh units or % "
+                    "of the target's "
                     "bounding-box diagonal (default: " +
                         percentage(surest) + ")");
   add_run_options(*command, arguments->run);
   command->footer(
-      "The source is fitted to the target and the target to the source: where they differ, a person's eye "
-      "helps.\nMove the proposed points to where they belong (`bespoke pick SOURCE TARGET --anchors FILE`), "
+      "The source is fitted to the target and the target to the source: where the two fits differ, an anchor "
+      "helps. Move the proposed points to where they belong (`bespoke pick SOURCE TARGET --anchors FILE`), "
       "and "
-      "give them\na smaller sigma.\n\n"
+      "give them a smaller sigma.\n\n"
       "Example:\n"
       "  bespoke anchors suggest woman.obj man.obj --anchors anchors.json --count 5 -o more.json");
   command->callback([arguments] {
@@ -294,7 +302,8 @@ void add_suggest(CLI::App& app) {
 }  // namespace
 
 void add_anchors_command(CLI::App& app) {
-  CLI::App* anchors = app.add_subcommand("anchors", "Convert, check and propose pairs of points");
+  CLI::App* anchors =
+      app.add_subcommand("anchors", "Convert, check and propose anchors: pairs of corresponding points");
   anchors->require_subcommand(1);
   add_convert(*anchors);
   add_audit(*anchors);

@@ -15,6 +15,7 @@
 #include "bespoke/unknown_ending.h"
 #include "catalog_option.h"
 #include "commands.h"
+#include "help.h"
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
@@ -265,7 +266,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
     for (const std::string& warning : applied[i].summary.warnings)
-      context.warn(arguments.products[i] + ": " + warning);
+      context.warn(arguments.products[i] + ": " + warning, Entry::content_left_as_it_is);
   }
 }
 
@@ -274,20 +275,19 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
   apply
       .add_option(
           "--rigid", arguments.rigid,
-          "A part that keeps its shape: it is turned and shifted as its mapped points ask for best. An OBJ "
+          "A part that keeps its shape: it gets the rigid motion that fits its mapped points best. An OBJ "
           "group, object or material, a glTF node, or a PLY component by its number; repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   apply
       .add_option("--similar", arguments.similar,
-                  "The same of a part that may also be scaled as a whole; repeatable")
+                  "A part that may also be scaled as a whole (a similarity); repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
   add_length_option(
       apply, "--refine", arguments.refine,
-      "Split straight edges where the map bends them until the middle of an edge's image is no farther "
-      "than this from the image of its middle; what the file says of vertices is interpolated, and all else "
-      "stays (default: none is split)");
+      "Split edges where the map bends them, until the middle of a mapped edge is no farther than this from "
+      "the mapped middle; vertex data are interpolated, all else stays (default: no edge is split)");
 }
 
 /// The arguments, with products in their place: where the map is found, the first stands in that of the map.
@@ -311,16 +311,22 @@ std::optional<fs::path> shared_map(const ApplyArguments& arguments) {
 void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ApplyArguments>();
   CLI::App* apply = app.add_subcommand("apply", "Carry products across a map");
-  apply->add_option("MAP", arguments->map, "Asset made by `bespoke fit`; not with --from")->required();
+  begin_group(*apply, input_group);
+  apply->add_option("MAP", arguments->map, "Map made by `bespoke fit`; not with --from")->required();
   apply->add_option("PRODUCT", arguments->products,
                     "Meshes or point sets around the source, by their endings: " + product_endings());
   add_catalog_option(*apply, arguments->catalog);
+  apply->add_flag("--untrusted", arguments->untrusted, untrusted_help);
+  begin_group(*apply, output_group);
   apply->add_option("-o,--output", arguments->output, "File to write, for one product")->type_name("OUT");
   apply->add_option("--out-dir", arguments->out_dir, "Directory to write to; products keep their file names")
       ->type_name("DIR");
+  apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
+      ->type_name("FILE");
+  begin_group(*apply, method_group);
   CLI::Option* t = add_time_option(*apply, arguments->t,
-                                   "How far the map goes: 0 is the source, 1 the target, others extrapolate: "
-                                   "check --t says whether that folds (default: 1)");
+                                   "How far the map goes: 0 is the source, 1 the target; others extrapolate, "
+                                   "and `check --t` says whether that folds (default: 1)");
   apply
       ->add_option("--frames", arguments->frames,
                    "Write N+1 files for t = 0, 1/N, …, 1, from one lookup: OUT_000.obj, OUT_001.obj, …")
@@ -338,13 +344,9 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
                                        "Evaluate the exact map that --keep-exact stored, not the grids");
   apply
       ->add_flag("--inverse", arguments->inverse,
-                 "Carry products of the target back to the source, through the cells of a certified map")
+                 "Carry products of the target back to the source; the map must be proved one-to-one")
       ->excludes(exact);
   add_shape_options(*apply, *arguments);
-  apply->add_option("--report", arguments->report, "Write counts, seconds and memory as JSON")
-      ->type_name("FILE");
-  apply->add_flag("--untrusted", arguments->untrusted,
-                  "Check the asset in a child process under limits first");
   add_run_options(*apply, arguments->run);
   apply->footer(
       "Examples:\n"

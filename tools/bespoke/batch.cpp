@@ -14,6 +14,7 @@
 #include "bespoke/batch/packed_jobs.h"
 #include "bespoke/error.h"
 #include "commands.h"
+#include "help.h"
 #include "memory_option.h"
 #include "standard_output.h"
 
@@ -165,7 +166,7 @@ void add_limits(CLI::App& batch, BatchArguments& arguments) {
   batch
       .add_option_function<std::string>(
           "--shard", [&arguments](const std::string& text) { arguments.shard = parse_shard(text); },
-          "Run the I-th of N parts of about equal cost; jobs that hang together stay together")
+          "Run the I-th of N parts of about equal cost; jobs that depend on each other stay together")
       ->type_name("I/N");
   batch.add_option("--jobs", arguments.jobs, "Jobs at a time (default: one a thread)")
       ->check(CLI::Range(1, 1024))
@@ -216,7 +217,8 @@ void add_outputs(CLI::App& batch, BatchArguments& arguments) {
 
 void add_batch_command(CLI::App& app) {
   auto arguments = std::make_shared<BatchArguments>();
-  CLI::App* batch = app.add_subcommand("batch", "Run many jobs, side by side, and none twice");
+  CLI::App* batch = app.add_subcommand("batch", "Run many jobs in parallel, and none twice");
+  begin_group(*batch, input_group);
   batch
       ->add_option(
           "MANIFEST", arguments->manifest,
@@ -224,17 +226,20 @@ void add_batch_command(CLI::App& app) {
           "measure, diff, export, view or report), and its options by their names, positional ones in lower "
           "case")
       ->required();
-  add_limits(*batch, *arguments);
+  begin_group(*batch, output_group);
   add_outputs(*batch, *arguments);
+  begin_group(*batch, jobs_group);
+  add_limits(*batch, *arguments);
   batch->footer(
-      "A job may read what another writes. A job is skipped when its outputs are those of its inputs and\n"
-      "options already; `.bespoke-jobs.jsonl` beside its first output knows. SIGTERM stops between two "
+      "A job may read what another writes. A job is skipped when its outputs already belong to its inputs "
+      "and "
+      "options; `.bespoke-jobs.jsonl` beside its first output records this. SIGTERM stops between two "
       "jobs.\n\n"
-      "With --pack, outputs are called in the archive by their paths from the working directory, where\n"
-      "`tar -xf` unpacks them with their records: a batch without --pack then finds them up to date. Jobs\n"
-      "follow each other as they finished; TMPDIR holds what runs. A job that is done again takes the place "
-      "of\n"
-      "its older outputs. One batch at a time writes an archive: with --shard, give each its own.\n\n"
+      "With --pack, the archive has outputs under their paths from the working directory, where `tar -xf` "
+      "unpacks them with their records: a batch without --pack then finds them up to date. Jobs stand in the "
+      "order in which they finished; TMPDIR holds what runs. A job that is run again replaces its older "
+      "outputs. "
+      "One batch at a time writes an archive: with --shard, give each its own.\n\n"
       "Examples:\n"
       "  bespoke batch season.jsonl --log season.log.jsonl --keep-going\n"
       "  bespoke batch season.jsonl --shard 3/16 --threads 8 --pack season_3.tar\n"

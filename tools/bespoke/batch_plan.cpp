@@ -31,7 +31,7 @@ constexpr std::array commands{
     JobCommand{"view", add_view_command},     JobCommand{"report", add_report_command}};
 
 // What the batch decides for all of its jobs.
-constexpr std::array keys_of_the_batch{"threads", "quiet", "help", "html"};
+constexpr std::array keys_of_the_batch{"threads", "quiet", "verbose", "help", "html"};
 
 std::vector<std::string> names_of_commands() {
   std::vector<std::string> names;

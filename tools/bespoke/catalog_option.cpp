@@ -29,7 +29,7 @@ bool names_both_models(const CatalogOption& option) {
 void add_catalog_option(CLI::App& app, CatalogOption& option) {
   app.add_option(
          "--from", option.directory,
-         "Instead of MAP: find it in the catalogue of this directory (`bespoke catalog`), by its source "
+         "Instead of MAP: find the map in the catalogue of this directory (`bespoke catalog`), by its source "
          "and, where there are several, its target")
       ->type_name("DIR");
   app.add_option(

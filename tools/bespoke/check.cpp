@@ -7,6 +7,7 @@
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "commands.h"
+#include "help.h"
 #include "output_files.h"
 #include "time_option.h"
 
@@ -42,7 +43,10 @@ void print_places(const Certificate& certificate, std::ostream& out) {
 std::string answer(const CheckArguments& arguments, const Certificate& certificate) {
   if (arguments.json) return to_json(certificate).dump(2) + "\n";
   std::ostringstream text;
-  text << to_string(certificate) << '\n';
+  text << (certificate.is_bijection() ? "proved: the map is one-to-one in all of space"
+                                      : "NOT PROVED: the map may fold")
+       << " at t = " << arguments.t << '\n'
+       << to_string(certificate) << '\n';
   print_places(certificate, text);
   return text.str();
 }
@@ -57,21 +61,25 @@ void run(const CheckArguments& arguments, const RunContext& context) {
                               {"folded", certificate.folded},
                               {"undecided", certificate.undecided}};
   if (!certificate.is_bijection())
-    throw SolverError(arguments.map + ": not proved to be a bijection at t = " + std::to_string(arguments.t));
+    throw SolverError(
+        with_entry(arguments.map + ": not proved to be one-to-one at t = " + std::to_string(arguments.t) +
+                       "; fit again with more anchors at these places or a larger --contact-offset",
+                   Entry::not_proved));
 }
 
 }  // namespace
 
 void add_check_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<CheckArguments>();
-  CLI::App* check =
-      app.add_subcommand("check", "Prove from the file alone that a map does not fold, or say where it does");
-  check->add_option("MAP", arguments->map, "Asset, .vdb")->required();
-  add_time_option(*check, arguments->t, "Time of the motion, 0 = identity, 1 = the map (default: 1)");
-  check->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
-  check->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
-  check->add_flag("--untrusted", arguments->untrusted,
-                  "Check the file in a child process under limits first");
+  CLI::App* check = app.add_subcommand(
+      "check", "Prove from the file alone that a map does not fold, or list where it does");
+  begin_group(*check, input_group);
+  check->add_option("MAP", arguments->map, map_help)->required();
+  add_time_option(*check, arguments->t, "Time of the motion: 0 is the source, 1 the map (default: 1)");
+  check->add_flag("--untrusted", arguments->untrusted, untrusted_help);
+  begin_group(*check, output_group);
+  check->add_option("-o,--output", arguments->output, printed_output_help)->type_name("FILE");
+  check->add_flag("--json", arguments->json, json_help);
   add_run_options(*check, arguments->run);
   check->footer(
       "Exit code 0: proved to be a bijection of space; 3: not proved.\n\n"

@@ -28,8 +28,14 @@ void add_export_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_view_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_report_command(CLI::App& app, const PlanHandler& handle_plan);
 
-/// Help of --half, wherever a map is baked.
+/// Help of options and arguments that several subcommands have.
 inline constexpr const char* half_help =
-    "Store 16-bit floats instead of 32-bit ones; error and certificate are of the rounded values";
+    "Store 16-bit floats instead of 32-bit ones; error and proof are those of the rounded values";
+inline constexpr const char* json_help = "Print one JSON object instead of lines";
+inline constexpr const char* map_help = "Map made by `bespoke fit`, .vdb";
+inline constexpr const char* page_help =
+    "Page to write, .html: one file, which needs no server and no network";
+inline constexpr const char* printed_output_help = "Write the result to this file instead of printing it";
+inline constexpr const char* untrusted_help = "Check map files in a child process under limits first";
 
 }  // namespace bespoke::command

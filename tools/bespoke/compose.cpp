@@ -4,6 +4,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
+#include "help.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -41,16 +42,17 @@ void run(const ComposeArguments& arguments, const RunContext& context) {
 
 void add_compose_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ComposeArguments>();
-  CLI::App* compose = app.add_subcommand("compose", "Join two maps into one: a to c from a to b and b to c");
-  compose->add_option("AB", arguments->first, "Asset of the map from a to b")->required();
-  compose->add_option("BC", arguments->second, "Asset of the map from b to c")->required();
+  CLI::App* compose =
+      app.add_subcommand("compose", "Compose two maps into one: a to c from a to b and b to c");
+  begin_group(*compose, input_group);
+  compose->add_option("AB", arguments->first, "Map from a to b")->required();
+  compose->add_option("BC", arguments->second, "Map from b to c")->required();
   compose->add_flag("--any-models", arguments->any_models,
-                    "Join maps even if the model that AB leads to is not the one that BC starts from");
+                    "Compose them even if the target of AB is not the source of BC");
   add_derived_map_options(
       *compose, arguments->options,
-      "Largest difference between the joined map and the two, mesh units or % of a's "
-      "bounding-box diagonal (default: the larger one of AB and BC, within 4.2 M voxels), doubled or halved "
-      "as often as c is twice or half as large");
+      "Largest difference between the composed map and the two, mesh units or % of a's bounding-box diagonal "
+      "(default: the larger one of AB and BC, within 4.2 M voxels), scaled with c's size in powers of two");
   compose->footer(
       "Examples:\n"
       "  bespoke compose ab.vdb bc.vdb -o ac.vdb\n"

@@ -5,6 +5,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "fit_warnings.h"
+#include "help.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -15,11 +16,12 @@ void warn_of_missed_tolerance(const RunContext& context, const DerivedMap& deriv
   const BakeSummary& bake = derived.bake;
   if (bake.tolerance_met) return;
   char text[120];
-  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
+  std::snprintf(text, sizeof text, "the largest error %.4g of the baked map exceeds the tolerance %.4g; ",
                 bake.error.max, derived.asset.record.tolerance);
   const std::string relaxed = "it was relaxed in " + std::to_string(bake.relaxed.size()) +
-                              " regions, to keep to 4.2 M voxels; --tolerance gives them more";
-  context.warn(text + (bake.relaxed.empty() ? "a smaller --tolerance allows finer voxels" : relaxed));
+                              " regions, to keep to 4.2 M voxels; a --tolerance of your own allows more";
+  context.warn(text + (bake.relaxed.empty() ? "a smaller --tolerance allows finer voxels" : relaxed),
+               Entry::tolerance_missed);
 }
 
 }  // namespace
@@ -30,10 +32,12 @@ BakeOptions DerivedMapOptions::bake(const DerivedTolerance& lengths) const {
 
 void add_derived_map_options(CLI::App& app, DerivedMapOptions& options,
                              const std::string& tolerance_description) {
-  app.add_option("-o,--output", options.output, "Asset to write")->required()->type_name("MAP.vdb");
-  add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
+  app.add_flag("--untrusted", options.untrusted, untrusted_help);
+  begin_group(app, output_group);
+  app.add_option("-o,--output", options.output, "Map to write")->required()->type_name("MAP.vdb");
   app.add_flag("--half", options.half, half_help);
-  app.add_flag("--untrusted", options.untrusted, "Check what is read in a child process under limits first");
+  begin_group(app, quality_group);
+  add_length_option(app, "--tolerance", options.tolerance, tolerance_description);
   add_run_options(app, options.run);
 }
 

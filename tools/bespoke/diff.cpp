@@ -7,6 +7,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/product_io.h"
 #include "commands.h"
+#include "help.h"
 #include "length_option.h"
 #include "output_files.h"
 
@@ -58,7 +59,10 @@ void run(const DiffArguments& arguments, const RunContext& context) {
   ComparedMaps compared{a, b, map_difference(a, b, products, context.progress), record_difference(a, b),
                         arguments.products};
   if (a.record.source.hash != b.record.source.hash)
-    context.warn("the maps have different sources; their places correspond only as far as these do");
+    context.warn(
+        "the maps have different sources, so their places correspond only as far as these do; fit both "
+        "from one source to compare them everywhere",
+        Entry::maps_of_different_sources);
   write_answer(arguments.output, arguments.json ? difference_json(compared) : difference_text(compared),
                context);
   context.findings.figures = {{"largest", compared.maps.band.distance.max},
@@ -71,25 +75,26 @@ void run(const DiffArguments& arguments, const RunContext& context) {
 
 void add_diff_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<DiffArguments>();
-  CLI::App* diff = app.add_subcommand("diff", "How far two maps take the same points apart, and why");
-  diff->add_option("A", arguments->a, "Asset, .vdb")->required();
-  diff->add_option("B", arguments->b, "Asset, .vdb, of the same source")->required();
-  diff->add_option("--product", arguments->products,
-                   "Also how far its vertices come to lie apart; repeatable")
+  CLI::App* diff = app.add_subcommand("diff", "Say how far two maps take the same points apart, and why");
+  begin_group(*diff, input_group);
+  diff->add_option("A", arguments->a, map_help)->required();
+  diff->add_option("B", arguments->b, "Another map of the same source")->required();
+  diff->add_option("--product", arguments->products, "Also say how far its vertices end up apart; repeatable")
       ->type_name("MESH")
       ->allow_extra_args(false);
+  diff->add_flag("--untrusted", arguments->untrusted, untrusted_help);
+  begin_group(*diff, quality_group);
   add_length_option(*diff, "--within", arguments->within,
-                    "Exit code 3 unless they are no farther apart than this (default: any distance)",
+                    "Exit with code 3 unless they are no farther apart than this (default: any distance)",
                     LengthRange::not_negative);
-  diff->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
-  diff->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
-  diff->add_flag("--untrusted", arguments->untrusted,
-                 "Check the files in a child process under limits first");
+  begin_group(*diff, output_group);
+  diff->add_option("-o,--output", arguments->output, printed_output_help)->type_name("FILE");
+  diff->add_flag("--json", arguments->json, json_help);
   add_run_options(*diff, arguments->run);
   diff->footer(
-      "Distances are of 300,000 random points of both bands, half of each, more of them where a map is "
-      "stored\n"
-      "finely.\n\n"
+      "Distances are measured at 300,000 random points, half of them in the band of each map, more where a "
+      "map is "
+      "stored finely.\n\n"
       "Examples:\n"
       "  bespoke diff before.vdb after.vdb\n"
       "  bespoke diff before.vdb after.vdb --product dress.obj --within 0.1%");

@@ -10,6 +10,7 @@
 #include "bespoke/product/format_unit.h"
 #include "bespoke/unknown_ending.h"
 #include "commands.h"
+#include "help.h"
 #include "length_option.h"
 #include "name_option.h"
 #include "output_files.h"
@@ -113,7 +114,8 @@ double export_file(const ExportArguments& arguments, const OpenedMap& map,
   const MorphSummary summary =
       morph_file_along(arguments.product, output, *map.elastic, map.target_from_source, *arguments.morph,
                        {map.path}, context.progress);
-  for (const std::string& warning : summary.warnings) context.warn(arguments.product + ": " + warning);
+  for (const std::string& warning : summary.warnings)
+    context.warn(arguments.product + ": " + warning, Entry::content_left_as_it_is);
   return summary.off_path;
 }
 
@@ -158,9 +160,12 @@ void run(const ExportArguments& arguments, const RunContext& context) {
 
 void add_export_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* exported = app.add_subcommand(
-      "export", "Write a map as a displacement image, or as morph targets of a product, for other programs");
-  exported->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
+  CLI::App* exported =
+      app.add_subcommand("export", "Write a map as a displacement image, or as morph targets of a product");
+  begin_group(*exported, input_group);
+  exported->add_option("MAP", arguments->map, map_help)->required();
+  exported->add_flag("--untrusted", arguments->untrusted, untrusted_help);
+  begin_group(*exported, output_group);
   exported
       ->add_option("-o,--output", arguments->output,
                    "File to write, by its ending: " + image_endings() + "; with --morph .glb")
@@ -178,23 +183,20 @@ void add_export_command(CLI::App& app, const PlanHandler& handle_plan) {
   exported
       ->add_option(
           "--product", arguments->product,
-          "The mesh that morphs: OBJ, PLY, STL, OFF, of which the faces are kept, or .glb, of which all is")
+          "The mesh that morphs: OBJ, PLY, STL or OFF, of which faces are kept, or .glb, which is kept whole")
       ->needs(morph)
       ->type_name("MESH");
   exported
       ->add_flag("--pull", arguments->pull,
-                 "Displacements from the target to the source, as programs that resample images ask for them")
+                 "Displacements from the target to the source, which programs that resample images need")
       ->excludes(morph);
   add_name_option(*exported, "--space", arguments->space, world_spaces,
                   "Which way the models' axes point, for .nrrd, which is written in LPS, and .nii.gz, in RAS "
                   "(default: lps)");
-  exported->add_flag("--untrusted", arguments->untrusted,
-                     "Check the asset in a child process under limits first");
   add_run_options(*exported, arguments->run);
   exported->footer(
-      "The image covers the model and what the elastic part reaches, and says nothing beyond. glTF is in "
-      "metres: lengths in\n"
-      "m, dm, cm, mm, in or ft are scaled on the node, others shown as they are.\n\n"
+      "The image covers the model and what the elastic part reaches, and nothing beyond. glTF is in metres: "
+      "lengths in m, dm, cm, mm, in or ft are scaled on the node, others are shown as they are.\n\n"
       "Examples:\n"
       "  bespoke export map.vdb --grid 0.5% -o map.vti\n"
       "  bespoke export map.vdb --grid 0.5% -o level.vdb\n"

@@ -20,32 +20,17 @@
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/product/vertex_groups.h"
+#include "bespoke/report/fit_text.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
+#include "fit_options.h"
 #include "fit_warnings.h"
 #include "html_pages.h"
-#include "length_option.h"
-#include "memory_option.h"
-#include "name_option.h"
 #include "output_files.h"
+#include "page_output.h"
 
 namespace bespoke::command {
 namespace {
-
-struct FitArguments : MapRequest {
-  std::string source;
-  std::string target;
-  std::string anchors;
-  std::string output;
-  std::string fitted;
-  std::string fitted_out;
-  std::string confidence_out;
-  std::string report;
-  std::string html;
-  bool require_certified = false;
-  bool add_corners = false;
-  RunOptions run;
-};
 
 void require_consistent(const FitArguments& arguments) {
   const bool fitted = !arguments.fitted.empty();
@@ -53,7 +38,7 @@ void require_consistent(const FitArguments& arguments) {
           inapplicable_option(arguments, {!arguments.anchors.empty(), fitted, arguments.add_corners}))
     throw CLI::ValidationError("--" + inapplicable->name, inapplicable->reason);
   if (fitted && !arguments.confidence_out.empty())
-    throw CLI::ValidationError("--confidence-out", "belongs to the surface fitting, which --fitted skips");
+    throw CLI::ValidationError("--confidence-out", "belongs to the registration, which --fitted skips");
   if (!arguments.fitted_out.empty()) require_mesh_ending("--fitted-out", arguments.fitted_out);
 }
 
@@ -82,14 +67,14 @@ std::string confidence_lines(const std::vector<double>& confidence) {
   return lines;
 }
 
-void require_model(const TriangleMesh& mesh, const std::string& role, const std::string& path, bool quiet) {
+void require_model(const TriangleMesh& mesh, const std::string& role, const std::string& path, bool verbose) {
   require_surface(mesh, role + " " + path);
-  if (!quiet) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
+  if (verbose) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
 }
 
-TriangleMesh read_model(const std::string& role, const std::string& path, bool quiet) {
+TriangleMesh read_model(const std::string& role, const std::string& path, bool verbose) {
   TriangleMesh mesh = read_source(path);
-  require_model(mesh, role, path, quiet);
+  require_model(mesh, role, path, verbose);
   return mesh;
 }
 
@@ -151,6 +136,14 @@ void write_pages(const HtmlPages& pages, const FitArguments& arguments, const Ma
   pages.write(scene, *context.maps.open(arguments.output, MapForm::grids, {}));
 }
 
+/// Lists what is wrong with a map that is not proved, and shows any other.
+std::string next_command(const FitArguments& arguments, const MadeMap& made) {
+  if (!whole_certificate(made.asset).is_bijection()) return command_text({"check", arguments.output});
+  const std::string page = std::filesystem::path(arguments.output).replace_extension(".html").string();
+  return command_text({has_pages() ? "view" : "report", arguments.output, "--source", arguments.source,
+                       "--target", arguments.target, "-o", page});
+}
+
 void run(const FitArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   require_map_ending(arguments.output);
@@ -158,14 +151,13 @@ void run(const FitArguments& arguments, const RunContext& context) {
     throw CLI::ValidationError("--html", "shows the map from its file; give -o the name of a file");
   const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
-  const bool quiet = arguments.run.quiet;
-  const TriangleMesh source = read_model("source", arguments.source, quiet);
+  const TriangleMesh source = read_model("source", arguments.source, arguments.verbose);
   const TargetModel target_model = read_target(arguments.target);
   const TriangleMesh& target = target_model.mesh;
-  require_model(target, "target", arguments.target, quiet);
+  require_model(target, "target", arguments.target, arguments.verbose);
   std::optional<TriangleMesh> fitted;
   if (!arguments.fitted.empty()) {
-    fitted = read_model("fitted", arguments.fitted, quiet);
+    fitted = read_model("fitted", arguments.fitted, arguments.verbose);
     require_same_connectivity(source, *fitted, arguments.fitted);
   }
   Anchors anchors;
@@ -214,157 +206,28 @@ void run(const FitArguments& arguments, const RunContext& context) {
 
   context.findings.figures = figures(made);
   warn_of_misses(context, input, options, made);
-  if (quiet) return;
-  print_stages(made, anchors);
-  std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
-}
-
-void add_method_options(CLI::App& fit, FitArguments& arguments) {
-  const MakeMapOptions defaults = default_options(1);
-  const auto with_default = [](const std::string& text, std::string_view value) {
-    return text + " (default: " + std::string(value) + ")";
-  };
-  add_name_option(fit, "--surface-fit", arguments.surface_fit, surface_fits,
-                  with_default("How the source is laid onto the target",
-                               name_of(surface_fits, defaults.fit.surface_fit.method)));
-  add_name_option(
-      fit, "--boundaries", arguments.boundaries, boundary_rules,
-      with_default(
-          "deformation-graph: whether open boundaries of the source meet the target's; free when the "
-          "models were cut at different places",
-          name_of(boundary_rules, defaults.fit.surface_fit.boundaries)));
-  fit.add_option("--max-stretch", arguments.max_stretch,
-                 with_default("deformation-graph: where a length on the source would grow or shrink by a "
-                              "larger factor beyond its coarse deformation, its vertices follow their "
-                              "neighbours instead",
-                              CLI::detail::to_string(defaults.fit.surface_fit.max_stretch)))
-      ->check(CLI::Range(1.01, 1e6))
-      ->type_name("FACTOR");
-  add_name_option(
-      fit, "--elastic", arguments.elastic, elastic_methods,
-      with_default("How the fit is carried into space", name_of(elastic_methods, defaults.fit.elastic)));
-  add_name_option(
-      fit, "--guides", arguments.guides, guided_maps,
-      with_default("multiscale, diffeomorphic: maps that take space off the surface along with it as a "
-                   "rigid body, so that a loose sleeve turns with its arm; steps are those of chains",
-                   name_of(guided_maps, defaults.fit.guides)));
-  add_name_option(fit, "--path", arguments.path, rotation_paths,
-                  "How the motion goes with t; stored in the asset (default: flow for a map of several "
-                  "steps, else geodesic)");
-  fit.add_option(
-         "--steps", arguments.steps,
-         "Steps of the chain that the map is made of (default: 1 for models in about the same pose, else by "
-         "the largest turn of a part; more where fewer would fold or miss vertices). One remains one; of "
-         "more, those that fold when baked, or are foreseen to, are divided")
-      ->check(CLI::Range(1, 100))
-      ->type_name("N");
-  add_name_option(
-      fit, "--nodes", arguments.nodes, node_values,
-      with_default("What the nodes of nested levels hold: the map's own values, or values between "
-                   "which interpolation errs as far to either side, in a third fewer voxels",
-                   name_of(node_values, defaults.bake.nodes)));
-  fit.add_flag(
-      "--paper", arguments.paper,
-      "The printed method: --surface-fit laplacian with nothing added to Eq. 11-15, --elastic csrbf, --path "
-      "euler, --steps 1, --contact-offset 0, --nodes sampled, --as-given, and pairs met exactly that have "
-      "neither a sigma nor a weight");
-  fit.add_flag("--as-given", arguments.as_given,
-               "Take the models as they are: by default edges that a file cuts open at the same places are "
-               "joined, and a target that is inside out is turned over");
-  fit.add_flag(
-      "--any-size", arguments.any_size,
-      "Take models that differ by more than eight times in size, which are refused else as if in two "
-      "units: the map then goes from one unit to the other");
-  fit.add_flag("--add-corners", arguments.add_corners,
-               "Add the eight corners of the bounding boxes of the two models, aligned, as anchor pairs");
-}
-
-void add_length_options(CLI::App& fit, FitArguments& arguments) {
-  const auto defaulted = [](const std::string& text, double fraction) {
-    return text +
-           ", mesh units or % of the source's bounding-box diagonal (default: " + percentage(fraction) + ")";
-  };
-  const auto on_target = [&](const std::string& text, double fraction) {
-    return defaulted(text, fraction) + ", doubled or halved as often as the target is twice or half as large";
-  };
-  add_length_option(
-      fit, "--lambda", arguments.lambda,
-      defaulted("Effective distance: how far from the source the elastic part reaches", default_lambda));
-  add_length_option(fit, "--tolerance", arguments.tolerance,
-                    on_target("Largest difference between the baked and the exact map", default_tolerance));
-  add_length_option(fit, "--fit-tolerance", arguments.fit_tolerance,
-                    on_target("The multiscale and diffeomorphic maps refine where the fit is missed by more",
-                              default_fit_tolerance));
-  add_length_option(
-      fit, "--anchor-sigma", arguments.anchor_sigma,
-      "Accuracy of the anchors that have neither a sigma nor a weight of their own: standard "
-      "deviation of a coordinate, mesh units or % of the diagonal; 0 meets them exactly (default: "
-      "estimated from their distance to the target)",
-      LengthRange::not_negative);
-  add_length_option(
-      fit, "--contact-offset", arguments.contact_offset,
-      on_target("Where the target touches itself, the parts are held this far apart; 0 leaves them",
-                default_contact_offset),
-      LengthRange::not_negative);
-  add_length_option(
-      fit, "--voxel-size", arguments.voxel_size,
-      "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: nested "
-      "levels that meet --tolerance)");
-}
-
-void add_file_options(CLI::App& fit, FitArguments& arguments) {
-  fit.add_option("SOURCE", arguments.source,
-                 "Reference model that products are designed around: " + read_product_endings())
-      ->required();
-  fit.add_option("TARGET", arguments.target, "Reference model that products shall fit")->required();
-  fit.add_option("--anchors", arguments.anchors,
-                 "Pairs of corresponding points, JSON (also curves and patches) or CSV (default: models in "
-                 "similar pose are aligned by "
-                 "their surfaces, or refused)")
-      ->type_name("FILE");
-  fit.add_option("-o,--output", arguments.output, "Asset to write")->required()->type_name("MAP.vdb");
-  fit.add_option("--fitted", arguments.fitted,
-                 "The source already laid onto the target (same connectivity); skips surface fitting")
-      ->type_name("MESH");
-  fit.add_option("--fitted-out", arguments.fitted_out, "Write the source as laid onto the target")
-      ->type_name("MESH");
-  fit.add_option("--confidence-out", arguments.confidence_out,
-                 "Write how well each source vertex found its counterpart, 0 to 1, one line a vertex")
-      ->type_name("FILE");
-  fit.add_flag("--require-certified", arguments.require_certified,
-               "Write nothing unless the map is proved to be a bijection of space");
-  fit.add_flag(
-      "--strict", arguments.strict,
-      "Meet the tolerance everywhere or refuse, for want of memory; by default a map that would take more "
-      "than 4.2 M voxels keeps to these, and the regions where it misses the tolerance are named "
-      "(implied by --tolerance)");
-  fit.add_flag("--half", arguments.half, half_help);
-  fit.add_flag("--keep-exact", arguments.keep_exact,
-               "Store in the asset what `apply --exact` needs to evaluate the map without the grids");
-  fit.add_option("--report", arguments.report,
-                 "Write residuals, iterations, seconds, counts and memory as JSON")
-      ->type_name("FILE");
-  fit.add_option("--html", arguments.html, "Write a page that shows the map, as `view`, and an index of it")
-      ->type_name("DIR");
+  if (arguments.verbose) print_stages(made, anchors);
+  if (arguments.verbose) std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
+  if (!arguments.run.quiet && !arguments.verbose)
+    std::fputs(
+        fit_text({input, made, arguments.source, arguments.target, arguments.output, arguments.fitted,
+                  std::filesystem::file_size(arguments.output), seconds, next_command(arguments, made)})
+            .c_str(),
+        stdout);
 }
 
 }  // namespace
 
 void add_fit_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<FitArguments>();
-  CLI::App* fit = app.add_subcommand("fit", "Compute the map between two reference models and store it");
-  add_file_options(*fit, *arguments);
-  add_method_options(*fit, *arguments);
-  add_length_options(*fit, *arguments);
-  add_memory_option(*fit, arguments->max_memory,
-                    "Bytes that a stage may take, for instance 4GiB (default: 8GiB)");
-  add_run_options(*fit, arguments->run);
+  CLI::App* fit = app.add_subcommand("fit", "Register two reference models and store the map between them");
+  add_fit_options(*fit, *arguments);
   fit->footer(
       "Examples:\n"
       "  bespoke fit woman.obj man.obj --anchors pairs.json -o map.vdb\n"
       "  bespoke fit woman.obj man.obj -o map.vdb\n"
-      "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --paper --lambda 5%\n"
-      "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb --report report.json");
+      "  bespoke fit woman.obj man.obj --anchors pairs.csv -o map.vdb --lambda 5%\n"
+      "  bespoke fit woman.obj man.obj --fitted woman_on_man.obj -o map.vdb");
   fit->callback([arguments, handle_plan] {
     const FitArguments given = std::exchange(*arguments, {});
     require_consistent(given);

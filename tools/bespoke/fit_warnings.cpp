@@ -17,25 +17,26 @@ void warn_of_far_anchors(const RunContext& context, const std::string& role, con
                          const Points& anchors, const std::string& unit) {
   const AnchorPlacement placement = anchor_placement(model, anchors);
   if (placement.is_far())
-    context.warn(role + ": " + to_string(placement) + "; are both in one unit" + (unit.empty() ? "" : ", ") +
-                 unit + "?");
+    context.warn(role + ": " + to_string(placement) + "; give the model and its anchors in one unit" +
+                     (unit.empty() ? "" : ", ") + unit,
+                 Entry::anchors_far_away);
 }
 
 void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
   const std::string text = to_string(contradicting_anchors(anchors), anchors);
-  if (!text.empty()) context.warn(text);
+  if (!text.empty()) context.warn(text, Entry::contradicting_anchors);
 }
 
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const BakeOptions& options, const BakeSummary& bake) {
   if (options.voxel_size) return "a smaller --voxel-size lowers it";
   if (bake.repaired_cells > 0)
-    return "mending " + std::to_string(bake.repaired_cells) +
-           " folded cells moved nodes; where the map is that flat, no tolerance is met without folds";
+    return "the repair of " + std::to_string(bake.repaired_cells) +
+           " folded cells moved nodes there; no tolerance is met without folds where the map is that flat";
   if (!bake.relaxed.empty())
     return "it was relaxed in " + std::to_string(bake.relaxed.size()) +
-           " regions, where the map is too steep for its share of voxels; --strict or --tolerance gives it "
-           "more";
+           " regions, where the map is too steep for its share of voxels; --strict or a --tolerance of your "
+           "own allows more voxels";
   return "the map is steep or jumps there; a smaller --tolerance allows finer voxels";
 }
 
@@ -43,9 +44,9 @@ void warn_of_missed_tolerance(const RunContext& context, const BakeOptions& opti
                               const BakeSummary& bake) {
   if (bake.tolerance_met) return;
   char text[120];
-  std::snprintf(text, sizeof text, "the bake's largest error %.4g exceeds the tolerance %.4g; ",
+  std::snprintf(text, sizeof text, "the largest error %.4g of the baked map exceeds the tolerance %.4g; ",
                 bake.error.max, options.tolerance);
-  context.warn(text + cause_of_missed_tolerance(options, bake));
+  context.warn(text + cause_of_missed_tolerance(options, bake), Entry::tolerance_missed);
 }
 
 constexpr double visible = 0.01;  // of the target's diagonal
@@ -59,22 +60,26 @@ std::string visible_length(double length, double diagonal) {
 /// A target of another kind, or elsewhere than its anchors, still gets some map.
 void warn_of_uncovered_source(const RunContext& context, double diagonal, const SurfaceFitSummary& fit) {
   if (!(fit.after.median > visible * diagonal)) return;
-  context.warn("half of the source was laid " + visible_length(fit.after.median, diagonal) +
-               ", or more from the target; is it the right target, all of it, and are the anchors its own?");
+  context.warn("half of the registered source lies " + visible_length(fit.after.median, diagonal) +
+                   ", or more from the target; check that it is the right target, all of it, with anchors of "
+                   "its own",
+               Entry::source_off_the_target);
 }
 
 /// Such parts are known less well than by anchors.
 void warn_of_inferred_parts(const RunContext& context, const CounterpartSummary& counterparts) {
   if (counterparts.taken)
     context.warn(to_string(counterparts) +
-                 "; pairs on those parts make the map surer (bespoke anchors suggest says where)");
+                     "; give pairs on those parts to be certain (bespoke anchors suggest says where)",
+                 Entry::parts_far_from_anchors);
 }
 
 void warn_of_uncovered_target(const RunContext& context, const UncoveredArea& uncovered) {
   if (uncovered.is_notable())
     context.warn(to_string(uncovered) +
-                 "; if the source has that part, give pairs on it (bespoke anchors suggest says where), else "
-                 "exclude it by a patch");
+                     "; if the source has that part, give pairs on it (bespoke anchors suggest says where), "
+                     "else exclude it by a patch",
+                 Entry::target_uncovered);
 }
 
 /// A certified map may still not be the one that was asked for.
@@ -85,7 +90,8 @@ void warn_of_missed_vertices(const RunContext& context, double diagonal, std::ve
     return a.residual < b.residual;
   });
   context.warn(to_string(far) + "; they are off by up to " + visible_length(worst->residual, diagonal) +
-               ", and products there with them");
+                   ", and products there with them; bespoke view shows where",
+               Entry::vertices_missed);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "grade_sizes.h"
 #include "grade_tables.h"
+#include "help.h"
 #include "html_pages.h"
 
 namespace bespoke::command {
@@ -90,8 +91,8 @@ void add_sizes(CLI::App& grade, GradeArguments& arguments) {
   grade
       .add_option(
           "--sizes", arguments.sizes,
-          "Table of sizes with a header: size,target, and where wanted anchors, t (how far the map to "
-          "the target goes, 1) and options of `fit` by their names")
+          "Table of sizes with a header: size, target and, as needed, anchors, t (how far the map to the "
+          "target goes, default 1) and options of `fit` by their names")
       ->type_name("TABLE.csv");
   grade.add_option("--target", arguments.target, "Instead of a table: the model of the last size")
       ->type_name("MESH");
@@ -110,6 +111,7 @@ void add_grade_command(CLI::App& app) {
   auto arguments = std::make_shared<GradeArguments>();
   GradeRequest& request = arguments->request;
   CLI::App* grade = app.add_subcommand("grade", "Carry products to many sizes, and measure each");
+  begin_group(*grade, input_group);
   grade->add_option("SOURCE", request.source, "Reference model that products are designed around")
       ->required();
   grade->add_option("PRODUCT", request.products,
@@ -117,27 +119,30 @@ void add_grade_command(CLI::App& app) {
   add_sizes(*grade, *arguments);
   grade->add_option("--measures", arguments->measures, "Girths and lengths, by planes or anchors")
       ->type_name("MEASURES.json");
+  begin_group(*grade, output_group);
   grade
-      ->add_option("--out-dir", request.out_dir,
-                   "Gets measures.csv and .md, and a folder a size: products, map.vdb, measures.csv and .md")
+      ->add_option(
+          "--out-dir", request.out_dir,
+          "Directory for measures.csv and .md, and a folder a size: products, map.vdb, measures.csv and .md")
       ->required()
       ->type_name("DIR");
-  for (const auto& [name, parts] : {std::pair{"--rigid", &request.rigid}, {"--similar", &request.similar}})
-    grade->add_option(name, *parts, "Parts that keep their shape, as for `apply`; repeatable")
-        ->type_name("NAME")
-        ->allow_extra_args(false);
-  grade->add_flag("--keep-going", arguments->keep_going,
-                  "After a size has failed, go on with the others; the tables of the series wait for it");
   grade->add_option("--log", arguments->log, "Append one JSON line a job")->type_name("FILE.jsonl");
   grade
       ->add_option("--html", arguments->html,
                    "Write a page for every map, and an index of the sizes with pictures")
       ->type_name("DIR");
+  begin_group(*grade, method_group);
+  for (const auto& [name, parts] : {std::pair{"--rigid", &request.rigid}, {"--similar", &request.similar}})
+    grade->add_option(name, *parts, "Parts that keep their shape, as for `apply`; repeatable")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+  begin_group(*grade, jobs_group);
+  grade->add_flag("--keep-going", arguments->keep_going,
+                  "After a size has failed, go on with the others; the tables of the series need all sizes");
   add_run_options(*grade, arguments->run);
   grade->footer(
-      "What is up to date is not repeated (see `bespoke batch --help`). A girth is the section of the "
-      "source\n"
-      "that goes round the plane's point; a loop or path goes over the surface through anchors or points.\n\n"
+      "What is up to date is not repeated (see `bespoke batch --help`). A girth is the section of the source "
+      "that goes round the plane's point; a loop or path runs over the surface through anchors or points.\n\n"
       "Examples:\n"
       "  bespoke grade body.obj top.obj --sizes sizes.csv --measures measures.json --out-dir sizes\n"
       "  bespoke grade body.obj top.obj --target large.obj --anchors pairs.json --between 3 --out-dir "

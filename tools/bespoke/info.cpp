@@ -5,6 +5,7 @@
 #include "bespoke/error.h"
 #include "bespoke/report/inspection.h"
 #include "commands.h"
+#include "help.h"
 
 namespace bespoke::command {
 namespace {
@@ -35,11 +36,13 @@ void run(const InfoArguments& arguments) {
 
 void add_info_command(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
-  CLI::App* info = app.add_subcommand("info", "Say what an asset holds and what is proved about it");
-  info->add_option("MAP", arguments->map, "Asset, .vdb")->required();
-  info->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
+  CLI::App* info = app.add_subcommand("info", "Say what a map holds and what is proved about it");
+  begin_group(*info, input_group);
+  info->add_option("MAP", arguments->map, map_help)->required();
   info->add_flag("--untrusted", arguments->untrusted,
                  "Check the file in a child process under limits first, and its certificate against its map");
+  begin_group(*info, output_group);
+  info->add_flag("--json", arguments->json, json_help);
   info->footer(
       "Examples:\n"
       "  bespoke info map.vdb\n"

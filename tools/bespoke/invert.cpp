@@ -4,6 +4,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "commands.h"
 #include "derived_map_options.h"
+#include "help.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -34,12 +35,13 @@ void run(const InvertArguments& arguments, const RunContext& context) {
 void add_invert_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<InvertArguments>();
   CLI::App* invert = app.add_subcommand(
-      "invert", "Make the map from the target back to the source (apply --inverse goes back without one)");
-  invert->add_option("MAP", arguments->map, "Asset of a map that is certified as a bijection")->required();
+      "invert", "Make the map from the target back to the source (`apply --inverse` goes back without one)");
+  begin_group(*invert, input_group);
+  invert->add_option("MAP", arguments->map, "Map that is proved to be one-to-one")->required();
   add_derived_map_options(*invert, arguments->options,
                           "Largest difference between the baked and the exact inverse, mesh units or % of "
                           "the target's bounding-box diagonal (default: that of MAP, within 4.2 M voxels), "
-                          "doubled or halved as often as the source is twice or half as large");
+                          "scaled with the source's size in powers of two");
   invert->footer(
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"

@@ -2,9 +2,11 @@
 #include <iostream>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "exit_code.h"
+#include "help.h"
 #include "interruption.h"
 #include "nearest_name.h"
 #include "page_output.h"
@@ -34,6 +36,36 @@ bool asks_for_versions(int argc, char** argv) {
   return given == std::set<std::string>{"--json", "--version"};
 }
 
+/// In the order of the help.
+void add_commands(CLI::App& app) {
+  using namespace bespoke::command;
+  const auto group = [&](const char* title, const std::vector<std::string>& names) {
+    for (const std::string& name : names) app.get_subcommand(name)->group(title);
+  };
+  add_fit_command(app, run_at_once);
+  add_pick_command(app);
+  add_anchors_command(app);
+  add_invert_command(app, run_at_once);
+  add_compose_command(app, run_at_once);
+  add_samples_command(app);
+  group("Make a map", {"fit", "pick", "anchors", "invert", "compose", "samples"});
+  add_apply_command(app, run_at_once);
+  group("Use it", {"apply"});
+  add_view_command(app, run_at_once);
+  add_report_command(app, run_at_once);
+  add_info_command(app);
+  add_check_command(app, run_at_once);
+  add_measure_command(app, run_at_once);
+  add_diff_command(app, run_at_once);
+  group("Look at it", {"view", "report", "info", "check", "measure", "diff"});
+  add_batch_command(app);
+  add_grade_command(app);
+  add_catalog_command(app);
+  group("Many maps and products", {"batch", "grade", "catalog"});
+  add_export_command(app, run_at_once);
+  group("Exchange with other programs", {"export"});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -42,32 +74,22 @@ int main(int argc, char** argv) {
     std::cout << versions_json() << '\n';
     return 0;
   }
-  CLI::App app{"Maps the space around one model onto the space around another, and carries products across."};
+  CLI::App app{
+      "Registers one model to another, extends that to a map of the space around them, and carries products "
+      "across."};
   app.name("bespoke");
   app.set_version_flag("--version", BESPOKE_VERSION,
                        "Print the version; with --json those of the libraries inside as well");
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 1 wrong arguments, 2 bad input, 3 the fit did not succeed,\n"
-      "4 file or memory trouble, 130 or 143 interrupted.\n\n"
-      "bespoke SUBCOMMAND --help explains a subcommand with examples.");
-  add_fit_command(app, run_at_once);
-  add_apply_command(app, run_at_once);
-  add_info_command(app);
-  add_check_command(app, run_at_once);
-  add_invert_command(app, run_at_once);
-  add_compose_command(app, run_at_once);
-  add_measure_command(app, run_at_once);
-  add_diff_command(app, run_at_once);
-  add_batch_command(app);
-  add_grade_command(app);
-  add_catalog_command(app);
-  add_export_command(app, run_at_once);
-  add_samples_command(app);
-  add_view_command(app, run_at_once);
-  add_pick_command(app);
-  add_anchors_command(app);
-  add_report_command(app, run_at_once);
+      "Exit codes: 0 done, 1 wrong arguments, 2 bad input, 3 the fit did not succeed, 4 file or memory "
+      "trouble, "
+      "130 or 143 interrupted.\n\n"
+      "`bespoke COMMAND --help` explains a command with examples; `bespoke fit -h` has the options that "
+      "people "
+      "set.");
+  set_grouped_help(app);
+  add_commands(app);
 
   remember_arguments(argc, argv);
   remember_interruptions();

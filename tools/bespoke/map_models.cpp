@@ -5,24 +5,27 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/product/product_io.h"
-#include "planned_run.h"
+#include "commands.h"
 
 namespace bespoke::command {
 
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
-  app.add_option("MAP", arguments.map, "Asset made by `bespoke fit`")->required();
-  app.add_option("--source", arguments.source, "Model that the map leads from")
+  app.add_option("MAP", arguments.map, map_help)->required();
+  app.add_option("--source", arguments.source, "The source that the map was made of")
       ->required()
       ->type_name("MESH");
-  app.add_option("--target", arguments.target, "Model that the map leads to")->required()->type_name("MESH");
+  app.add_option("--target", arguments.target, "The target that the map was made of")
+      ->required()
+      ->type_name("MESH");
   app.add_option("--product", arguments.products,
                  "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
   app.add_option("--confidence", arguments.confidence, "What `fit --confidence-out` wrote")
       ->type_name("FILE");
-  app.add_option("--fit-report", arguments.fit_report, "What `fit --report` wrote: vertices not met, and why")
+  app.add_option("--fit-report", arguments.fit_report,
+                 "What `fit --report` wrote: vertices that the map misses, and why")
       ->type_name("FILE");
-  app.add_flag("--untrusted", arguments.untrusted, "Check the asset in a child process under limits first");
+  app.add_flag("--untrusted", arguments.untrusted, untrusted_help);
 }
 
 std::vector<JobFile> inputs_of(const MapModelArguments& arguments) {

@@ -11,6 +11,7 @@
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
 #include "commands.h"
+#include "help.h"
 #include "map_models.h"
 #include "output_files.h"
 
@@ -90,24 +91,26 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
 
 void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<MeasureArguments>();
-  CLI::App* measure = app.add_subcommand("measure", "Put numbers on a map, and on what it does to products");
-  measure->add_option("MAP", arguments->map, "Asset made by `bespoke fit`")->required();
-  measure->add_option("--source", arguments->source, "Model that the map leads from")
+  CLI::App* measure = app.add_subcommand(
+      "measure", "Measure a map and what it does to products: distances, distortion, clearance, penetration");
+  begin_group(*measure, input_group);
+  measure->add_option("MAP", arguments->map, map_help)->required();
+  measure->add_option("--source", arguments->source, "The source that the map was made of")
       ->required()
       ->type_name("MESH");
-  measure->add_option("--target", arguments->target, "Model that the map leads to")
+  measure->add_option("--target", arguments->target, "The target that the map was made of")
       ->required()
       ->type_name("MESH");
   measure
       ->add_option("--product", arguments->products,
                    "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
-  measure->add_option("-o,--output", arguments->output, "File for what is else printed")->type_name("FILE");
-  measure->add_flag("--json", arguments->json, "Print one JSON object instead of lines");
   measure->add_flag("--exact", arguments->exact,
                     "Measure the exact map that --keep-exact stored, not the grids");
-  measure->add_flag("--untrusted", arguments->untrusted,
-                    "Check the asset in a child process under limits first");
+  measure->add_flag("--untrusted", arguments->untrusted, untrusted_help);
+  begin_group(*measure, output_group);
+  measure->add_option("-o,--output", arguments->output, printed_output_help)->type_name("FILE");
+  measure->add_flag("--json", arguments->json, json_help);
   add_run_options(*measure, arguments->run);
   measure->footer(
       "Examples:\n"

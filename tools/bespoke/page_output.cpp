@@ -28,8 +28,10 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
+bool has_pages() { return !page_template().empty(); }
+
 void require_pages() {
-  if (page_template().empty())
+  if (!has_pages())
     throw FileError(
         "this bespoke was built without its pages, which need npm: install it (tools/setup --pages), configure "
         "and build again; `bespoke report` needs none");

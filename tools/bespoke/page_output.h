@@ -8,6 +8,9 @@ namespace bespoke::command {
 /// Throws FileError, saying what is missing, in a build without pages: before any work is done.
 void require_pages();
 
+/// Whether pages can be written.
+bool has_pages();
+
 /// The page with the scene in it.
 std::string whole_page(const std::string& scene);
 

@@ -8,6 +8,7 @@
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/page/pick_scene.h"
 #include "commands.h"
+#include "help.h"
 #include "output_files.h"
 #include "page_output.h"
 
@@ -42,17 +43,16 @@ void run(const PickArguments& arguments) {
 
 void add_pick_command(CLI::App& app) {
   auto arguments = std::make_shared<PickArguments>();
-  CLI::App* pick =
-      app.add_subcommand("pick", "Write a page to pick anchors on: click on one model, then on the other");
+  CLI::App* pick = app.add_subcommand(
+      "pick", "Write a page on which to pick anchors: click on one model, then on the other");
+  begin_group(*pick, input_group);
   pick->add_option("A", arguments->source, "Source model")->required()->type_name("MESH");
   pick->add_option("B", arguments->target, "Target model")->required()->type_name("MESH");
   pick->add_option("--anchors", arguments->anchors,
-                   "Pairs and curves to begin with, JSON or CSV; patches are kept")
+                   "Anchors and curves to begin with, JSON or CSV; patches are kept")
       ->type_name("FILE");
-  pick->add_option("-o,--output", arguments->output,
-                   "Page to write, .html: one file, which needs no server and no network")
-      ->required()
-      ->type_name("PAGE.html");
+  begin_group(*pick, output_group);
+  pick->add_option("-o,--output", arguments->output, page_help)->required()->type_name("PAGE.html");
   pick->footer(
       "Examples:\n"
       "  bespoke pick woman.obj man.obj -o pick.html\n"

@@ -9,6 +9,7 @@
 #include "bespoke/batch/batch_job.h"
 #include "bespoke/batch/opened_maps.h"
 #include "run_options.h"
+#include "troubleshooting.h"
 
 namespace bespoke::command {
 
@@ -17,13 +18,16 @@ struct RunContext {
   const Progress& progress;
   OpenedMaps& maps;
   JobFindings& findings;
-  /// One sentence; the command line prints it, a batch keeps it in its log.
-  std::function<void(const std::string&)> warn;
+  /// Takes a whole warning: the command line prints it, a batch keeps it in its log.
+  std::function<void(const std::string&)> take_warning;
   /// What a run without an output is for: printed, but not in a batch.
   std::function<void(const std::string&)> print;
   /// What does this run alone, for a person to type.
   std::string command;
   bool is_job = false;  ///< of a batch, which shares maps between its jobs
+
+  /// One sentence that says what the user can do; the entry of the troubleshooting page is added.
+  void warn(const std::string& warning, Entry entry) const { take_warning(with_entry(warning, entry)); }
 };
 
 /// A subcommand's arguments, checked as far as they can be without reading a file.

@@ -76,8 +76,11 @@ void ProductMap::use(const std::string& product, const std::function<void(const 
   try {
     apply(*map_);
   } catch (const OutsidePart&) {
-    context_.warn(product +
-                  ": asks for places of the map away from its own vertices, so all of the map is read");
+    context_.warn(
+        product +
+            ": its faces or parts need places of the map away from its own vertices, so all of the map "
+            "is read; nothing needs to be done, it only takes longer",
+        Entry::whole_map_read);
     open_whole();
     apply(*map_);
   }

@@ -6,6 +6,7 @@
 #include "bespoke/page/map_report.h"
 #include "bespoke/unknown_ending.h"
 #include "commands.h"
+#include "help.h"
 #include "map_models.h"
 #include "output_files.h"
 #include "run_options.h"
@@ -59,7 +60,9 @@ void add_report_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* report =
       app.add_subcommand("report", "Write pictures and measures of a map, to mail or to attach");
+  begin_group(*report, input_group);
   add_map_model_options(*report, arguments->models);
+  begin_group(*report, output_group);
   report
       ->add_option("-o,--output", arguments->output,
                    "Report to write: .md with its pictures beside it as PNG files, or .html with them inside")

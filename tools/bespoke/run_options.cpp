@@ -4,17 +4,20 @@
 #include <tbb/info.h>
 #include <tbb/task_arena.h>
 
+#include "help.h"
 #include "terminal_progress.h"
 
 namespace bespoke::command {
 
 void add_run_options(CLI::App& app, RunOptions& options) {
+  begin_group(app, output_group);
+  app.add_flag("-q,--quiet", options.quiet,
+               "No progress and no summary; results, errors and warnings are still printed");
+  begin_group(app, jobs_group);
   app.add_option("--threads", options.threads,
                  "Threads to use (default: one a core); results do not depend on it")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");
-  app.add_flag("-q,--quiet", options.quiet,
-               "No progress and no summary; what was asked for, errors and warnings are still printed");
 }
 
 void run_with(const RunOptions& options, const std::function<void(const Progress&)>& body) {

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "help.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -30,8 +31,10 @@ void run(const SamplesArguments& arguments, const Progress& progress) {
 
 void add_samples_command(CLI::App& app) {
   auto arguments = std::make_shared<SamplesArguments>();
-  CLI::App* samples = app.add_subcommand("samples", "Build example pairs with anchors and products");
-  samples->add_option("DIR", arguments->directory, "Directory to write to; made if it is not there")
+  CLI::App* samples =
+      app.add_subcommand("samples", "Write example pairs of models, with anchors and products");
+  begin_group(*samples, output_group);
+  samples->add_option("DIR", arguments->directory, "Directory to write to; it is made if it does not exist")
       ->required();
   std::string known;
   for (const std::string& name : sample_names()) known += (known.empty() ? "" : ", ") + name;

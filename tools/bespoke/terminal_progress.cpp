@@ -59,12 +59,14 @@ void TerminalProgress::show(std::string_view stage, std::size_t done, std::size_
   }
   // Stages take turns (the bake certifies between its passes), so only the first start of each is news.
   const bool first = announced_.insert(stage_).second;
-  const bool last = terminal_ && total > 0 && done >= total;
-  const Clock::duration interval = terminal_ ? Clock::duration(bar_interval) : Clock::duration(line_interval);
-  if (!first && !last && now - last_shown_ < interval) return;
+  if (!terminal_) {
+    if (first) print_line();
+    return;
+  }
+  const bool last = total > 0 && done >= total;
+  if (!first && !last && now - last_shown_ < bar_interval) return;
   last_shown_ = now;
-  const double seconds = std::chrono::duration<double>(now - stage_start_).count();
-  terminal_ ? draw_bar(done, total, seconds) : print_line(done, total, seconds);
+  draw_bar(done, total, std::chrono::duration<double>(now - stage_start_).count());
 }
 
 void TerminalProgress::draw_bar(std::size_t done, std::size_t total, double seconds) {
@@ -82,12 +84,9 @@ void TerminalProgress::draw_bar(std::size_t done, std::size_t total, double seco
   bar_open_ = true;
 }
 
-void TerminalProgress::print_line(std::size_t done, std::size_t total, double seconds) {
-  if (total > 0)
-    std::fprintf(stderr, "%s: %d %%%s\n", stage_.c_str(), percent(done, total),
-                 time_left(done, total, seconds).c_str());
-  else
-    std::fprintf(stderr, "%s: %s\n", stage_.c_str(), duration(seconds).c_str());
+void TerminalProgress::print_line() {
+  const double seconds = std::chrono::duration<double>(stage_start_ - start_).count();
+  std::fprintf(stderr, "%s: begins after %s\n", stage_.c_str(), duration(seconds).c_str());
 }
 
 }  // namespace bespoke::command

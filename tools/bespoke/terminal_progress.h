@@ -8,11 +8,11 @@
 
 namespace bespoke::command {
 
-/// Between lines of progress where there is no terminal.
+/// Between lines of a batch's progress where there is no terminal.
 inline constexpr std::chrono::seconds line_interval{10};
 
 /// Shows on standard error where a long run is: a bar with the time left when that is a terminal,
-/// else one line when a stage first starts and one every ten seconds. Also what makes an interruption reach
+/// else one line a stage, when it first begins. Also what makes an interruption reach
 /// the library. One thread.
 class TerminalProgress {
  public:
@@ -29,13 +29,14 @@ class TerminalProgress {
 
   void show(std::string_view stage, std::size_t done, std::size_t total);
   void draw_bar(std::size_t done, std::size_t total, double seconds);
-  void print_line(std::size_t done, std::size_t total, double seconds);
+  void print_line();
 
   bool quiet_;
   bool terminal_;
   bool bar_open_ = false;
   std::string stage_;
   std::set<std::string> announced_;
+  Clock::time_point start_ = Clock::now();
   Clock::time_point stage_start_;
   Clock::time_point last_shown_;
 };

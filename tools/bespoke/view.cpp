@@ -8,6 +8,7 @@
 #include "bespoke/page/view_scene.h"
 #include "bespoke/product/mesh_io.h"
 #include "commands.h"
+#include "help.h"
 #include "map_models.h"
 #include "output_files.h"
 #include "page_output.h"
@@ -43,15 +44,14 @@ void run(const ViewArguments& arguments, const RunContext& context) {
 void add_view_command(CLI::App& app, const PlanHandler& handle_plan) {
   auto arguments = std::make_shared<ViewArguments>();
   CLI::App* view =
-      app.add_subcommand("view", "Write a page that shows a map, to judge it by eye in a browser");
+      app.add_subcommand("view", "Write a page that shows a map in a browser, to judge it by eye");
+  begin_group(*view, input_group);
   add_map_model_options(*view, arguments->models);
-  view->add_option("-o,--output", arguments->output,
-                   "Page to write, .html: one file, which needs no server and no network")
-      ->required()
-      ->type_name("PAGE.html");
+  begin_group(*view, output_group);
+  view->add_option("-o,--output", arguments->output, page_help)->required()->type_name("PAGE.html");
   view->add_option(
           "--max-triangles", arguments->max_faces,
-          "Triangles of all meshes together; larger ones are thinned for display, and the page says so")
+          "Triangles of all meshes together; larger meshes are decimated for display, and the page says so")
       ->check(CLI::Range(std::size_t{1000}, std::size_t{5000000}))
       ->capture_default_str();
   add_run_options(*view, arguments->run);

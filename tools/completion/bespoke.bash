@@ -4,7 +4,7 @@ _bespoke() {
   local -a called=("${COMP_WORDS[0]}")
   help=$("${called[@]}" --help 2>/dev/null)
   for ((i = 1; i < COMP_CWORD; i++)); do
-    names=$(sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1/p' <<<"$help")
+    names=$(sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p' <<<"$help")
     grep -qx -- "${COMP_WORDS[i]}" <<<"$names" || break
     called+=("${COMP_WORDS[i]}")
     help=$("${called[@]}" --help 2>/dev/null)
@@ -12,7 +12,7 @@ _bespoke() {
   if [[ $word == -* ]]; then
     names=$(grep -oE '^  (-[A-Za-z],)?--[a-z-]+' <<<"$help" | grep -oE -- '--[a-z-]+')
   elif [ "$i" -eq "$COMP_CWORD" ]; then
-    names=$(sed -n '/^Subcommands:/,/^$/s/^  \([a-z][a-z]*\) .*/\1/p' <<<"$help")
+    names=$(sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p' <<<"$help")
   else
     names=
   fi

@@ -12,11 +12,7 @@ function __bespoke_names
 end
 
 function __bespoke_subcommands
-    set -l listed no
-    for line in (string split \n -- $argv[1])
-        string match -q 'Subcommands:' -- $line; and set listed yes
-        test $listed = yes; and string match -rg '^  ([a-z]+) ' -- $line
-    end
+    string match -rg '^  ([a-z]+)  ' (string split \n -- $argv[1])
 end
 
 complete -c bespoke -a '(__bespoke_names)'

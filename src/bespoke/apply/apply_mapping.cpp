@@ -59,7 +59,8 @@ void follow(const ElasticChain& chain, const RigidTransform& target_from_source,
 
 std::string to_string(const ApplySummary& summary) {
   char text[200];
-  std::snprintf(text, sizeof text, "%zu points, %zu in the band, %zu by the affine part alone, %.3f s",
+  std::snprintf(text, sizeof text,
+                "%zu points: %zu within reach of the source, %zu beyond it and moved with the whole; %.3f s",
                 summary.points, summary.in_band, summary.affine_only, summary.seconds);
   return text;
 }

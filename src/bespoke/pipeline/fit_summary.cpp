@@ -50,9 +50,8 @@ std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
 
 std::string to_string(const CounterpartSummary& summary) {
   return std::to_string(summary.displaced) + " of " + std::to_string(summary.found) +
-         " places far from all anchors lay elsewhere than distances along the surfaces put them; " +
-         (summary.taken ? "laid by these too"
-                        : "but laid by these too the source explains the target no better");
+         " places far from all anchors were registered elsewhere than geodesic distances put them; " +
+         (summary.taken ? "these now count as well" : "with these as well the target is explained no better");
 }
 
 namespace {

@@ -32,7 +32,7 @@ UncoveredArea uncovered_area(const TriangleMesh& target, const TriangleMesh& reg
 std::string to_string(const UncoveredArea& uncovered) {
   char text[200];
   std::snprintf(text, sizeof text,
-                "%.1f %% of the target is bare, at most %.4g from the source, at (%.4g, %.4g, %.4g)",
+                "%.1f %% of the target is uncovered, at most %.4g from the source, at (%.4g, %.4g, %.4g)",
                 100 * uncovered.share, uncovered.distance, uncovered.farthest.x(), uncovered.farthest.y(),
                 uncovered.farthest.z());
   return text;

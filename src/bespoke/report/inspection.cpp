@@ -50,20 +50,20 @@ Json embedded(const std::string& json) { return json.empty() ? Json() : Json::pa
 std::string certificate_text(const Certificate& certificate, std::size_t steps) {
   std::ostringstream text;
   if (certificate.is_bijection() && steps > 1) {
-    text << "proved to be a bijection of all of space: each of its " << steps
+    text << "proved to be one-to-one (a bijection) in all of space: each of its " << steps
          << " steps is one, continuous, trilinear in every finest cell with positive det of its gradient in "
             "all "
          << certificate.certified << " of them, and affine outside; det of the whole at least "
          << number(certificate.min_determinant);
   } else if (certificate.is_bijection()) {
-    text
-        << "proved to be a bijection of all of space: continuous, trilinear in every finest cell with det of "
-           "its gradient at least "
-        << number(certificate.min_determinant) << " in all " << certificate.certified
-        << " of them, and affine with det " << number(certificate.affine_determinant)
-        << " outside; such a map is a local homeomorphism of degree 1";
+    text << "proved to be one-to-one (a bijection) in all of space: continuous, trilinear in every finest "
+            "cell with det of "
+            "its gradient at least "
+         << number(certificate.min_determinant) << " in all " << certificate.certified
+         << " of them, and affine with det " << number(certificate.affine_determinant)
+         << " outside; such a map is a local homeomorphism of degree 1";
   } else {
-    text << "not proved to be a bijection: " << certificate.certified << " cells certified, "
+    text << "NOT PROVED to be one-to-one: " << certificate.certified << " cells certified, "
          << certificate.undecided << " undecided, " << certificate.folded
          << " folded, det of the affine part " << number(certificate.affine_determinant);
     if (!certificate.places.empty())
@@ -124,10 +124,16 @@ Json steps_json(const Asset& asset) {
 std::string inspection_text(const Asset& asset) {
   const AssetRecord& record = asset.record;
   std::ostringstream text;
+  const Certificate certificate = whole_certificate(asset);
+  const std::string proof = "certificate  " + certificate_text(certificate, asset.steps.size()) + "\n";
+  if (!certificate.is_bijection()) text << proof;  // what matters most comes first
   text << "map          maps points a to b: of the source's space to the target's, unit " << record.unit
        << '\n'
-       << "method       surface fitting " << record.surface_fit_method << ", elastic "
-       << record.elastic_method << ", effective distance " << number(record.lambda) << '\n'
+       << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
+       << number(record.tolerance) << (record.bake_error.max <= record.tolerance ? "" : ", MISSED") << '\n';
+  if (certificate.is_bijection()) text << proof;
+  text << "method       registration " << record.surface_fit_method << ", elastic " << record.elastic_method
+       << ", effective distance " << number(record.lambda) << '\n'
        << "rotation     " << rows(asset.target_from_source.rotation) << ", path "
        << name_of(rotation_paths, asset.path) << '\n'
        << "translation  " << tuple(asset.target_from_source.translation) << '\n';
@@ -136,9 +142,7 @@ std::string inspection_text(const Asset& asset) {
     if (asset.steps.size() > 1) text << "step " << k << '\n';
     text << step_text(asset.steps[k]);
   }
-  text << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
-       << number(record.tolerance) << ", " << name_of(asset.steps.front().pyramid.precision) << " precision\n"
-       << "certificate  " << certificate_text(whole_certificate(asset), asset.steps.size()) << '\n'
+  text << "precision    " << name_of(asset.steps.front().pyramid.precision) << '\n'
        << "source       " << model(record.source) << '\n'
        << "target       " << model(record.target) << '\n'
        << "exact map    "

@@ -45,6 +45,21 @@ std::string penetration_text(const Penetration& penetration) {
          " % of the area, deepest " + figure(penetration.deepest);
 }
 
+/// What an engineer asks first: how near the surfaces are, and whether anything folds.
+std::string headlines(const MappingQuality& quality, const std::string& unit) {
+  const Statistics& near = quality.surfaces.a_to_b;
+  std::string text = "half of the mapped source lies within " + figure(near.median) + " " + unit +
+                     " of the target, 95 % within " + figure(near.p95) + ", all within " + figure(near.max) +
+                     "\n";
+  const std::size_t folds = quality.distortion.flips, faces = quality.flipped_faces;
+  if (folds == 0 && faces == 0)
+    return text + "no face is flipped, and none of " + std::to_string(quality.distortion.samples) +
+           " sampled points is in a fold\n";
+  return text + "FOLDS: " + std::to_string(faces) + " faces are flipped, and " + std::to_string(folds) +
+         " of " + std::to_string(quality.distortion.samples) +
+         " sampled points are in a fold; `bespoke check` lists the places\n";
+}
+
 std::string product_text(const std::string& name, const ProductQuality& product) {
   const Statistics& change = product.clearance_change;
   std::string text = name + ": " + std::to_string(product.vertices) + " vertices, " +
@@ -74,19 +89,19 @@ std::string quality_text(const MappingQuality& quality, const std::vector<std::s
                          const std::string& unit) {
   assert(names.size() == quality.products.size());
   const MapDistortion& map = quality.distortion;
-  std::string text = "lengths in mesh units (" + unit + ")\n";
-  text += "anchor residuals:    " + to_string(quality.anchor_residuals) + "\n";
-  text += "source to target:    " + to_string(quality.surfaces.a_to_b) + "\n";
-  text += "target to source:    " + to_string(quality.surfaces.b_to_a) + "\n";
-  text += "Hausdorff distance:  " + figure(quality.surfaces.hausdorff) + "\n";
-  text += "conformal s1/s3:     " + to_string(map.conformal) + "\n";
-  text += "area s1 s2:          " + to_string(map.area) + "\n";
-  text += "volume det:          " + to_string(map.volume) + "\n";
+  std::string text = headlines(quality, unit == "unknown" ? "mesh units" : unit);
+  text += "lengths in mesh units (" + unit + ")\n";
+  text += "anchor residuals:            " + to_string(quality.anchor_residuals) + "\n";
+  text += "mapped source to target:     " + to_string(quality.surfaces.a_to_b) + "\n";
+  text += "target to mapped source:     " + to_string(quality.surfaces.b_to_a) + "\n";
+  text += "Hausdorff distance:          " + figure(quality.surfaces.hausdorff) + "\n";
+  text += "conformal distortion s1/s3:  " + to_string(map.conformal) + "\n";
+  text += "area distortion s1 s2:       " + to_string(map.area) + "\n";
+  text += "volume change det:           " + to_string(map.volume) + "\n";
   if (map.samples == 0) text += "the map is affine: these are the values of its linear part\n";
-  text += "flips: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
-          " points of the band, " + std::to_string(quality.flipped_faces) + " of " +
-          std::to_string(quality.source_faces) + " source faces; least det " + figure(map.min_determinant) +
-          "\n";
+  text += "folds: " + std::to_string(map.flips) + " of " + std::to_string(map.samples) +
+          " points of the band; flipped faces: " + std::to_string(quality.flipped_faces) + " of " +
+          std::to_string(quality.source_faces) + "; least determinant " + figure(map.min_determinant) + "\n";
   for (std::size_t i = 0; i < names.size(); ++i) text += product_text(names[i], quality.products[i]);
   return text;
 }

@@ -1,0 +1,167 @@
+#include "bespoke/report/fit_text.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <vector>
+
+#include "bespoke/mesh/disjoint_sets.h"
+#include "bespoke/number_format.h"
+
+namespace bespoke {
+namespace {
+
+/// Vertices that are joined by edges between them.
+struct VertexCluster {
+  std::size_t count = 0;
+  Vector3 center = Vector3::Zero();  ///< mean of the vertices, mesh units
+};
+
+/// Of the marked vertices, the largest first.
+std::vector<VertexCluster> vertex_clusters(const TriangleMesh& mesh, const std::vector<char>& is_marked) {
+  DisjointSets sets(static_cast<int>(is_marked.size()));
+  for (const auto& face : mesh.faces.colwise())
+    for (int corner = 0; corner < 3; ++corner) {
+      const int a = face[corner], b = face[(corner + 1) % 3];
+      if (is_marked[static_cast<std::size_t>(a)] && is_marked[static_cast<std::size_t>(b)]) sets.join(a, b);
+    }
+  std::map<int, VertexCluster> by_least;
+  for (std::size_t i = 0; i < is_marked.size(); ++i) {
+    if (!is_marked[i]) continue;
+    VertexCluster& cluster = by_least[sets.least(static_cast<int>(i))];
+    ++cluster.count;
+    cluster.center += mesh.vertices.col(static_cast<Eigen::Index>(i));
+  }
+  std::vector<VertexCluster> clusters;
+  for (auto& [least, cluster] : by_least) {
+    cluster.center /= static_cast<double>(cluster.count);
+    clusters.push_back(cluster);
+  }
+  std::stable_sort(clusters.begin(), clusters.end(),
+                   [](const VertexCluster& a, const VertexCluster& b) { return a.count > b.count; });
+  return clusters;
+}
+
+/// Lengths with the name of their unit.
+class Lengths {
+ public:
+  explicit Lengths(const std::string& unit)
+      : unit_(unit.empty() || unit == "unknown" ? "mesh units" : unit) {}
+  std::string operator()(double length) const { return format_number(length, 3) + " " + unit_; }
+
+ private:
+  std::string unit_;
+};
+
+std::string counted(std::size_t count, const std::string& one) {
+  return std::to_string(count) + " " + one + (count == 1 ? "" : "s");
+}
+
+std::string vertices_of(const TriangleMesh& mesh) {
+  return " (" + std::to_string(mesh.vertices.cols()) + " vertices)";
+}
+
+std::string registration(const FitOutcome& outcome) {
+  const Anchors& anchors = outcome.input.anchors;
+  std::string text = outcome.source + vertices_of(outcome.input.source) + " to " + outcome.target +
+                     vertices_of(outcome.input.target);
+  if (!outcome.fitted.empty()) return text + ", as given by " + outcome.fitted;
+  if (anchors.pairs.empty() && anchors.curves.empty()) return text + ", by their surfaces, without anchors";
+  text += ", by " + counted(anchors.pairs.size(), "anchor");
+  if (!anchors.curves.empty()) text += ", " + counted(anchors.curves.size(), "curve");
+  if (!anchors.patches.empty())
+    text += ", " + (anchors.patches.size() == 1 ? std::string("1 patch")
+                                                : std::to_string(anchors.patches.size()) + " patches");
+  return text;
+}
+
+std::string distances(const Statistics& found, const Lengths& lengths) {
+  return "half of the registered source lies within " + lengths(found.median) +
+         " of the target, 95 % within " + lengths(found.p95) + ", all within " + lengths(found.max);
+}
+
+std::string counterparts(const TriangleMesh& source, const std::vector<double>& confidence) {
+  std::vector<char> lacks(confidence.size());
+  std::transform(confidence.begin(), confidence.end(), lacks.begin(),
+                 [](double value) { return !(value > 0); });
+  const std::vector<VertexCluster> clusters = vertex_clusters(source, lacks);
+  if (clusters.empty()) return "every vertex has one on the target";
+  const auto count = static_cast<std::size_t>(std::count(lacks.begin(), lacks.end(), 1));
+  std::string text = std::to_string(count) + " of " + std::to_string(lacks.size()) +
+                     " vertices have none and follow their surroundings";
+  constexpr std::size_t max_named = 3;
+  for (std::size_t i = 0; i < std::min(max_named, clusters.size()); ++i)
+    text += (i == 0 ? ": " : ", ") + std::to_string(clusters[i].count) + " around " +
+            format_number(clusters[i].center, 3);
+  if (clusters.size() > max_named) text += " and at " + counted(clusters.size() - max_named, "other place");
+  return text;
+}
+
+std::string anchor_text(const FitOutcome& outcome, const Lengths& lengths) {
+  const FittedMapping& fit = outcome.made.fit;
+  const Statistics& found = fit.summary.elastic.anchor_residuals;
+  std::string text = "half are met within " + lengths(found.median) + ", all within " + lengths(found.max);
+  const auto worst = std::max_element(fit.anchor_residual.begin(), fit.anchor_residual.end());
+  if (worst != fit.anchor_residual.end()) {
+    const auto index = static_cast<std::size_t>(worst - fit.anchor_residual.begin());
+    const Anchors& anchors = outcome.input.anchors;
+    if (index < anchors.pairs.size() && !anchors.pairs[index].name.empty())
+      text += " (\"" + anchors.pairs[index].name + "\")";
+  }
+  const std::string accuracy = to_string(fit.summary.accuracy, outcome.input.anchors);
+  return text + (accuracy.empty() ? "" : "; " + accuracy);
+}
+
+std::string unproved(const Certificate& certificate) {
+  std::string text = "the map is not one-to-one everywhere, or that could not be shown: ";
+  text += counted(certificate.folded, "cell") + " fold";
+  if (certificate.undecided > 0) text += ", " + std::to_string(certificate.undecided) + " are undecided";
+  if (!(certificate.affine_determinant > 0)) text += ", the affine part turns space inside out";
+  if (!certificate.places.empty())
+    text += ", the first at " + format_number(certificate.places.front().center, 3);
+  return text;
+}
+
+std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
+  const BakeSummary& bake = *outcome.made.fit.summary.bake;
+  return "the stored map is within " + lengths(bake.error.max) + " of the exact one; tolerance " +
+         lengths(outcome.made.asset.record.tolerance) + (bake.tolerance_met ? "" : " MISSED") +
+         "; vertices are taken to their places within " +
+         lengths(outcome.made.fit.summary.elastic.vertex_residuals.max);
+}
+
+std::string file_text(const FitOutcome& outcome) {
+  constexpr double megabyte = 1e6;
+  char text[80];
+  std::snprintf(text, sizeof text, ", %.1f MB, in %.1f s", static_cast<double>(outcome.bytes) / megabyte,
+                outcome.seconds);
+  return outcome.map + text;
+}
+
+}  // namespace
+
+std::string fit_text(const FitOutcome& outcome) {
+  std::string lines;
+  const auto add = [&](std::string name, const std::string& text) {
+    name.resize(13, ' ');
+    lines += name + text + '\n';
+  };
+  const FitSummary& summary = outcome.made.fit.summary;
+  const Lengths lengths(outcome.made.asset.record.unit);
+  const Certificate certificate = whole_certificate(outcome.made.asset);
+  if (!certificate.is_bijection()) add("NOT PROVED", unproved(certificate));
+  add("registered", registration(outcome));
+  if (summary.surface) {
+    add("surfaces", distances(summary.surface->after, lengths));
+    add("counterparts", counterparts(outcome.input.source, outcome.made.fit.confidence));
+  }
+  if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));
+  if (!outcome.input.anchors.pairs.empty()) add("anchors", anchor_text(outcome, lengths));
+  if (certificate.is_bijection()) add("proved", "the map is one-to-one in all of space: it folds nowhere");
+  if (summary.bake) add("error", bake_text(outcome, lengths));
+  add("written", file_text(outcome));
+  add("next", outcome.next);
+  return lines;
+}
+
+}  // namespace bespoke

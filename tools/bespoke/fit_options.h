@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "bespoke/pipeline/map_request.h"
+#include "run_options.h"
+
+namespace bespoke::command {
+
+struct FitArguments : MapRequest {
+  std::string source;
+  std::string target;
+  std::string anchors;
+  std::string output;
+  std::string fitted;
+  std::string fitted_out;
+  std::string confidence_out;
+  std::string report;
+  std::string html;
+  bool require_certified = false;
+  bool add_corners = false;
+  bool verbose = false;
+  RunOptions run;
+};
+
+/// All arguments and options of `fit`, in the groups of its help.
+void add_fit_options(CLI::App& fit, FitArguments& arguments);
+
+}  // namespace bespoke::command
