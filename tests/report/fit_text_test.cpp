@@ -79,8 +79,8 @@ TEST_F(FitText, SaysWhereVerticesHaveNoCounterpart) {
 TEST_F(FitText, HasAtMostTenLines) {
   made_.asset.steps.front().certificate.folded = 1;
   made_.fit.summary.bake->tolerance_met = false;
-  made_.fit.summary.bare.emplace();
-  made_.fit.summary.bare->share = 0.5;
+  made_.fit.summary.uncovered.emplace();
+  made_.fit.summary.uncovered->share = 0.5;
   made_.fit.confidence.assign(made_.fit.confidence.size(), 0);
   const std::string lines = text();
   EXPECT_LE(std::count(lines.begin(), lines.end(), '\n'), 10);

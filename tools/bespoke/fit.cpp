@@ -136,6 +136,13 @@ void write_pages(const HtmlPages& pages, const FitArguments& arguments, const Ma
   pages.write(scene, *context.maps.open(arguments.output, MapForm::grids, {}));
 }
 
+/// Of a regular file, bytes.
+std::optional<std::uintmax_t> size_of_file(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? std::nullopt : std::optional(bytes);
+}
+
 /// Lists what is wrong with a map that is not proved, and shows any other.
 std::string next_command(const FitArguments& arguments, const MadeMap& made) {
   if (!whole_certificate(made.asset).is_bijection()) return command_text({"check", arguments.output});
@@ -209,11 +216,10 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (arguments.verbose) print_stages(made, anchors);
   if (arguments.verbose) std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
   if (!arguments.run.quiet && !arguments.verbose)
-    std::fputs(
-        fit_text({input, made, arguments.source, arguments.target, arguments.output, arguments.fitted,
-                  std::filesystem::file_size(arguments.output), seconds, next_command(arguments, made)})
-            .c_str(),
-        stdout);
+    std::fputs(fit_text({input, made, arguments.source, arguments.target, arguments.output, arguments.fitted,
+                         size_of_file(arguments.output), seconds, next_command(arguments, made)})
+                   .c_str(),
+               stdout);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct UncoveredArea {
 /// for meshes that are not valid.
 UncoveredArea uncovered_area(const TriangleMesh& target, const TriangleMesh& registered, double reach);
 
-/// "2.9 % of the target is uncovered, up to 9.3 from the source, at (1, 2, 3)"
+/// "2.9 % of the target is uncovered, at most 9.3 from the source, at (1, 2, 3)"
 std::string to_string(const UncoveredArea& uncovered);
 
 }  // namespace bespoke

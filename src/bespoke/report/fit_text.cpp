@@ -132,10 +132,11 @@ std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
 
 std::string file_text(const FitOutcome& outcome) {
   constexpr double megabyte = 1e6;
-  char text[80];
-  std::snprintf(text, sizeof text, ", %.1f MB, in %.1f s", static_cast<double>(outcome.bytes) / megabyte,
-                outcome.seconds);
-  return outcome.map + text;
+  char size[40] = "", seconds[40];
+  if (outcome.bytes)
+    std::snprintf(size, sizeof size, ", %.1f MB", static_cast<double>(*outcome.bytes) / megabyte);
+  std::snprintf(seconds, sizeof seconds, ", in %.1f s", outcome.seconds);
+  return outcome.map + size + seconds;
 }
 
 }  // namespace

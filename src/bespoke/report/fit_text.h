@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "bespoke/pipeline/make_map.h"
@@ -12,8 +13,8 @@ struct FitOutcome {
   const MakeMapInput& input;
   const MadeMap& made;
   std::string source, target, map;
-  std::string fitted;        ///< of a source that was registered already; else empty
-  std::uintmax_t bytes = 0;  ///< of the map's file
+  std::string fitted;                   ///< of a source that was registered already; else empty
+  std::optional<std::uintmax_t> bytes;  ///< of the map's file; empty where that is no regular one
   double seconds = 0;
   std::string next;  ///< the command to type next
 };
