@@ -36,7 +36,7 @@ class FitText : public testing::Test {
     return fit_text({input, made_, "a.obj", "b.obj", "ab.vdb", "", 2'500'000, 3.25, "bespoke view ab.vdb"});
   }
 
-  TriangleMesh mesh_ = test::shapes::icosphere(2);
+  TriangleMesh mesh_ = shapes::icosphere(2);
   Anchors anchors_;
   MadeMap made_;
 };
