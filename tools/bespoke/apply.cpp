@@ -336,7 +336,7 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
   add_name_option(
       *apply, "--path", arguments->path, rotation_paths,
       "How the motion goes with t: the rotation on its geodesic or by its Euler angles and the "
-      "elastic part straight, or the flow of a map with several steps (default: as stored in the asset)");
+      "elastic part straight, or the flow of a map with several steps (default: as stored in the map)");
   add_name_option(*apply, "--order", arguments->order, mapping_orders,
                   "In which order the rigid and the elastic part act; all but the first are for comparison "
                   "(default: elastic-first)");

@@ -121,7 +121,7 @@ void add_registration_options(CLI::App& fit, FitArguments& arguments) {
       ->type_name("FACTOR");
   add_length_option(
       fit, "--contact-offset", arguments.contact_offset,
-      target_length("Contact offset: parts of the target that touch are separated by it; 0 leaves them",
+      target_length("Contact offset: touching parts of the target are separated by it (0: they are not)",
                     default_contact_offset),
       LengthRange::not_negative);
 }

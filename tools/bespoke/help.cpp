@@ -59,9 +59,6 @@ std::vector<const CLI::Option*> group_members(const CLI::App& app, const std::st
 class GroupedHelp : public CLI::Formatter {
  public:
   explicit GroupedHelp(std::set<std::string> frequent = {}) : frequent_(std::move(frequent)) {
-    label("REQUIRED", "(required)");
-    label("Excludes", "not with");
-    label("Needs", "only with");
     label("SUBCOMMAND", "COMMAND");
     label("SUBCOMMANDS", "COMMAND");
   }
@@ -99,10 +96,31 @@ class GroupedHelp : public CLI::Formatter {
   /// Usage has the arguments that are required; of their kinds there is nothing to say.
   std::string make_option_opts(const CLI::Option* option) const override {
     if (option->get_positional()) return option->get_expected_max() > 1 ? " ..." : "";
-    return Formatter::make_option_opts(option);
+    std::string text;
+    if (option->get_type_size() != 0) {
+      const std::string type = kind_of(option->get_type_name());
+      text += (type.empty() ? "" : " " + type);
+      if (!option->get_default_str().empty()) text += "=" + option->get_default_str();
+      if (option->get_expected_max() == CLI::detail::expected_max_vector_size) text += " ...";
+      if (option->get_required()) text += " (required)";
+    }
+    for (const CLI::Option* other : option->get_needs()) text += " (only with " + other->get_name() + ")";
+    for (const CLI::Option* other : option->get_excludes()) text += " (not with " + other->get_name() + ")";
+    return text;
+  }
+
+  std::string make_option_usage(const CLI::Option* option) const override {
+    const std::string name = option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
+    return option->get_required() ? name : "[" + name + "]";
   }
 
  private:
+  /// "N" of "N:INT in [1 - 100]": a value out of range is told so.
+  static std::string kind_of(const std::string& type) {
+    const std::size_t colon = type.find(':');
+    return colon == std::string::npos || type.substr(colon, 2) == ":{" ? type : type.substr(0, colon);
+  }
+
   std::string group_help(const CLI::App& app, const std::string& group, bool is_short) const {
     std::string rows;
     for (const CLI::Option* option : group_members(app, group))
