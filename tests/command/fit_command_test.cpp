@@ -479,7 +479,7 @@ TEST_F(FitCommand, WarnsWhereDistancesAlongTheSurfacesToldPartsFarFromAllAnchors
         anchors["pairs"].push_back({{"a", {a[0], a[1], a[2]}}, {"b", {b[0], b[1], b[2]}}});
       }
     write_text(pair_.file("anchors.json"), anchors.dump());
-    return pair_.fit("map.vdb", {"--elastic", "pffd-smooth", "--voxel-size", "20%"});
+    return pair_.fit("map.vdb", {"--verbose", "--elastic", "pffd-smooth", "--voxel-size", "20%"});
   };
   const ProgramResult few = fit_by({0, 15, 30});
   EXPECT_EQ(few.exit_code, 0) << few.err;
