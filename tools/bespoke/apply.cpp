@@ -74,7 +74,7 @@ bool keeps_kind(const fs::path& product, const fs::path& output) {
   return takes_any_kind(output) || lower_ending(product) == lower_ending(output);
 }
 
-/// Whether the file is carried as it is, with its edges split where that is asked for.
+/// Whether the file is carried as it is, with its edges split where that is required.
 bool is_carried(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
   return keeps_kind(product, output) && (!arguments.refine || can_split_product(product));
 }
@@ -177,7 +177,7 @@ MapForm map_form(const ApplyArguments& arguments) {
   return arguments.exact ? MapForm::exact : MapForm::grids;
 }
 
-/// The map's own path, but for orders that do not know it.
+/// The map's own path, except for orders that do not know it.
 MotionOptions motion_options(const ApplyArguments& arguments, const OpenedMap& map) {
   const MappingOrder order = arguments.order.value_or(MappingOrder::elastic_first);
   RotationPath path = arguments.path.value_or(map.path);

@@ -10,7 +10,7 @@
 
 namespace bespoke::command {
 
-/// Who asks for the jobs, and how their progress is shown.
+/// Who starts the jobs, and how their progress is shown.
 struct BatchShow {
   std::string name;  ///< of the manifest, for messages
   BatchStyle style = BatchStyle::line;

@@ -82,7 +82,7 @@ void warn_of_uncovered_target(const RunContext& context, const UncoveredArea& un
                  Entry::target_uncovered);
 }
 
-/// A certified map may still not be the one that was asked for.
+/// A certified map may still not be the one that was wanted.
 void warn_of_missed_vertices(const RunContext& context, double diagonal, std::vector<UnmetVertex> far) {
   std::erase_if(far, [&](const UnmetVertex& vertex) { return !(vertex.residual > visible * diagonal); });
   if (far.empty()) return;
@@ -106,8 +106,9 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
 void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate) {
   if (certificate.is_bijection()) return;
   context.warn("the map is not proved to be one-to-one: " + to_string(certificate) +
-               "; products there may be turned inside out (bespoke check lists the places, fit "
-               "--require-certified refuses such maps)");
+                   "; products there may be turned inside out (bespoke check lists the places, fit "
+                   "--require-certified refuses such maps)",
+               Entry::not_proved);
 }
 
 void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
@@ -117,7 +118,8 @@ void warn_of_misses(const RunContext& context, const MakeMapInput& input, const 
   warn_of_missing_certificate(context, whole_certificate(made.asset));
   if (summary.parts)
     context.warn(to_string(*summary.parts) +
-                 "; if the target has such a part, give an anchor on it, else leave it out of the source");
+                     "; if the target has such a part, give an anchor on it, else leave it out of the source",
+                 Entry::parts_without_counterpart);
   if (summary.surface) warn_of_uncovered_source(context, size, *summary.surface);
   if (summary.counterparts) warn_of_inferred_parts(context, *summary.counterparts);
   if (summary.uncovered) warn_of_uncovered_target(context, *summary.uncovered);

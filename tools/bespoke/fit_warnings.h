@@ -15,7 +15,7 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
 /// Where a map may fold: everything else that is said of it holds only where it does not.
 void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate);
 
-/// Where a map is not what was asked for: first of all that it is not certified, then a source that is not on
+/// Where a map is not as required: first of all that it is not certified, then a source that is not on
 /// the target, vertices that the map misses, a bake that misses its tolerance.
 void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
                     const MadeMap& made);

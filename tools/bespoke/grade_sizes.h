@@ -8,7 +8,7 @@
 
 namespace bespoke::command {
 
-/// What `grade` is asked for besides its sizes.
+/// What `grade` is given besides its sizes.
 struct GradeRequest {
   std::string source;
   std::vector<std::string> products;

@@ -25,7 +25,7 @@ void require_same(const Certificate& stored, const Certificate& found, const std
 
 void run(const InfoArguments& arguments) {
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  // What a file claims is worth what its author is.
+  // What a file states is worth what its author is.
   if (arguments.untrusted)
     for (const MapStep& step : asset.steps)
       require_same(step.certificate, certify(step.pyramid, step.affine), arguments.map);

@@ -84,7 +84,7 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
   for (std::size_t i = 0; i < products.size(); ++i)
     if (const NewPenetration& new_penetration = quality.products[i].new_penetration;
         new_penetration.is_notable())
-      context.warn(products[i].name + ": " + to_string(new_penetration));
+      context.warn(products[i].name + ": " + to_string(new_penetration), Entry::product_inside_the_target);
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ bool has_pages() { return !page_template().empty(); }
 void require_pages() {
   if (!has_pages())
     throw FileError(
-        "this bespoke was built without its pages, which need npm: install it (tools/setup --pages), configure "
+        "this bespoke was built without its pages, which need npm: install it (tools/setup --pages), "
+        "configure "
         "and build again; `bespoke report` needs none");
 }
 

@@ -51,7 +51,7 @@ std::vector<JobFile> named_files(std::vector<JobFile> files);
 /// require_safe_outputs of what is planned.
 void require_safe_outputs(const std::vector<JobFile>& inputs, const std::vector<JobFile>& outputs);
 
-/// Writes what a subcommand was asked for to the file, or prints it where there is none.
+/// Writes the result of a subcommand to the file, or prints it where there is none.
 void write_answer(const std::string& output, const std::string& text, const RunContext& context);
 
 }  // namespace bespoke::command

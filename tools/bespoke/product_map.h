@@ -16,7 +16,7 @@ namespace bespoke::command {
 struct ProductMapOptions {
   MapForm form = MapForm::grids;
   bool untrusted = false;
-  /// Whether points are asked for where the product has none of its own, between 0 and 1.
+  /// Whether points are queried where the product has none of its own, between 0 and 1.
   bool moves_points = false;
 };
 
@@ -28,7 +28,7 @@ class ProductMap {
   ProductMap(std::filesystem::path file, const std::vector<std::string>& products,
              const ProductMapOptions& options, const RunContext& context);
 
-  /// Calls `apply` with the map; again with the whole, after a warning, where it asked for more than the
+  /// Calls `apply` with the map; again with the whole, after a warning, where it queried more than the
   /// part.
   void use(const std::string& product, const std::function<void(const OpenedMap&)>& apply);
 

@@ -45,7 +45,7 @@ std::string penetration_text(const Penetration& penetration) {
          " % of the area, deepest " + figure(penetration.deepest);
 }
 
-/// What an engineer asks first: how near the surfaces are, and whether anything folds.
+/// What an engineer needs first: how near the surfaces are, and whether anything folds.
 std::string headlines(const MappingQuality& quality, const std::string& unit) {
   const Statistics& near = quality.surfaces.a_to_b;
   std::string text = "half of the mapped source lies within " + figure(near.median) + " " + unit +
