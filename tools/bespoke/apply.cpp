@@ -240,14 +240,15 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
                                          arguments.catalog.target);
   OutputFiles files;
   std::vector<AppliedProduct> applied;
+  std::vector<std::string> penetrations(arguments.products.size());
   for (std::size_t i = 0; i < arguments.products.size(); ++i) {
     progress.step("apply", i, arguments.products.size());
     const std::string& name = arguments.products[i];
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
-      std::string penetration = new_penetration(name, opened);
+      penetrations[i] = new_penetration(name, opened);
       summary = apply_one(arguments, name, plan[i], opened, progress);
-      if (!penetration.empty()) summary.warnings.push_back(std::move(penetration));
+      if (!penetrations[i].empty()) summary.warnings.push_back(penetrations[i]);
     });
     files.add(plan[i]);
     files.add(summary.companions);
@@ -266,7 +267,9 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
     for (const std::string& warning : applied[i].summary.warnings)
-      context.warn(arguments.products[i] + ": " + warning, Entry::content_left_as_it_is);
+      context.warn(arguments.products[i] + ": " + warning, warning == penetrations[i]
+                                                               ? Entry::product_inside_the_target
+                                                               : Entry::content_left_as_it_is);
   }
 }
 
