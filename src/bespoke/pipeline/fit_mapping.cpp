@@ -102,7 +102,7 @@ void part_at_seams(FittedMapping& result, const JoinedMesh& source) {
   renumber_lists(result.summary, source.first);
 }
 
-/// The source laid on the target, its parts held apart. Returns the anchors as the fit took them.
+/// The source registered to the target, its parts separated. Returns the anchors as the fit took them.
 Anchors register_joined(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
                         const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   const JoinedModels joined = joined_models(result, source, target, options);

@@ -60,9 +60,9 @@ FittedMapping with_loose_parts(FittedMapping fit, const TriangleMesh& source);
 /// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
 /// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with
 /// certainty), MemoryLimitError. Loose parts of the source, without a counterpart on the target, are left out
-/// of the fit (registered_parts.h), but for the printed method and models taken as given. Curves and borders
-/// of patches (anchors.h) take a surface fitting more, which finds where along them their points lie; the
-/// borders are curves that every patch has.
+/// of the fit (registered_parts.h), except for the printed method and models taken as given. Curves and
+/// borders of patches (anchors.h) take a surface fitting more, which finds where along them their points lie;
+/// the borders are curves that every patch has.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 
