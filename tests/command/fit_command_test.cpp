@@ -423,7 +423,7 @@ TEST_F(FitCommand, WarnsOfVerticesThatTheMapMisses) {
   EXPECT_THAT(inside.err, HasSubstr("bespoke: warning: ")) << inside.err;
   EXPECT_THAT(inside.err, HasSubstr(" vertices unmet: "));
   EXPECT_THAT(inside.err,
-              HasSubstr("% of the source's diagonal, and products there with them; bespoke view"));
+              HasSubstr("% of the target's diagonal, and products there with them; bespoke view"));
 }
 
 TEST_F(FitCommand, WarnsOfASourceThatIsNotOnTheTarget) {
