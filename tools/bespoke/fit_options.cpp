@@ -84,9 +84,10 @@ void add_quality_options(CLI::App& fit, FitArguments& arguments) {
   add_length_option(
       fit, "--tolerance", arguments.tolerance,
       target_length("Largest difference between the stored and the exact map", default_tolerance));
-  add_length_option(
-      fit, "--lambda", arguments.lambda,
-      source_length("Effective distance: how far from the source the elastic part reaches", default_lambda));
+  add_length_option(fit, "--lambda", arguments.lambda,
+                    source_length("Effective distance: the elastic part reaches as far from the source, and "
+                                  "1.4 times as far with guides",
+                                  default_lambda));
   fit.add_flag("--require-certified", arguments.require_certified,
                "Write nothing unless the map is proved to be one-to-one (a bijection of space)");
   fit.add_flag("--strict", arguments.strict,
