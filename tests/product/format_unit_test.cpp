@@ -30,6 +30,34 @@ TEST(FormatUnit, KnowsUnitsByTheirNames) {
   EXPECT_EQ(metres_per_unit(""), std::nullopt);
 }
 
+TEST(FormatUnit, ConvertsBetweenUnitsExactlyBackAndForth) {
+  EXPECT_EQ(unit_factor("m", "cm"), 100);
+  EXPECT_EQ(unit_factor("cm", "m"), 0.01);
+  EXPECT_EQ(unit_factor("in", "mm"), 25.4);
+  EXPECT_EQ(unit_factor("ft", "inches"), 12);
+  EXPECT_EQ(unit_factor("Metres", "m"), 1);
+  EXPECT_EQ(unit_factor("ells", "ells"), 1);
+  EXPECT_EQ(unit_factor("ells", "m"), std::nullopt);
+  EXPECT_EQ(unit_factor("", "m"), std::nullopt);
+  EXPECT_THAT(test::error_message<InvalidInput>([] { required_unit_factor("ells", "m"); }),
+              HasSubstr("the unit \"ells\" is not known"));
+}
+
+TEST(FormatUnit, OfAProductIsTheUsersTheFilesOrTheMaps) {
+  EXPECT_EQ(product_scale("a.glb", "cm"), 100);
+  EXPECT_EQ(product_scale("a.glb", "cm", "mm"), 0.1);
+  EXPECT_EQ(product_scale("a.glb", "cm", "map"), 1);
+  EXPECT_EQ(product_scale("a.obj", "cm"), 1);
+  EXPECT_EQ(product_scale("a.obj", "cm", "in"), 2.54);
+  EXPECT_EQ(product_scale("a.glb", "unknown"), 1);
+  EXPECT_THAT(test::error_message<InvalidInput>([] { product_scale("a.obj", "unknown", "mm"); }),
+              HasSubstr("nothing is converted from \"mm\" to \"unknown\""));
+  EXPECT_EQ(product_unit("a.glb", "cm"), "m");
+  EXPECT_EQ(product_unit("a.obj", "cm"), "cm");
+  EXPECT_EQ(product_unit("a.obj", "unknown"), "");
+  EXPECT_EQ(product_unit("a.glb", "cm", "map"), "cm");
+}
+
 TEST(FormatUnit, RefusesAnotherOneByItsFactor) {
   EXPECT_THAT(refusal("scan.glb", "cm"),
               AllOf(HasSubstr("scan.glb"), HasSubstr("in cm"), HasSubstr("by 0.01 ")));

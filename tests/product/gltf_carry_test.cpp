@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 
 #include "bespoke/product/detail/gltf_file.h"
+#include "bespoke/product/product_io.h"
 #include "product/gltf_scene.h"
 
 namespace bespoke {
@@ -134,9 +136,103 @@ TEST_F(CarryGltf, CarriesASkinnedMeshWhereItsJointsHoldIt) {
   scene.root["skins"] = {{{"joints", {1}}, {"inverseBindMatrices", bind}}};
   EXPECT_EQ(GlbContent(carried("a.glb", scene.glb(), bend_motion())).floats(0),
             (Floats{0, 0, 2, 1, 0, 4.5, 0, 2, 2}));
+}
+
+/// A triangle whose corners are held by joint 0, by joint 1 and by both; joint 1 stands 4 farther in x than
+/// in the pose of binding, so that a viewer shows the corners moved by 0, 4 and 2.
+GltfScene posed_triangle() {
+  GltfScene scene = morphing_triangle();
+  json& attributes = scene.root["meshes"][0]["primitives"][0]["attributes"];
+  scene.root["meshes"][0]["primitives"][0].erase("targets");
+  attributes["JOINTS_0"] =
+      scene.accessor(std::vector<std::uint8_t>{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, "VEC4", 5121);
+  attributes["WEIGHTS_0"] = scene.accessor(Floats{1, 0, 0, 0, 1, 0, 0, 0, 0.5, 0.5, 0, 0}, "VEC4", 5126);
+  scene.root["nodes"] = {
+      {{"mesh", 0}, {"skin", 0}, {"translation", {9, 9, 9}}}, json::object(), {{"translation", {4, 0, 0}}}};
   scene.root["skins"] = {{{"joints", {1, 2}}}};
-  EXPECT_EQ(GlbContent(carried("a.glb", scene.glb(), bend_motion())).floats(0), bent_corners);
-  EXPECT_THAT(summary_.warnings, ElementsAre(HasSubstr("not shown in its bind pose")));
+  scene.root["scenes"][0]["nodes"] = {0, 1, 2};
+  return scene;
+}
+
+TEST_F(CarryGltf, CarriesASkinnedMeshInAnotherPoseAsAViewerShowsIt) {
+  const GlbContent out(carried("a.glb", posed_triangle().glb(), bend_motion()));
+  // Shown at x = 0, 5 and 2, where the bend is 0, 12.5 and 2; joints that only shift leave that as it is.
+  EXPECT_EQ(out.floats(0), (Floats{0, 0, 0, 1, 0, 12.5, 0, 2, 2}));
+  const float length = std::sqrt(26.0f);
+  EXPECT_NEAR(out.floats(1)[3], -5 / length, 1e-6);
+  EXPECT_NEAR(out.floats(1)[5], 1 / length, 1e-6);
+  EXPECT_THAT(summary_.warnings, ElementsAre(HasSubstr("in the pose in which its nodes show it")));
+  EXPECT_EQ(out.root["skins"], posed_triangle().root["skins"]);
+  const std::string glb = posed_triangle().glb();
+  EXPECT_EQ(carried("a.glb", glb, identity_motion()), glb);
+}
+
+TEST_F(CarryGltf, ShowsASkinnedMeshWhereTheMapTakesIt) {
+  GltfScene scene = posed_triangle();
+  // A quarter turn of joint 1 about z: what it holds at (1, 0, 0) is shown at (0, 1, 0).
+  const double half = std::sqrt(0.5);
+  scene.root["nodes"][2] = {{"rotation", {0, 0, half, half}}};
+  const Points before = read_product(file("a.glb", scene.glb())).vertices;
+  EXPECT_LT((before.col(1) - Vector3(0, 1, 0)).norm(), 1e-6);
+  const Points after = read_product(file("b.glb", carried("a.glb", scene.glb(), bend_motion()))).vertices;
+  EXPECT_LT((after - bend_motion().images(before).front()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(CarryGltf, NamesWhatIsWrongWithASkin) {
+  const auto fault = [&](const std::function<void(GltfScene&)>& spoil) {
+    GltfScene scene = posed_triangle();
+    spoil(scene);
+    return complaint("a.glb", scene.glb());
+  };
+  const auto attributes = [](GltfScene& scene) -> json& {
+    return scene.root["meshes"][0]["primitives"][0]["attributes"];
+  };
+  EXPECT_THAT(fault([&](GltfScene& scene) { attributes(scene).erase("JOINTS_0"); }),
+              HasSubstr("/attributes: has no JOINTS_0, though its node has a skin"));
+  EXPECT_THAT(fault([&](GltfScene& scene) {
+                attributes(scene)["JOINTS_0"] = scene.accessor(
+                    std::vector<std::uint8_t>{0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0}, "VEC4", 5121);
+              }),
+              HasSubstr("vertex 1 names a joint that the skin has not"));
+  EXPECT_THAT(fault([&](GltfScene& scene) {
+                attributes(scene)["WEIGHTS_0"] =
+                    scene.accessor(Floats{1, 0, 0, 0, 1, 0, 0, 0, -1, 0, 0, 0}, "VEC4", 5126);
+              }),
+              HasSubstr("vertex 2 has a weight below 0"));
+  EXPECT_THAT(fault([&](GltfScene& scene) {  // half a turn and none cancel each other out
+                scene.root["nodes"][2] = {{"scale", {-1, 1, 1}}};
+              }),
+              HasSubstr("its joints hold vertex 2 flat"));
+}
+
+TEST_F(CarryGltf, RefusesRequiredExtensionsThatItDoesNotKnow) {
+  const auto refusal = [&](const std::string& extension) {
+    GltfScene scene = morphing_triangle();
+    scene.root["extensionsUsed"] = scene.root["extensionsRequired"] = {extension};
+    return error_message<InvalidInput>([&] { carried("a.glb", scene.glb(), bend_motion()); });
+  };
+  EXPECT_THAT(refusal("EXT_not_known"), HasSubstr("a.glb: /extensionsRequired/0: requires EXT_not_known"));
+  EXPECT_THAT(refusal("EXT_meshopt_compression"),
+              HasSubstr("needs EXT_meshopt_compression: decompress it with gltfpack -noq or gltf-transform"));
+  EXPECT_THAT(refusal("KHR_draco_mesh_compression"),
+              HasSubstr("needs KHR_draco_mesh_compression: decompress it with gltf-transform"));
+  for (const char* known : {"KHR_texture_basisu", "KHR_mesh_quantization", "KHR_materials_unlit"})
+    EXPECT_EQ(refusal(known), "accepted") << known;
+  // Of a compressed buffer that a reader without the extension would find empty.
+  GltfScene scene = morphing_triangle();
+  const std::string whole = scene.glb();
+  const GlbContent content(whole);
+  json root = content.root;
+  root["buffers"].push_back(
+      {{"byteLength", 44}, {"extensions", {{"EXT_meshopt_compression", json::object()}}}});
+  std::string text = root.dump(1);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::string glb =
+      "glTF" + bytes(2u) + bytes(static_cast<std::uint32_t>(28 + text.size() + content.data.size())) +
+      bytes(static_cast<std::uint32_t>(text.size())) + "JSON" + text +
+      bytes(static_cast<std::uint32_t>(content.data.size())) + std::string("BIN\0", 4) + content.data;
+  EXPECT_THAT(error_message<InvalidInput>([&] { carried("a.glb", glb, bend_motion()); }),
+              HasSubstr("/buffers/1: is compressed, needs EXT_meshopt_compression"));
 }
 
 TEST_F(CarryGltf, CopiesAMeshThatIsShownInSeveralPlaces) {

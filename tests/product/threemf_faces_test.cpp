@@ -6,6 +6,7 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/product/product_io.h"
 #include "product/mesh_files.h"
 #include "product/zip_archive.h"
 
@@ -108,6 +109,46 @@ TEST_F(ThreemfFaces, NameTheLineAndTheElementAtFault) {
   EXPECT_THAT(fault(tetrahedron(), shown_once, "xmlns:b=\"http://b\" requiredextensions=\"b\""),
               HasSubstr("requires the extension 'http://b'"));
   EXPECT_THAT(complaint("a.3mf", package("<model/>")), HasSubstr("has no <model> of the 3MF core namespace"));
+}
+
+TEST_F(ThreemfFaces, NameAnExtensionInFull) {
+  const std::string beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+  EXPECT_THAT(fault(tetrahedron(), shown_once, "xmlns:b=\"" + beams + "\" requiredextensions=\"b\""),
+              HasSubstr("requires the extension '" + beams + "' (beam lattices)"));
+  std::string unsaid = tetrahedron();
+  unsaid.insert(unsaid.find("</mesh>"), "<b:beamlattice minlength=\"1\"><b:beams/></b:beamlattice>");
+  EXPECT_THAT(fault(unsaid, shown_once, "xmlns:b=\"" + beams + "\""),
+              HasSubstr("requires the extension '" + beams + "'"));
+}
+
+TEST_F(ThreemfFaces, AreWrittenAsTheyAreRead) {
+  Product product = read_product(file("a.obj", test::square_obj + "f 1 2 3 4\n"));
+  product.vertices.col(2) = Vector3(1 / 3.0f, -1e-20f, 12345.678f);
+  for (const char* unit : {"", "mm", "inch", "m"}) {
+    product.unit = unit;
+    write_product(directory_ / "b.3mf", product);
+    const Product again = read_product(directory_ / "b.3mf");
+    EXPECT_EQ(again.vertices.cast<float>(), product.vertices.cast<float>());  // floats suffice here
+    EXPECT_EQ(triangulated(again), triangulated(product));
+    EXPECT_EQ(metres_per_unit(again.unit), metres_per_unit(*unit ? unit : "mm"));
+    const std::string bytes = test::read_text(directory_ / "b.3mf");
+    write_product(directory_ / "b.3mf", again);
+    EXPECT_EQ(test::read_text(directory_ / "b.3mf"), bytes);
+  }
+  product.unit = "km";
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { write_product(directory_ / "c.3mf", product); }),
+              HasSubstr("3MF has no name for the unit \"km\""));
+  product.unit.clear();
+  product.vertices *= 1 + 1e-9;  // too fine for floats about a middle far away
+  product.vertices.colwise() += Vector3(1e6, 0, 0);
+  write_product(directory_ / "d.3mf", product);
+  EXPECT_EQ(read_product(directory_ / "d.3mf").vertices, product.vertices);
+}
+
+TEST_F(ThreemfFaces, OfPointsAloneAreNotWritten) {
+  const Product points = read_product(file("a.obj", test::square_obj));
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { write_product(directory_ / "b.3mf", points); }),
+              HasSubstr("3MF holds triangles only, and there are none"));
 }
 
 TEST_F(ThreemfFaces, AreBoundedWhateverTheFileSays) {

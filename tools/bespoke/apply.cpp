@@ -71,7 +71,8 @@ bool takes_any_kind(const fs::path& output) {
 
 /// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
 bool keeps_kind(const fs::path& product, const fs::path& output) {
-  return takes_any_kind(output) || lower_ending(product) == lower_ending(output);
+  const bool is_carried_or_unknown = has_product_ending(output) || !can_write_product(output);
+  return takes_any_kind(output) || (is_carried_or_unknown && lower_ending(product) == lower_ending(output));
 }
 
 /// Whether the file is carried as it is, with its edges split where that is required.

@@ -96,6 +96,7 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   CarrySummary summary;
   write_outputs(outputs, [&](std::vector<OutputFile>& open) {
     summary = format.carry(*file, open, own.motion, options.progress);
+    own.motion.accept();
   });
   summary.parts = std::move(own.parts);
   return summary;

@@ -9,8 +9,10 @@ TriangleMesh read_triangle_mesh(const std::filesystem::path& path) {
   return {product.vertices, triangulated(product)};
 }
 
-void write_triangle_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+void write_triangle_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                         const std::string& unit) {
   Product product;
+  product.unit = unit;
   product.vertices = mesh.vertices;
   product.corners.assign(mesh.faces.data(), mesh.faces.data() + mesh.faces.size());
   product.polygon_start.reserve(static_cast<std::size_t>(mesh.faces.cols()) + 1);

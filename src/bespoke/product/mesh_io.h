@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "bespoke/mesh/triangle_mesh.h"
 
@@ -10,7 +11,8 @@ namespace bespoke {
 /// fans in place.
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path);
 
-/// Formats, digits and errors as write_product. Atomic.
-void write_triangle_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// Formats, digits and errors as write_product. Atomic. `unit`: of the vertices, for formats that say it.
+void write_triangle_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
+                         const std::string& unit = "");
 
 }  // namespace bespoke

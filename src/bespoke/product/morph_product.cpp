@@ -100,8 +100,11 @@ class Morpher {
       result.push_back(additions.add(at(frame) - before, task.role == GltfRole::position, true));
       if (task.role != GltfRole::position) continue;
       const GltfValues off = at(frame - 1) - 0.5f * (at(frame - 2) + at(frame));
-      const Points in_scene = plan_.places[task.place].linear * off.cast<double>();
-      summary.off_path = std::max(summary.off_path, in_scene.colwise().norm().maxCoeff());
+      const GltfPlacement& place = plan_.places[task.place];
+      for (Eigen::Index i = 0; i < off.cols(); ++i)
+        summary.off_path =
+            std::max(summary.off_path,
+                     (place.at(static_cast<std::size_t>(i)).linear * off.col(i).cast<double>()).norm());
     }
     if (task.role == GltfRole::position) summary.points += source.count;
     return result;

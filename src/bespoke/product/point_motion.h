@@ -27,6 +27,9 @@ struct PointMotion {
   /// The motion's Jacobians at the columns of x: one 3×3n matrix a frame, three columns a point, entry (i, j)
   /// the derivative of coordinate i by x_j.
   std::function<std::vector<Points>(const Points& x)> jacobians;
+
+  /// Called once all points have moved and before any file is replaced; what it throws leaves all as it was.
+  std::function<void()> accept = [] {};
 };
 
 }  // namespace bespoke

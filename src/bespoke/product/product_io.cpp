@@ -14,6 +14,7 @@
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/strings.h"
 #include "bespoke/unknown_ending.h"
 
@@ -32,7 +33,7 @@ constexpr std::array face_formats{FaceFormat{".obj", read_obj_faces, write_obj_f
                                   FaceFormat{".off", read_off_faces, write_off_faces},
                                   FaceFormat{".gltf", read_gltf_faces},
                                   FaceFormat{".glb", read_gltf_faces},
-                                  FaceFormat{".3mf", read_3mf_faces}};
+                                  FaceFormat{".3mf", read_3mf_faces, write_3mf_faces}};
 
 const FaceFormat* find_face_format(const std::filesystem::path& path) {
   const auto at = std::find_if(
@@ -52,8 +53,10 @@ void require_writable(const std::filesystem::path& path, const Product& product)
   const double* const values = product.vertices.data();
   if (!std::all_of(values, values + product.vertices.size(), fits_float))
     throw InvalidInput("cannot write " + path.string() + ": a coordinate is not finite in single precision");
-  if (find_face_format(path)->ending == ".stl" && product.corners.empty())
-    throw InvalidInput("cannot write " + path.string() + ": STL holds triangles only, and there are none");
+  const std::string_view ending = find_face_format(path)->ending;
+  if ((ending == ".stl" || ending == ".3mf") && product.corners.empty())
+    throw InvalidInput("cannot write " + path.string() + ": " + (ending == ".stl" ? "STL" : "3MF") +
+                       " holds triangles only, and there are none");
 }
 
 /// Whether rounding to floats would move a vertex by more than the resolution that carried products keep.
@@ -86,7 +89,9 @@ Product read_product(const std::filesystem::path& path) {
   if (!format)
     throw UnknownEnding(path.string() + ": the name must end in " + read_product_endings() +
                         conversion_advice(path));
-  return format->read(InputFile(path));
+  Product product = format->read(InputFile(path));
+  product.unit = unit_of_format(path);
+  return product;
 }
 
 void write_product(const std::filesystem::path& path, const Product& product) {

@@ -16,6 +16,7 @@ struct Product {
   std::vector<int> corners;        ///< vertex indices
   Eigen::Matrix2Xd texture;        ///< 2×(number of corners), (0, 0) where a face has none; or empty
   bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
+  std::string unit;                ///< "m", "mm", … where the file says it (glTF, 3MF), else empty
   Points normals;                  ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
 };
 
@@ -33,8 +34,10 @@ Product read_product(const std::filesystem::path& path);
 /// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as
 /// the same floats) or, where floats would lose 1e-7 of the bounding box's diagonal, as doubles; STL knows
 /// only floats. Normals, where the product had them, are recomputed; texture coordinates are written to OBJ.
-/// STL holds triangles without texture, so polygons become fans there. Atomic. Throws FileError,
-/// InvalidInput for an unknown ending, for coordinates that a float cannot hold, and for a point set as STL.
+/// STL and 3MF hold triangles without texture, so polygons become fans there; 3MF says the product's unit, or
+/// millimetres where it has none, and leaves out triangles of which corners coincide. Atomic. Throws
+/// FileError, InvalidInput for an unknown ending, for coordinates that a float cannot hold, for a point set
+/// as STL or 3MF, and for a 3MF file of a unit that the format does not know.
 void write_product(const std::filesystem::path& path, const Product& product);
 
 /// By the ending of the name.

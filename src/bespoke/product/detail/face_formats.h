@@ -27,5 +27,6 @@ void write_obj_faces(std::ostream& out, const WrittenFaces& faces);
 void write_ply_faces(std::ostream& out, const WrittenFaces& faces);
 void write_stl_faces(std::ostream& out, const WrittenFaces& faces);
 void write_off_faces(std::ostream& out, const WrittenFaces& faces);
+void write_3mf_faces(std::ostream& out, const WrittenFaces& faces);
 
 }  // namespace bespoke

@@ -10,6 +10,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/product/detail/gltf_extensions.h"
 
 namespace bespoke {
 namespace {
@@ -103,9 +104,7 @@ class AccessorReader {
   /// The same vectors where the part's view and offset say that they are.
   GltfPlace placed(const GltfPart& part, GltfPlace place) const {
     const GltfPart& view = views_[required(part, "bufferView", views_.size())];
-    if (view.has("extensions") && view.member("extensions").has("EXT_meshopt_compression"))
-      throw InvalidInput(file_.path.string() + ": " + view.pointer() +
-                         ": is compressed; decompress it first");
+    require_not_compressed(view);
     place.buffer = required(view, "buffer", file_.buffers.size());
     const std::uint64_t begin = view.whole_or("byteOffset", 0), length = view.whole("byteLength");
     const std::uint64_t size = file_.buffers[place.buffer].size();

@@ -28,6 +28,15 @@ void make_unit(const GltfValues& before, Eigen::Ref<GltfValues> now) {
     if (now.col(i) != before.col(i)) now.col(i).head<3>().normalize();
 }
 
+/// L⁻¹ of every vertex's displacement.
+Points undone(const GltfPlacement& place, const Points& displacements, std::size_t first) {
+  if (place.of_vertices.empty()) return place.scene_from_mesh.linear.inverse() * displacements;
+  Points result(3, displacements.cols());
+  for (Eigen::Index i = 0; i < result.cols(); ++i)
+    result.col(i) = place.at(first + static_cast<std::size_t>(i)).linear.inverse() * displacements.col(i);
+  return result;
+}
+
 }  // namespace
 
 std::vector<GltfCarried> GltfCarrier::carry(const GltfTask& task) const {
@@ -70,14 +79,15 @@ std::vector<Points> GltfCarrier::carry_block(const GltfTask& task, const GltfVal
   };
   const Points x = read(task.positions);
   const Points base = task.base == task.positions ? x : read(task.base);
-  const std::vector<LocalMotion> at_base = local_motion(x, task);
+  const std::vector<LocalMotion> at_base = local_motion(x, task, first);
   std::vector<Points> moved;
   for (const LocalMotion& motion : at_base) moved.push_back(carried(task.role, base, motion));
   if (!task.difference) return moved;
 
   const Points difference = read(*task.difference);
   const std::vector<LocalMotion> at_morph =
-      task.difference_of_positions ? local_motion(x + read(*task.difference_of_positions), task) : at_base;
+      task.difference_of_positions ? local_motion(x + read(*task.difference_of_positions), task, first)
+                                   : at_base;
   // Only what the motion changes is added, so that a difference that stays keeps its bits.
   for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
     const Points morphed = base + difference;
@@ -89,10 +99,13 @@ std::vector<Points> GltfCarrier::carry_block(const GltfTask& task, const GltfVal
 
 /// With y = L x + b the scene's point and Ψ the scene's motion, x + L⁻¹ (Ψ(y) − y), which is x itself where
 /// nothing moves, and L⁻¹ ∇Ψ L.
-std::vector<GltfCarrier::LocalMotion> GltfCarrier::local_motion(const Points& x, const GltfTask& task) const {
-  const AffineMap& scene_from_mesh = plan_.places[task.place];
-  const Matrix3 back = scene_from_mesh.linear.inverse();
-  const Points y = in_scene(scene_from_mesh, x);
+std::vector<GltfCarrier::LocalMotion> GltfCarrier::local_motion(const Points& x, const GltfTask& task,
+                                                                std::size_t first) const {
+  const GltfPlacement& place = plan_.places[task.place];
+  const auto linear_at = [&](Eigen::Index i) -> const Matrix3& {
+    return place.at(first + static_cast<std::size_t>(i)).linear;
+  };
+  const Points y = in_scene(place, x, first);
   const bool with_jacobians = task.role != GltfRole::position;
   std::vector<Points> images, jacobians;
   if (with_jacobians)
@@ -102,13 +115,13 @@ std::vector<GltfCarrier::LocalMotion> GltfCarrier::local_motion(const Points& x,
   std::vector<LocalMotion> result(motion_.frames);
   for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
     if (!with_jacobians) {
-      result[frame].images = x + back * (images[frame] - y);
+      result[frame].images = x + undone(place, images[frame] - y, first);
       continue;
     }
     Points& local = result[frame].jacobians = std::move(jacobians[frame]);
-    for (Eigen::Index i = 0; i < local.cols(); i += 3)
-      if (local.middleCols<3>(i) != Matrix3::Identity())
-        local.middleCols<3>(i) = (back * local.middleCols<3>(i) * scene_from_mesh.linear).eval();
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      if (auto jacobian = local.middleCols<3>(3 * i); jacobian != Matrix3::Identity())
+        jacobian = (linear_at(i).inverse() * jacobian * linear_at(i)).eval();
   }
   return result;
 }

@@ -32,7 +32,7 @@ class GltfCarrier {
 
   /// What vectors `before`, from number `first` on, of the task's accessor become in every frame.
   std::vector<Points> carry_block(const GltfTask& task, const GltfValues& before, std::size_t first) const;
-  std::vector<LocalMotion> local_motion(const Points& x, const GltfTask& task) const;
+  std::vector<LocalMotion> local_motion(const Points& x, const GltfTask& task, std::size_t first) const;
   static Points carried(GltfRole role, const Points& values, const LocalMotion& motion);
 
   const GltfFile& file_;

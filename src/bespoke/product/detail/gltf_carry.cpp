@@ -88,6 +88,7 @@ CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs
     (task.role == GltfRole::position ? summary.points : summary.directions) += accessors[task.source()].count;
   }
 
+  motion.accept();  // buffers beside the file are written first
   const std::vector<std::size_t> beside = buffers_beside(file);
   if (!beside.empty()) require_place_for_buffers(file, outputs);
   for (const OutputFile& output : outputs)

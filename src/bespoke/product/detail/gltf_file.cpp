@@ -10,6 +10,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/product/detail/gltf_extensions.h"
 
 namespace bespoke {
 namespace {
@@ -133,6 +134,7 @@ void read_buffers(GltfFile& gltf, std::optional<GltfBuffer>&& binary) {
     if (part.has("uri")) {
       gltf.buffers.push_back(read_uri(part, gltf));
     } else {
+      if (!gltf.buffers.empty() || !binary) require_not_compressed(part);
       if (!gltf.buffers.empty() || !binary) part.fail("has no uri, and the file no binary chunk for it");
       gltf.buffers.push_back(*std::exchange(binary, std::nullopt));
     }
@@ -161,6 +163,7 @@ GltfFile read_gltf(const InputFile& file) {
   else
     gltf.text = read_bytes(file, 0, file.size());
   gltf.json = parse_gltf_json(gltf.text, gltf.path);
+  require_known_extensions(gltf.root());
   read_buffers(gltf, std::move(binary));
   return gltf;
 }

@@ -28,7 +28,7 @@ struct GltfFile {
 };
 
 /// `file` must outlive the result, whose buffers read it. Throws FileError, also for a buffer beside the
-/// file, and FormatError naming the byte or the JSON pointer.
+/// file, FormatError naming the byte or the JSON pointer, and InvalidInput for extensions that are not known.
 GltfFile read_gltf(const InputFile& file);
 
 /// Writes the file with this JSON text and these bytes of its binary chunk, if it has one.

@@ -213,6 +213,15 @@ std::string GltfPart::text(const char* key) const {
   return at(key).get<std::string>();
 }
 
+std::vector<std::string> GltfPart::texts(const char* key) const {
+  std::vector<std::string> result;
+  for (const GltfJson& value : array(key)) {
+    if (!value.is_string()) fail_at(key, "holds what is no text");
+    result.push_back(value.get<std::string>());
+  }
+  return result;
+}
+
 bool GltfPart::flag(const char* key) const {
   if (!has(key)) return false;
   if (!at(key).is_boolean()) fail_at(key, "is neither true nor false");

@@ -26,6 +26,7 @@ class GltfPart {
  public:
   GltfPart(const std::filesystem::path& path, const GltfJson& json, std::string pointer);
 
+  const std::filesystem::path& path() const { return *path_; }
   const std::string& pointer() const { return pointer_; }
   [[noreturn]] void fail(const std::string& what) const;
   /// The same of the value under a key.
@@ -35,7 +36,8 @@ class GltfPart {
   std::vector<std::string> names() const;  ///< all keys
   GltfPart member(const char* key) const;
   std::string text(const char* key) const;
-  bool flag(const char* key) const;  ///< false without the key
+  std::vector<std::string> texts(const char* key) const;  ///< of an array; none without the key
+  bool flag(const char* key) const;                       ///< false without the key
   std::uint64_t whole(const char* key) const;
   std::uint64_t whole_or(const char* key, std::uint64_t otherwise) const;
 

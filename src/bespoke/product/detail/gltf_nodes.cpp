@@ -1,24 +1,13 @@
 #include "bespoke/product/detail/gltf_nodes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "bespoke/error.h"
 
 namespace bespoke {
 namespace {
-
-// Joints hold a mesh in its bind pose where they agree this well about its place, relative to the sizes that
-// are added up: far above the rounding of the file's floats, far below any pose.
-constexpr double pose_tolerance = 1e-4;
-
-/// (a ∘ b)(x) = a(b(x)).
-AffineMap composed(const AffineMap& a, const AffineMap& b) { return {a.linear * b.linear, a * b.offset}; }
-
-AffineMap affine_of(const Eigen::Matrix4d& matrix) {
-  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
-}
 
 AffineMap local_transform(const GltfPart& node) {
   if (node.has("matrix"))
@@ -64,45 +53,18 @@ std::vector<AffineMap> scene_transforms(const std::vector<GltfPart>& nodes) {
   nodes[missing].fail("is below itself");
 }
 
-struct BindPose {
-  AffineMap scene_from_mesh;
-  bool is_shown = true;  ///< the joints stand so in the file
-};
-
-/// In the bind pose all joints hold the mesh at one place; where they stand otherwise the place is unknown.
-BindPose bind_pose(const GltfFile& file, const GltfPart& skin, const std::vector<AffineMap>& scene_from_node,
-                   const std::vector<GltfAccessor>& accessors) {
-  const std::vector<std::size_t> joints = skin.indices("joints", scene_from_node.size());
-  const auto inverse_binds = skin.index("inverseBindMatrices", accessors.size());
-  if (joints.empty()) skin.fail_at("joints", "are none");
-  GltfValues matrices = GltfValues(Eigen::Matrix4f::Identity().reshaped()).replicate(1, joints.size());
-  if (inverse_binds) {
-    if (accessors[*inverse_binds].components != 16 || accessors[*inverse_binds].count < joints.size())
-      skin.fail_at("inverseBindMatrices", "is not one matrix a joint");
-    matrices = read_values(accessors[*inverse_binds], file.buffers, 0, joints.size());
-  }
-  BindPose pose;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    const AffineMap& joint = scene_from_node[joints[i]];
-    const Eigen::Matrix4d matrix = matrices.col(static_cast<Eigen::Index>(i)).cast<double>().reshaped(4, 4);
-    const AffineMap bind = affine_of(matrix);
-    const AffineMap held = composed(joint, bind);
-    if (i == 0) pose.scene_from_mesh = held;
-    const AffineMap& first = pose.scene_from_mesh;
-    const double reach = joint.offset.norm() + joint.linear.norm() * bind.offset.norm();
-    pose.is_shown = pose.is_shown &&
-                    (held.linear - first.linear).norm() <= pose_tolerance * first.linear.norm() &&
-                    (held.offset - first.offset).norm() <= pose_tolerance * reach;
-  }
-  if (!pose.is_shown) pose.scene_from_mesh = AffineMap();
-  return pose;
-}
-
 }  // namespace
 
-Points in_scene(const AffineMap& scene_from_mesh, const Points& x) {
+GltfPlacement placement(const GltfFile& file, const GltfScene& scene, const GltfShown& shown,
+                        const GltfPart& primitive, const std::vector<GltfAccessor>& accessors) {
+  if (!shown.pose) return {shown.scene_from_mesh, {}};
+  return {{}, skinned_vertices(file, primitive, scene.poses.at(*shown.pose), accessors)};
+}
+
+Points in_scene(const GltfPlacement& placement, const Points& x, std::size_t first) {
   Points y(3, x.cols());
-  for (Eigen::Index i = 0; i < x.cols(); ++i) y.col(i) = scene_from_mesh * Vector3(x.col(i));
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    y.col(i) = placement.at(first + static_cast<std::size_t>(i)) * Vector3(x.col(i));
   return y;
 }
 
@@ -136,24 +98,25 @@ GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& acce
     if (nodes[i].has("extensions") && nodes[i].member("extensions").has("EXT_mesh_gpu_instancing"))
       throw InvalidInput(file.path.string() + ": " + nodes[i].pointer() +
                          ": shows instances (EXT_mesh_gpu_instancing); make them nodes first");
-    GltfShown shown{i, *mesh, scene_from_node[i]};
+    GltfShown shown{i, *mesh, scene_from_node[i], {}};
     if (skin) {
-      const BindPose pose = bind_pose(file, skins[*skin], scene_from_node, accessors);
-      shown.scene_from_mesh = pose.scene_from_mesh;
-      ++(pose.is_shown ? bound : posed);
+      GltfPose pose = read_pose(file, skins[*skin], scene_from_node, accessors);
+      shown.scene_from_mesh = pose.is_bind_pose ? pose.scene_from_mesh.front() : AffineMap();
+      ++(pose.is_bind_pose ? bound : posed);
+      if (!pose.is_bind_pose) {
+        shown.pose = *skin;
+        scene.poses.try_emplace(*skin, std::move(pose));
+      }
     }
-    const double determinant = shown.scene_from_mesh.linear.determinant();
-    if (!(std::abs(determinant) > 0 && std::isfinite(1 / determinant)))
-      nodes[i].fail("places its mesh flat, which cannot be undone");
+    if (!is_invertible(shown.scene_from_mesh)) nodes[i].fail("places its mesh flat, which cannot be undone");
     scene.shown.push_back(std::move(shown));
   }
   if (bound > 0)
     scene.warnings.emplace_back("a skinned mesh was carried in its bind pose; its skin was left as it is");
   if (posed > 0)
     scene.warnings.emplace_back(
-        "a skinned mesh is not shown in its bind pose; its vertices were carried where they are stored, and "
-        "its skin "
-        "was left as it is");
+        "a skinned mesh was carried in the pose in which its nodes show it, which is not its bind pose; its "
+        "skin was left as it is");
   return scene;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/product/detail/gltf_accessor.h"
+#include "bespoke/product/detail/gltf_skins.h"
 #include "bespoke/types.h"
 
 namespace bespoke {
@@ -11,22 +14,39 @@ namespace bespoke {
 /// A mesh where a node shows it.
 struct GltfShown {
   std::size_t node = 0, mesh = 0;
-  AffineMap scene_from_mesh;  ///< can be undone
+  AffineMap scene_from_mesh;        ///< can be undone; the identity with a pose
+  std::optional<std::size_t> pose;  ///< in the scene: joints hold its vertices each in a place of its own
 };
 
 struct GltfScene {
   std::vector<GltfShown> shown;
+  std::map<std::size_t, GltfPose> poses;  ///< that are none of binding, by their skins
   std::vector<std::string> warnings;
 };
 
-/// The same bits for a point, whatever its neighbours.
-Points in_scene(const AffineMap& scene_from_mesh, const Points& x);
+/// Where the vertices of a primitive are shown.
+struct GltfPlacement {
+  AffineMap scene_from_mesh;
+  std::vector<AffineMap> of_vertices;  ///< instead, one a vertex, for a mesh in a pose
+
+  const AffineMap& at(std::size_t vertex) const {
+    return of_vertices.empty() ? scene_from_mesh : of_vertices[vertex];
+  }
+};
+
+/// Throws FormatError naming the JSON pointer at fault.
+GltfPlacement placement(const GltfFile& file, const GltfScene& scene, const GltfShown& shown,
+                        const GltfPart& primitive, const std::vector<GltfAccessor>& accessors);
+
+/// Of vertices from number `first` on; the same bits for a point, whatever its neighbours.
+Points in_scene(const GltfPlacement& placement, const Points& x, std::size_t first = 0);
 
 /// The nodes of a name, and all below them.
 std::vector<bool> nodes_below(const GltfFile& file, const std::string& name);
 
-/// Which meshes the nodes show, and where. A skinned mesh is where its joints hold it in its bind pose, not
-/// where its node is. Throws FormatError naming the JSON pointer at fault, and InvalidInput for instances.
+/// Which meshes the nodes show, and where. A skinned mesh is where its joints hold it, as the nodes stand,
+/// not where its node is. Throws FormatError naming the JSON pointer at fault, and InvalidInput for
+/// instances.
 GltfScene read_scene(const GltfFile& file, const std::vector<GltfAccessor>& accessors);
 
 }  // namespace bespoke

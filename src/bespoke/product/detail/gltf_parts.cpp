@@ -29,7 +29,7 @@ class PartReader {
     for (const GltfShown& shown : scene_.shown)
       if (is_part[shown.node])
         for (const GltfPart& primitive : meshes_[shown.mesh].elements("primitives"))
-          add(primitive, shown.scene_from_mesh, result);
+          add(primitive, placement(file_, scene_, shown, primitive, accessors_), result);
     if (result.points.cols() == 0) refuse_part(part.name, known(), file_.path);
     return result;
   }
@@ -42,7 +42,7 @@ class PartReader {
       if (!nodes[shown.node].has("name")) continue;
       PartPoints found{{}, Points(3, 0), Points(3, 0)};
       for (const GltfPart& primitive : meshes_[shown.mesh].elements("primitives"))
-        add(primitive, shown.scene_from_mesh, found);
+        add(primitive, placement(file_, scene_, shown, primitive, accessors_), found);
       for (const auto& x : found.points.colwise())
         names.try_emplace({x[0], x[1], x[2]}, nodes[shown.node].text("name"));
     }
@@ -57,15 +57,15 @@ class PartReader {
   }
 
   /// Where the primitive is, and where its morph targets take it.
-  void add(const GltfPart& primitive, const AffineMap& scene_from_mesh, PartPoints& result) const {
+  void add(const GltfPart& primitive, const GltfPlacement& place, PartPoints& result) const {
     const auto positions = primitive.member("attributes").index("POSITION", accessors_.size());
     if (!positions) return;
     const Points x = read(*positions);
-    append(result.points, in_scene(scene_from_mesh, x));
+    append(result.points, in_scene(place, x));
     for (const GltfPart& target : primitive.elements("targets")) {
       const auto difference = target.index("POSITION", accessors_.size());
       if (difference && accessors_[*difference].count == accessors_[*positions].count)
-        append(result.more, in_scene(scene_from_mesh, x + read(*difference)));
+        append(result.more, in_scene(place, x + read(*difference)));
     }
   }
 

@@ -4,8 +4,9 @@
 #include <array>
 #include <map>
 #include <tuple>
+#include <utility>
 
-#include "bespoke/error.h"
+#include "bespoke/product/detail/gltf_extensions.h"
 
 namespace bespoke {
 namespace {
@@ -27,17 +28,16 @@ class Planner {
   }
 
   GltfPlan run() {
-    const GltfScene scene = read_scene(file_, accessors_);
+    scene_ = read_scene(file_, accessors_);
     const std::vector<GltfPart> meshes = file_.root().elements("meshes");
-    plan_.warnings = scene.warnings;
-    std::vector<std::vector<std::pair<std::size_t, std::size_t>>> shown(meshes.size());  // (place, mesh)
-    for (const GltfShown& item : scene.shown) {
-      const std::size_t place = place_index(item.scene_from_mesh);
+    plan_.warnings = scene_.warnings;
+    std::vector<std::vector<std::pair<const GltfShown*, std::size_t>>> shown(meshes.size());  // and the mesh
+    for (const GltfShown& item : scene_.shown) {
       auto& own = shown[item.mesh];
       auto found =
-          std::find_if(own.begin(), own.end(), [&](const auto& pair) { return pair.first == place; });
+          std::find_if(own.begin(), own.end(), [&](const auto& pair) { return is_same(*pair.first, item); });
       if (found == own.end()) {
-        own.emplace_back(place, own.empty() ? item.mesh : copy("meshes", item.mesh));
+        own.emplace_back(&item, own.empty() ? item.mesh : copy("meshes", item.mesh));
         found = own.end() - 1;
       }
       if (found->second != item.mesh) plan_.json["nodes"][item.node]["mesh"] = found->second;
@@ -48,7 +48,7 @@ class Planner {
       hidden += shown[mesh].empty();
     }
     for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh)
-      for (const auto& [place, result] : shown[mesh]) plan_mesh(meshes[mesh], result, place);
+      for (const auto& [item, result] : shown[mesh]) plan_mesh(meshes[mesh], result, *item);
     if (hidden > 0)
       plan_.warnings.push_back("meshes that no node shows were left as they are: " + std::to_string(hidden));
     if (!file_.root().elements("animations").empty())
@@ -57,12 +57,26 @@ class Planner {
   }
 
  private:
-  std::size_t place_index(const AffineMap& map) {
-    const auto found = std::find_if(plan_.places.begin(), plan_.places.end(), [&](const AffineMap& other) {
-      return other.linear == map.linear && other.offset == map.offset;
-    });
-    if (found != plan_.places.end()) return static_cast<std::size_t>(found - plan_.places.begin());
-    plan_.places.push_back(map);
+  static bool is_same(const GltfShown& a, const GltfShown& b) {
+    return a.pose == b.pose && a.scene_from_mesh.linear == b.scene_from_mesh.linear &&
+           a.scene_from_mesh.offset == b.scene_from_mesh.offset;
+  }
+
+  /// Of the places of what the node shows: of a mesh in a pose they depend on the vertices' joints too.
+  std::size_t place_index(const GltfShown& shown, const GltfPart& primitive) {
+    std::vector<std::size_t> held;
+    if (shown.pose)
+      for (const std::string& name : primitive.member("attributes").names())
+        if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"))
+          held.push_back(*primitive.member("attributes").index(name.c_str(), accessors_.size()));
+    for (std::size_t i = 0; i < placed_.size(); ++i)
+      if (is_same(*placed_[i].first, shown) && placed_[i].second == held) return i;
+    GltfPlacement place = placement(file_, scene_, shown, primitive, accessors_);
+    for (std::size_t vertex = 0; vertex < place.of_vertices.size(); ++vertex)
+      if (!is_invertible(place.of_vertices[vertex]))
+        primitive.fail("its joints hold vertex " + std::to_string(vertex) + " flat, which cannot be undone");
+    plan_.places.push_back(std::move(place));
+    placed_.emplace_back(&shown, std::move(held));
     return plan_.places.size() - 1;
   }
 
@@ -87,22 +101,20 @@ class Planner {
     }
   }
 
-  void plan_mesh(const GltfPart& mesh, std::size_t result, std::size_t place) {
+  void plan_mesh(const GltfPart& mesh, std::size_t result, const GltfShown& shown) {
     const std::vector<GltfPart> primitives = mesh.elements("primitives");
     for (std::size_t p = 0; p < primitives.size(); ++p) {
-      if (primitives[p].has("extensions") &&
-          primitives[p].member("extensions").has("KHR_draco_mesh_compression"))
-        throw InvalidInput(file_.path.string() + ": " + primitives[p].pointer() +
-                           ": is compressed (KHR_draco_mesh_compression); decompress it first");
+      require_not_compressed(primitives[p]);
       primitives[p].index("indices", accessors_.size());
-      plan_primitive(primitives[p], plan_.json["meshes"][result]["primitives"][p], place);
+      plan_primitive(primitives[p], plan_.json["meshes"][result]["primitives"][p], shown);
     }
   }
 
-  void plan_primitive(const GltfPart& primitive, GltfJson& result, std::size_t place) {
+  void plan_primitive(const GltfPart& primitive, GltfJson& result, const GltfShown& shown) {
     const GltfPart attributes = primitive.member("attributes");
     const auto positions = accessor(attributes, "POSITION", "VEC3");
     if (!positions) return;
+    const std::size_t place = place_index(shown, primitive);
     std::map<std::string, std::size_t> bases;
     for (const auto& [name, role, type] : roles) {
       const auto base = accessor(attributes, name, type);
@@ -163,7 +175,9 @@ class Planner {
   const GltfFile& file_;
   const std::vector<GltfAccessor>& accessors_;
   std::vector<bool> stays_;  ///< of every accessor: its values must not change where they are
+  GltfScene scene_;
   GltfPlan plan_;
+  std::vector<std::pair<const GltfShown*, std::vector<std::size_t>>> placed_;  ///< of every place of the plan
   std::map<Key, std::size_t> results_;
 };
 

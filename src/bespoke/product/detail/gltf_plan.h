@@ -27,7 +27,7 @@ struct GltfTask {
 
 /// Which accessors are carried, and from where.
 struct GltfPlan {
-  std::vector<AffineMap> places;  ///< from a mesh into the scene
+  std::vector<GltfPlacement> places;  ///< from meshes into the scene; can be undone
   std::vector<GltfTask> tasks;
   GltfJson json;  ///< with copies of meshes and accessors where one is used in several ways
   std::vector<std::string> warnings;

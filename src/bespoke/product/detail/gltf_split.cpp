@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/error.h"
 #include "bespoke/product/detail/face_parts.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/gltf_additions.h"
@@ -176,7 +177,7 @@ class GltfSplitter {
         for (const std::vector<std::uint32_t>& part : parts_.parts(polygon - 1, own, middle))
           result.corners.insert(result.corners.end(), part.begin(), part.end());
     }
-    if (is_mirrored(shown.scene_from_mesh)) turn_over(result.corners);
+    if (triangles.is_mirrored) turn_over(result.corners);
     mesh.triangles.push_back(std::move(result));
   }
 
@@ -348,7 +349,13 @@ class GltfSplitter {
 
 void split_gltf(const InputFile& input, const FaceSplits& splits, OutputFile& output) {
   GltfFile file = read_gltf(input);
-  plan_gltf(file, read_accessors(file));  // refuses what could not be carried afterwards
+  const GltfPlan plan =
+      plan_gltf(file, read_accessors(file));  // refuses what could not be carried afterwards
+  for (const GltfPlacement& place : plan.places)
+    if (!place.of_vertices.empty())
+      throw InvalidInput(input.path().string() +
+                         ": shows a skinned mesh in another pose than its bind pose, in which edges are not "
+                         "split; export it without its skin, or in its bind pose");
   GltfSplitter splitter(file, splits);
   splitter.run();
   write_gltf(file, splitter.text(), file.buffers.front(), output);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/product/detail/gltf_extensions.h"
 
 namespace bespoke {
 namespace {
@@ -49,13 +50,9 @@ std::vector<std::uint32_t> triangles(const std::vector<std::uint32_t>& indices, 
   return result;
 }
 
-void require_values(const GltfPart& primitive, const GltfAccessor& positions, const GltfFile& file) {
+void require_values(const GltfPart& primitive, const GltfAccessor& positions) {
   if (positions.components != 3) primitive.fail("its positions are no VEC3");
-  const bool has_values = positions.dense || positions.sparse;
-  if (!has_values && primitive.has("extensions") &&
-      primitive.member("extensions").has("KHR_draco_mesh_compression"))
-    throw InvalidInput(file.path.string() + ": " + primitive.pointer() +
-                       ": is compressed (KHR_draco_mesh_compression); decompress it first");
+  if (!positions.dense && !positions.sparse) require_not_compressed(primitive);
 }
 
 /// In the primitive's own order; none for points, lines and what has no positions.
@@ -78,8 +75,6 @@ std::vector<std::uint32_t> read_triangles(const GltfPart& primitive, const GltfF
 
 }  // namespace
 
-bool is_mirrored(const AffineMap& scene_from_mesh) { return scene_from_mesh.linear.determinant() < 0; }
-
 void turn_over(std::vector<std::uint32_t>& corners) {
   for (std::size_t i = 0; i < corners.size(); i += 3) std::swap(corners[i + 1], corners[i + 2]);
 }
@@ -89,7 +84,6 @@ std::vector<GltfTriangles> shown_triangles(const GltfFile& file, const std::vect
   std::vector<GltfTriangles> result;
   const std::vector<GltfPart> meshes = file.root().elements("meshes");
   for (std::size_t shown = 0; shown < scene.shown.size(); ++shown) {
-    const AffineMap& scene_from_mesh = scene.shown[shown].scene_from_mesh;
     const std::vector<GltfPart> primitives = meshes[scene.shown[shown].mesh].elements("primitives");
     for (std::size_t p = 0; p < primitives.size(); ++p) {
       const auto positions = primitives[p].member("attributes").index("POSITION", accessors.size());
@@ -97,12 +91,13 @@ std::vector<GltfTriangles> shown_triangles(const GltfFile& file, const std::vect
       const GltfAccessor& vertices = accessors[*positions];
       std::vector<std::uint32_t> corners = read_triangles(primitives[p], file, accessors, vertices.count);
       if (corners.empty()) continue;
-      require_values(primitives[p], vertices, file);
-      if (is_mirrored(scene_from_mesh)) turn_over(corners);
-      const Points x =
-          in_scene(scene_from_mesh, read_values(vertices, file.buffers, 0, vertices.count).cast<double>());
+      require_values(primitives[p], vertices);
+      const GltfPlacement place = placement(file, scene, scene.shown[shown], primitives[p], accessors);
+      const bool is_mirrored = place.at(0).linear.determinant() < 0;
+      if (is_mirrored) turn_over(corners);
+      const Points x = in_scene(place, read_values(vertices, file.buffers, 0, vertices.count).cast<double>());
       Points places = x(Eigen::all, corners);
-      result.push_back({shown, p, std::move(corners), std::move(places)});
+      result.push_back({shown, p, std::move(corners), std::move(places), is_mirrored});
     }
   }
   return result;

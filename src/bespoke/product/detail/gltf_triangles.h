@@ -13,10 +13,8 @@ struct GltfTriangles {
   std::size_t primitive = 0;           ///< of the mesh
   std::vector<std::uint32_t> corners;  ///< three vertices a triangle, as the scene shows their front
   Points places;                       ///< of the corners, in the scene
+  bool is_mirrored = false;            ///< the mesh has its front where the scene shows its back
 };
-
-/// Whether a mesh's triangles are shown from behind.
-bool is_mirrored(const AffineMap& scene_from_mesh);
 
 /// The triangles from behind: their last two corners change places.
 void turn_over(std::vector<std::uint32_t>& corners);

@@ -10,6 +10,7 @@
 #include "bespoke/product/detail/number_text.h"
 #include "bespoke/product/detail/text_blocks.h"
 #include "bespoke/product/detail/xml_reader.h"
+#include "bespoke/product/format_unit.h"
 
 namespace bespoke {
 namespace {
@@ -28,6 +29,13 @@ constexpr std::array units{
     Named<std::string_view>{"micron", "um"},     Named<std::string_view>{"millimeter", "mm"},
     Named<std::string_view>{"centimeter", "cm"}, Named<std::string_view>{"inch", "in"},
     Named<std::string_view>{"foot", "ft"},       Named<std::string_view>{"meter", "m"}};
+
+/// On one line of a message.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
 
 /// "/3D/a.model" is the entry "3D/a.model".
 std::string entry_name(const char* path) { return *path == '/' ? path + 1 : path; }
@@ -115,6 +123,8 @@ class ModelReader {
 
  private:
   void begin(const XmlElement& element) {
+    if (element.name().ends_with("|beamlattice"))
+      refuse_extension(std::string(element.name().substr(0, element.name().rfind('|'))));
     if (!element.name().starts_with(core)) return;  // of an extension: materials, colours, slices …
     const std::string_view name = element.name().substr(core.size());
     const Attributes attributes(element, reader_);
@@ -141,10 +151,15 @@ class ModelReader {
     std::istringstream prefixes(required ? required : "");
     for (std::string prefix; prefixes >> prefix;) {
       const std::string name = reader_.namespace_of(prefix);
-      if (name != production && name != materials)
-        reader_.fail("requires the extension " + in_quotes(name.empty() ? prefix : name) +
-                     ", which is not read; export plain triangle meshes");
+      if (name != production && name != materials) refuse_extension(name.empty() ? prefix : name);
     }
+  }
+
+  /// Named in full: an extension's name is at the end of its address.
+  [[noreturn]] void refuse_extension(const std::string& name) const {
+    const std::string what = name.find("beamlattice") != std::string::npos ? " (beam lattices)" : "";
+    reader_.fail("requires the extension '" + printable(name) + "'" + what +
+                 ", which is not read; export plain triangle meshes");
   }
 
   void begin_object(const Attributes& attributes) {
@@ -213,6 +228,13 @@ std::string root_part_of_3mf(const ZipFile& package) {
 
 ThreemfModel read_3mf_part(const ZipFile& package, const std::string& part) {
   return ModelReader().read(package, required_entry(package, part), false);
+}
+
+std::string threemf_name_of_unit(const std::string& unit) {
+  const std::optional<double> metres = metres_per_unit(unit);
+  for (const auto& known : units)
+    if (metres && metres == metres_per_unit(std::string(known.value))) return std::string(known.name);
+  throw InvalidInput("3MF has no name for the unit \"" + unit + "\"; it knows um, mm, cm, m, in and ft");
 }
 
 std::string unit_of_3mf(const InputFile& file) {

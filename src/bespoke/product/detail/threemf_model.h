@@ -40,6 +40,9 @@ std::string root_part_of_3mf(const ZipFile& package);
 /// index that is none, an extension that changes shapes and is not known here.
 ThreemfModel read_3mf_part(const ZipFile& package, const std::string& part);
 
+/// What a 3MF file calls a unit ("millimeter" for "mm"). Throws InvalidInput for one that it has no name for.
+std::string threemf_name_of_unit(const std::string& unit);
+
 /// Its unit alone, of which only the beginning is read: "mm", "um", "cm", "m", "in" or "ft".
 std::string unit_of_3mf(const InputFile& file);
 
