@@ -99,12 +99,19 @@ void require_morph_arguments(const ExportArguments& arguments) {
   if (!is_glb(arguments.product)) require_mesh_ending("--product", arguments.product);
 }
 
-/// Of faces, in metres where their unit is known. Returns how far straight pieces are off.
-double export_faces(const ExportArguments& arguments, const OpenedMap& map, const std::string& unit,
+/// Faces, and the name of their unit.
+struct MorphedFaces {
+  Product product;
+  std::string unit;
+};
+
+/// In metres where their unit is known. Returns how far straight pieces are off.
+double export_faces(const ExportArguments& arguments, const OpenedMap& map, const MorphedFaces& faces,
                     const std::filesystem::path& output) {
-  const MorphingMesh mesh = morph_along(read_product(arguments.product), *map.elastic, map.target_from_source,
-                                        *arguments.morph, {map.path});
-  write_glb(output, mesh, {std::filesystem::path(arguments.product).stem().string(), metres_per_unit(unit)});
+  const MorphingMesh mesh =
+      morph_along(faces.product, *map.elastic, map.target_from_source, *arguments.morph, {map.path});
+  write_glb(output, mesh,
+            {std::filesystem::path(arguments.product).stem().string(), metres_per_unit(faces.unit)});
   return mesh.off_path;
 }
 
@@ -124,11 +131,15 @@ void export_morph(const ExportArguments& arguments, const RunContext& context) {
   const std::string unit = read_asset(arguments.map, reading).record.unit;
   const OpenedMap map = open_map(arguments.map, MapForm::grids, reading);
   const bool keeps_file = is_glb(arguments.product);
+  MorphedFaces faces{{}, unit};
+  if (!keeps_file) faces.product = read_product(arguments.product);
+  if (faces.product.degenerate.count > 0)
+    context.warn(arguments.product + ": " + to_string(faces.product.degenerate));
   OutputFiles files;
   double off_path = 0;
   files.write(arguments.output, [&](const std::filesystem::path& path) {
     off_path =
-        keeps_file ? export_file(arguments, map, path, context) : export_faces(arguments, map, unit, path);
+        keeps_file ? export_file(arguments, map, path, context) : export_faces(arguments, map, faces, path);
   });
   files.keep();
   context.findings.figures = {{"off_path", off_path}};

@@ -36,6 +36,9 @@ Eigen::Matrix2Xi product_edges(const Product& product) {
       if (a != b) pairs.emplace_back(std::min(a, b), std::max(a, b));
     }
   }
+  for (std::size_t i = 0; i + 1 < product.line_edges.size(); i += 2)
+    if (const int a = product.line_edges[i], b = product.line_edges[i + 1]; a != b)
+      pairs.emplace_back(std::min(a, b), std::max(a, b));
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   Eigen::Matrix2Xi edges(2, static_cast<Eigen::Index>(pairs.size()));
@@ -63,6 +66,11 @@ std::vector<bool> stiff_edges(const Product& product, const Eigen::Matrix2Xi& ed
       continue;
     for (std::size_t k = 0; k < polygon.size(); ++k)
       stiff.emplace_back(key(polygon[k], polygon[(k + 1) % polygon.size()]));
+  }
+  for (std::size_t i = 0; i + 1 < product.line_edges.size(); i += 2) {
+    const int a = product.line_edges[i], b = product.line_edges[i + 1];
+    const int part = parts[static_cast<std::size_t>(a)];
+    if (part >= 0 && parts[static_cast<std::size_t>(b)] == part) stiff.emplace_back(key(a, b));
   }
   std::sort(stiff.begin(), stiff.end());
   for (Eigen::Index i = 0; i < edges.cols(); ++i)

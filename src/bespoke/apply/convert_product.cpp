@@ -20,6 +20,7 @@ ProductSummary convert_product(const std::filesystem::path& input,
   Product product = read_product(input);
   ProductSummary summary;
   summary.warnings = {"only faces and texture coordinates were kept"};
+  if (product.degenerate.count > 0) summary.warnings.push_back(to_string(product.degenerate));
   try {
     const ImageOfPoints image = image_at(elastic, target_from_source, times.back(), options.motion);
     if (options.refine) {

@@ -85,6 +85,7 @@ class SplitProduct {
   std::optional<Corner> middle(const Middles& middles, const Corner& a, const Corner& b);
   std::vector<Polygon> triangle_parts(const Polygon& triangle, const Middles& middles);
   Polygon with_middles(const Polygon& polygon, const Middles& middles);
+  std::vector<int> split_lines(const Middles& middles) const;
 
   Product faces_;
   Eigen::Matrix2Xd texture_;  // of the corners before any split
@@ -132,6 +133,19 @@ Polygon SplitProduct::with_middles(const Polygon& polygon, const Middles& middle
   return result;
 }
 
+std::vector<int> SplitProduct::split_lines(const Middles& middles) const {
+  std::vector<int> edges;
+  for (std::size_t i = 0; i + 1 < faces_.line_edges.size(); i += 2) {
+    const int a = faces_.line_edges[i], b = faces_.line_edges[i + 1];
+    const std::optional<int> vertex = middles.between(a, b);
+    if (vertex)
+      edges.insert(edges.end(), {a, *vertex, *vertex, b});
+    else
+      edges.insert(edges.end(), {a, b});
+  }
+  return edges;
+}
+
 void SplitProduct::split(const Middles& middles) {
   Product next;
   next.has_normals = faces_.has_normals;
@@ -144,6 +158,7 @@ void SplitProduct::split(const Middles& middles) {
         0.5 * (faces_.vertices.col(a) + faces_.vertices.col(b));
   }
   splits_.vertices.insert(splits_.vertices.end(), middles.edges().begin(), middles.edges().end());
+  next.line_edges = split_lines(middles);
   next.polygon_start.push_back(0);
   std::vector<int> numbers, first_part{0};
   std::size_t original = 0;

@@ -13,9 +13,10 @@ struct RefinedProduct {
 
 /// Splits, in rounds, every edge whose chord error exceeds `length` (> 0, mesh units) at its middle, until
 /// none does. Triangles become two, three or four; a polygon of more corners gets the middles as further
-/// corners. Texture coordinates are interpolated. What polygons share stays shared, and edges at the same
-/// places are split alike, so that no gaps open. Throws InvalidInput unless the length is positive, and for
-/// one that would take more than `max_vertices`, or that does not suffice after twenty rounds.
+/// corners, and so do lines. Texture coordinates are interpolated. What polygons share stays shared, and
+/// edges at the same places are split alike, so that no gaps open. Throws InvalidInput unless the length is
+/// positive, and for one that would take more than `max_vertices`, or that does not suffice after twenty
+/// rounds.
 ///
 /// Edges of parts that keep their shape are straight; a neighbour's longest edge is split all the same.
 RefinedProduct refine_product(Product product, const ImageOfPoints& image, double length,

@@ -9,6 +9,7 @@ namespace bespoke {
 
 TargetModel read_target(const std::filesystem::path& path) {
   Product product = read_product(path);
+  require_no_degenerate_faces(product);
   if (!product.corners.empty()) return {{product.vertices, triangulated(product)}, std::nullopt};
   if (product.normals.cols() == 0)
     throw InvalidInput(path.string() +
@@ -20,6 +21,7 @@ TargetModel read_target(const std::filesystem::path& path) {
 
 TriangleMesh read_source(const std::filesystem::path& path) {
   const Product product = read_product(path);
+  require_no_degenerate_faces(product);
   if (product.normals.cols() > 0)
     throw InvalidInput(path.string() +
                        ": is a point cloud, which can be a target only: a map is carried by the faces of its "

@@ -33,6 +33,12 @@ struct Corners {
   std::vector<std::uint32_t> indices;    ///< three a triangle
 };
 
+/// Whether a triangle of these corners names a vertex twice.
+bool is_degenerate(const Product& product, const std::array<int, 3>& triangle) {
+  const auto vertex = [&](std::size_t k) { return product.corners[static_cast<std::size_t>(triangle[k])]; };
+  return vertex(0) == vertex(1) || vertex(1) == vertex(2) || vertex(2) == vertex(0);
+}
+
 Corners corners_of(const Product& product) {
   Corners result;
   const bool has_texture = product.texture.cols() > 0;
@@ -51,7 +57,9 @@ Corners corners_of(const Product& product) {
   };
   for (std::size_t p = 0; p + 1 < product.polygon_start.size(); ++p)
     for (int k = product.polygon_start[p] + 2; k < product.polygon_start[p + 1]; ++k)
-      for (const int corner : {product.polygon_start[p], k - 1, k}) result.indices.push_back(number(corner));
+      if (!is_degenerate(product, {product.polygon_start[p], k - 1, k}))
+        for (const int corner : {product.polygon_start[p], k - 1, k})
+          result.indices.push_back(number(corner));
   return result;
 }
 

@@ -15,7 +15,8 @@ struct FaceSplits {
     int vertex = 0;
   };
 
-  std::vector<std::pair<int, int>> vertices;  ///< the ends of the edge whose middle is vertex n + i
+  /// The ends of the edge whose middle is vertex n + i, of polygons and of lines.
+  std::vector<std::pair<int, int>> vertices;
   std::vector<Corner> corners;
   /// Polygon k has become the parts first_part[k] … first_part[k+1]-1, which together have all of its corners
   /// and all that lie between them.

@@ -109,13 +109,25 @@ void write_product(const std::filesystem::path& path, const Product& product) {
   });
 }
 
+std::string to_string(const DegenerateFaces& faces) {
+  return std::to_string(faces.count) +
+         (faces.count == 1 ? " degenerate face, which was" : " degenerate faces, which were") + " kept (" +
+         faces.first + ")";
+}
+
+void require_no_degenerate_faces(const Product& product) {
+  if (product.degenerate.count > 0)
+    throw FormatError(product.degenerate.first + "; of a model remove degenerate faces first");
+}
+
 Faces triangulated(const Product& product) {
   std::vector<int> triangles;
   for (std::size_t polygon = 0; polygon + 1 < product.polygon_start.size(); ++polygon) {
     const int* corner = product.corners.data() + product.polygon_start[polygon];
     const int corners = product.polygon_start[polygon + 1] - product.polygon_start[polygon];
     for (int k = 2; k < corners; ++k)
-      triangles.insert(triangles.end(), {corner[0], corner[k - 1], corner[k]});
+      if (corner[0] != corner[k - 1] && corner[k - 1] != corner[k] && corner[k] != corner[0])
+        triangles.insert(triangles.end(), {corner[0], corner[k - 1], corner[k]});
   }
   return Eigen::Map<const Faces>(triangles.data(), 3, static_cast<Eigen::Index>(triangles.size() / 3));
 }

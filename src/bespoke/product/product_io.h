@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,16 +9,27 @@
 
 namespace bespoke {
 
+/// Polygons of fewer than three corners, or that name a vertex twice. A product keeps them; a model has none.
+struct DegenerateFaces {
+  std::size_t count = 0;
+  std::string first;  ///< "a.obj:5: a face names vertex 2 twice"; empty without any
+};
+
+/// "2 degenerate faces, which were kept (a.obj:5: a face names vertex 2 twice)".
+std::string to_string(const DegenerateFaces& faces);
+
 /// The faces of a model or a product. Polygons stay polygons; vertex order, face order and the corners'
-/// texture coordinates come back as they were read. Groups, materials, colours and polylines do not.
+/// texture coordinates come back as they were read. Groups, materials and colours do not.
 struct Product {
   Points vertices;                 ///< 3×n, mesh units
   std::vector<int> polygon_start;  ///< p+1; polygon k is corners[start[k]] … corners[start[k+1]-1]
   std::vector<int> corners;        ///< vertex indices
-  Eigen::Matrix2Xd texture;        ///< 2×(number of corners), (0, 0) where a face has none; or empty
-  bool has_normals = false;        ///< the file carried normals, so the writer writes recomputed ones
-  std::string unit;                ///< "m", "mm", … where the file says it (glTF, 3MF), else empty
-  Points normals;                  ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
+  std::vector<int> line_edges;     ///< the ends of every edge of the polylines of an OBJ file, by twos
+  DegenerateFaces degenerate;
+  Eigen::Matrix2Xd texture;  ///< 2×(number of corners), (0, 0) where a face has none; or empty
+  bool has_normals = false;  ///< the file carried normals, so the writer writes recomputed ones
+  std::string unit;          ///< "m", "mm", … where the file says it (glTF, 3MF), else empty
+  Points normals;            ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
 };
 
 /// OBJ, PLY (ascii and binary), STL, OFF, glTF (.gltf, .glb) or 3MF, by the ending of the name, every number
@@ -28,7 +40,7 @@ struct Product {
 /// pose; of a 3MF file where its build shows them. A product may have no faces (a point set). Texture
 /// coordinates are read from OBJ and PLY. Throws FileError when the file cannot be opened, InvalidInput for
 /// an unknown ending, FormatError naming the file and the line (binary: the element) of a bad index, number
-/// or face, and for coordinates beyond the range of floats, in which maps are stored.
+/// or corner, and for coordinates beyond the range of floats, in which maps are stored.
 Product read_product(const std::filesystem::path& path);
 
 /// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as
@@ -51,7 +63,10 @@ std::string written_product_endings();
 /// What follows the endings in the message about a file of another ending: how to convert USD, else nothing.
 std::string conversion_advice(const std::filesystem::path& path);
 
-/// Polygons as triangle fans about their first corner, in place.
+/// Polygons as triangle fans about their first corner, in place, without triangles that name a vertex twice.
 Faces triangulated(const Product& product);
+
+/// Throws FormatError with the first degenerate face, if there is one: for models.
+void require_no_degenerate_faces(const Product& product);
 
 }  // namespace bespoke

@@ -8,7 +8,8 @@ namespace bespoke {
 
 FaceParts::FaceParts(const FaceSplits& splits, std::size_t polygons, const std::filesystem::path& path)
     : splits_(splits), path_(path.string()) {
-  if (splits.first_part.size() != polygons + 1 || splits.part_corners.empty()) refuse();
+  if (splits.first_part.size() != polygons + 1) refuse();
+  if (splits.part_corners.empty()) return;  // lines alone are split
   const int last = *std::max_element(splits.part_corners.begin(), splits.part_corners.end());
   first_made_ = last + 1 - static_cast<int>(splits.corners.size());
 }

@@ -33,6 +33,39 @@ void require_countable(std::uint64_t vertices, const std::filesystem::path& path
                       " vertices are more than a reference model can number");
 }
 
+void add(DegenerateFaces& faces, std::string face) {
+  if (faces.count++ == 0) faces.first = std::move(face);
+}
+
+void FaceFaults::add(const std::vector<std::uint32_t>& faces) {
+  std::vector<int> corners;
+  for (std::size_t at = 0; at < faces.size(); ++faces_) {
+    const std::size_t count = faces[at++];
+    corners.assign(faces.begin() + static_cast<std::ptrdiff_t>(at),
+                   faces.begin() + static_cast<std::ptrdiff_t>(at + count));
+    at += count;
+    std::string fault = face_fault(corners.data(), count, 0);
+    if (fault.empty()) continue;
+    if (count_++ > 0) continue;
+    first_ = faces_;
+    fault_ = std::move(fault);
+  }
+}
+
+void FaceFaults::add(const FaceFaults& next) {
+  if (count_ == 0 && next.count_ > 0) {
+    first_ = faces_ + next.first_;
+    fault_ = next.fault_;
+  }
+  faces_ += next.faces_;
+  count_ += next.count_;
+}
+
+DegenerateFaces FaceFaults::degenerate(const std::filesystem::path& path) const {
+  if (count_ == 0) return {};
+  return {count_, path.string() + ": face " + std::to_string(first_) + ": " + fault_};
+}
+
 std::string face_fault(const int* corners, std::size_t count, int first) {
   if (count < 3) return "a face of " + std::to_string(count) + " corners";
   std::vector<int> sorted(corners, corners + count);
@@ -57,14 +90,10 @@ void GatheredFaces::add_texture(const Eigen::Matrix2Xd& texture) { texture_.push
 void GatheredFaces::add_normals(const Points& normals) { normals_.push_back(normals); }
 
 void GatheredFaces::add_faces(const std::vector<std::uint32_t>& faces) {
+  faults_.add(faces);
   for (std::size_t at = 0; at < faces.size();) {
     const std::size_t count = faces[at++];
-    const std::size_t begin = corners_.size();
     for (std::size_t k = 0; k < count; ++k) corners_.push_back(static_cast<int>(faces[at++]));
-    const std::string fault = face_fault(corners_.data() + begin, count, 0);
-    if (!fault.empty())
-      throw FormatError(path_.string() + ": face " + std::to_string(polygon_start_.size() - 1) + ": " +
-                        fault);
     if (corners_.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
       throw FormatError(path_.string() + ": more corners of faces than a reference model can number");
     polygon_start_.push_back(static_cast<int>(corners_.size()));
@@ -74,6 +103,7 @@ void GatheredFaces::add_faces(const std::vector<std::uint32_t>& faces) {
 Product GatheredFaces::product(bool has_normals) {
   Product product;
   product.has_normals = has_normals;
+  product.degenerate = faults_.degenerate(path_);
   const auto count = static_cast<Eigen::Index>(point_count_);
   product.vertices = joined(points_, count);
   product.polygon_start = std::move(polygon_start_);

@@ -10,13 +10,26 @@
 
 namespace bespoke {
 
+/// Counts the degenerate ones of a file's faces, block by block.
+class FaceFaults {
+ public:
+  /// Of each face the number of its corners, and the corners.
+  void add(const std::vector<std::uint32_t>& faces);
+  void add(const FaceFaults& next);
+  DegenerateFaces degenerate(const std::filesystem::path& path) const;
+
+ private:
+  std::size_t faces_ = 0, count_ = 0, first_ = 0;
+  std::string fault_;  ///< of the first one
+};
+
 /// Polygons and their vertices while a file is read.
 class GatheredFaces {
  public:
   /// The path, for messages, must outlive it.
   explicit GatheredFaces(const std::filesystem::path& path) : path_(path) {}
 
-  /// Each throws FormatError naming the vertex or the face at fault.
+  /// Each throws FormatError naming the vertex at fault. Degenerate faces are counted.
   void add_points(const Points& points);
   void add_texture(const Eigen::Matrix2Xd& texture);  ///< of points
   void add_normals(const Points& normals);            ///< of points
@@ -32,6 +45,7 @@ class GatheredFaces {
   std::vector<Eigen::Matrix2Xd> texture_;
   std::size_t point_count_ = 0;
   std::vector<int> polygon_start_{0}, corners_;
+  FaceFaults faults_;
 };
 
 /// All of a text format's file. The normals of a point cloud are requested: those of a mesh are not needed.
@@ -50,6 +64,9 @@ std::vector<std::size_t> kept_triangles(const Points& corners);
 /// What is wrong with a face: fewer than three corners, or one that occurs twice, numbered from `first`.
 /// Empty when nothing is.
 std::string face_fault(const int* corners, std::size_t count, int first);
+
+/// Counts one more, for messages a "path:line: what".
+void add(DegenerateFaces& faces, std::string face);
 
 /// Throws FormatError, naming the file, for more than `int` can number.
 void require_countable(std::uint64_t vertices, const std::filesystem::path& path);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bespoke/csv_rows.h"
+
 namespace bespoke {
 namespace {
 
@@ -71,6 +73,17 @@ bool read_number(const char* begin, const char* end, NumberText& number) {
   number.decimals = static_cast<std::int16_t>(scale);
   number.leading = static_cast<std::int16_t>(significant - scale);
   return true;
+}
+
+bool read_number(std::string_view text, char point, NumberText& number) {
+  if (point == '.' || text.find_first_of(".,") == std::string_view::npos)
+    return read_number(text.data(), text.data() + text.size(), number);
+  if (!has_decimal_comma(text)) return false;
+  std::string with_point(text);
+  std::replace(with_point.begin(), with_point.end(), point, '.');
+  const bool is_number = read_number(with_point.data(), with_point.data() + with_point.size(), number);
+  number.begin = text.data();
+  return is_number;
 }
 
 bool read_integer(const char* begin, const char* end, long long& value) {

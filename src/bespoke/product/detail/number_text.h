@@ -23,6 +23,9 @@ struct NumberText {
 /// short forms cost a few nanoseconds.
 bool read_number(const char* begin, const char* end, NumberText& number);
 
+/// The same with a decimal comma, if `point` is one, and digits on both sides of it.
+bool read_number(std::string_view text, char point, NumberText& number);
+
 /// Reads all of [begin, end) as a whole number; false when it is none.
 bool read_integer(const char* begin, const char* end, long long& value);
 

@@ -5,6 +5,7 @@
 #include "bespoke/product/detail/obj_statements.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/text_records.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -20,12 +21,14 @@ struct BlockContent {
   std::vector<NumberTriple> positions, normals;
   std::vector<std::string_view> normal_lines;  ///< whole, from their first word
   std::vector<Corner> corners;
+  std::string_view line_break;
 };
 
 class BlockReader {
  public:
   BlockReader(const TextBlock& block, const std::filesystem::path& path, bool with_normals, bool with_corners)
       : words_(block, path, obj_syntax), with_normals_(with_normals), with_corners_(with_corners) {
+    content_.line_break = first_line_break(block.bytes);
     for (std::size_t kind = 0; kind < 3; ++kind) count_[kind] = static_cast<long long>(block.before[kind]);
   }
 
@@ -119,6 +122,7 @@ class ObjCarrier {
     summary.directions = static_cast<std::size_t>(content_.counts[2]) - content_.unused_normals;
     if (content_.has_free_form)
       summary.warnings.emplace_back("free-form statements (vp, curv, surf) were left as they are");
+    if (content_.degenerate.count > 0) summary.warnings.push_back(to_string(content_.degenerate));
     if (content_.unused_normals > 0)
       summary.warnings.push_back(std::to_string(content_.unused_normals) +
                                  " normals that no face uses were left as they are");
@@ -135,7 +139,8 @@ class ObjCarrier {
       std::vector<NumberEdit> own;
       add_edits({content.normals[i]}, lines.col(line), normals_.decimals(), own);
       edit.text += edited(edit.old, std::move(own));
-      if (edit.text.back() != '\n' && line + 1 < lines.cols()) edit.text += '\n';
+      const bool ends_line = edit.text.back() == '\n' || edit.text.back() == '\r';
+      if (!ends_line && line + 1 < lines.cols()) edit.text += content.line_break;
     }
     texts.push_back(std::move(edit));
   }

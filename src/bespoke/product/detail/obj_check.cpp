@@ -7,7 +7,9 @@
 #include <string_view>
 
 #include "bespoke/error.h"
+#include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/obj_statements.h"
+#include "bespoke/product/detail/text_records.h"
 
 namespace bespoke {
 namespace {
@@ -23,6 +25,7 @@ struct BlockFindings {
   Counts largest{};  ///< numbers that elements name
   Uses uses;
   bool has_free_form = false;
+  DegenerateFaces degenerate;
 };
 
 class BlockCheck {
@@ -77,6 +80,7 @@ class BlockCheck {
   void read_element(const char* what, std::size_t least) {
     std::size_t corners = 0;
     int form = 0;
+    vertices_.clear();
     for (std::string_view word = words_.word(); !word.empty(); word = words_.word(), ++corners) {
       const std::optional<ObjCorner> corner = read_corner(word);
       if (!corner) words_.fail(std::string("a ") + what + " has the corner " + in_quotes(word));
@@ -88,9 +92,16 @@ class BlockCheck {
       for (std::size_t kind = 0; kind < 3; ++kind)
         if (corner->index[kind] != 0) index[kind] = resolved(what, kind, corner->index[kind]);
       if (index[2] > 0) add_use(index[2] - 1, index[0] - 1);
+      vertices_.push_back(index[0]);
     }
     if (corners < least)
       words_.fail(std::string("a ") + what + " of " + std::to_string(corners) + " corners");
+    if (least < 3) return;
+    std::sort(vertices_.begin(), vertices_.end());
+    const auto twice = std::adjacent_find(vertices_.begin(), vertices_.end());
+    if (twice != vertices_.end())
+      add(findings_.degenerate,
+          words_.place() + ": a face names vertex " + std::to_string(*twice) + " twice");
   }
 
   // Elements may name what comes later in the file, so an upper limit is known only once the file is read.
@@ -111,6 +122,7 @@ class BlockCheck {
   TextWords words_;
   Counts limits_;
   Counts count_{};
+  std::vector<long long> vertices_;  // of an element
   BlockFindings findings_;
 };
 
@@ -159,6 +171,7 @@ void finish_uses(ObjContent& content) {
 }  // namespace
 
 ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
+  text_head(file);
   ObjContent content;
   UseTable uses(file.size());
   Counts largest{};
@@ -173,6 +186,8 @@ ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
         content.position_decimals.merge(found.position_decimals);
         content.normal_decimals.merge(found.normal_decimals);
         content.has_free_form = content.has_free_form || found.has_free_form;
+        if (content.degenerate.count == 0) content.degenerate.first = found.degenerate.first;
+        content.degenerate.count += found.degenerate.count;
         for (std::size_t kind = 0; kind < 3; ++kind)
           largest[kind] = std::max(largest[kind], found.largest[kind]);
         uses.add(found.uses, content);

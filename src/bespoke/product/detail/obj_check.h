@@ -6,6 +6,7 @@
 
 #include "bespoke/product/detail/number_text.h"
 #include "bespoke/product/detail/product_file.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/progress.h"
 #include "bespoke/types.h"
 
@@ -17,6 +18,7 @@ struct ObjContent {
   Box box;                                ///< of the positions
   CarriedDecimals position_decimals, normal_decimals;
   bool has_free_form = false;
+  DegenerateFaces degenerate;
 
   static constexpr std::uint32_t unused = 0xffffffff;
   /// For every normal the first position, from 0, that a corner joins it with; empty without normals.

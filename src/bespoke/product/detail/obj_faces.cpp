@@ -1,3 +1,4 @@
+#include <optional>
 #include <vector>
 
 #include "bespoke/product/detail/face_formats.h"
@@ -15,6 +16,8 @@ struct BlockFaces {
   std::vector<NumberTriple> positions;
   std::vector<std::array<double, 2>> texture;
   std::vector<int> sizes, corners, corner_texture;  ///< from 0
+  std::vector<int> line_edges;                      ///< vertices, by twos
+  DegenerateFaces degenerate;
 };
 
 class FaceReader {
@@ -43,6 +46,9 @@ class FaceReader {
         case ObjStatement::face:
           read_face();
           break;
+        case ObjStatement::line:
+          read_line();
+          break;
         default:
           break;
       }
@@ -67,7 +73,18 @@ class FaceReader {
     }
     faces_.sizes.push_back(static_cast<int>(faces_.corners.size() - begin));
     const std::string fault = face_fault(faces_.corners.data() + begin, faces_.corners.size() - begin, 1);
-    if (!fault.empty()) words_.fail(fault);
+    if (!fault.empty()) add(faces_.degenerate, words_.place() + ": " + fault);
+  }
+
+  void read_line() {
+    std::optional<int> before;
+    for (std::string_view word = words_.word(); !word.empty(); word = words_.word()) {
+      const std::optional<ObjCorner> corner = read_corner(word);
+      if (!corner) words_.fail("the file has changed while it was read");
+      const int vertex = resolved(0, corner->index[0]);
+      if (before) faces_.line_edges.insert(faces_.line_edges.end(), {*before, vertex});
+      before = vertex;
+    }
   }
 
   int resolved(std::size_t kind, long long written) const {
@@ -109,6 +126,9 @@ Product read_obj_faces(const InputFile& file) {
         for (const int size : block.sizes)
           product.polygon_start.push_back(product.polygon_start.back() + size);
         append(block.corners, product.corners);
+        append(block.line_edges, product.line_edges);
+        if (product.degenerate.count == 0) product.degenerate.first = block.degenerate.first;
+        product.degenerate.count += block.degenerate.count;
         append(block.texture, texture);
         append(block.corner_texture, corner_texture);
       },

@@ -13,6 +13,7 @@
 #include "bespoke/product/detail/obj_text.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/text_records.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -53,16 +54,45 @@ class CornerMaker {
                        })) {}
 
   void run() {
+    for (std::size_t i = 0; i < splits_.vertices.size(); ++i)
+      edges_.emplace(std::minmax(splits_.vertices[i].first, splits_.vertices[i].second), static_cast<int>(i));
     obj_.faces.resize(obj_.faces.size() + splits_.corners.size());
     std::size_t polygon = 0;
     for (ObjElement& element : obj_.elements) {
       element.made_before = made();
       if (element.is_face) make(polygon++, element);
+      if (element.is_line) split_line(element);
       element.made_until = made();
     }
   }
 
  private:
+  void split_line(ObjElement& element) {
+    std::vector<ObjKinds> split{obj_.others[element.first].data};
+    for (std::size_t k = element.first + 1; k < element.last; ++k)
+      append_edge(obj_.others[k - 1].data, obj_.others[k].data, element, split);
+    if (split.size() == element.last - element.first) return;
+    for (ObjKinds& corner : split) corner[obj_position] = datum(corner[obj_position]);
+    element.split = std::move(split);
+  }
+
+  /// What lies between the ends of a line's edge, in their order, and its end. `a` and `b` are said of
+  /// vertices of the product, which are numbered otherwise than data are.
+  void append_edge(const ObjKinds& a, const ObjKinds& b, const ObjElement& element,
+                   std::vector<ObjKinds>& split) {
+    const auto found = edges_.find(std::minmax(a[obj_position], b[obj_position]));
+    if (found == edges_.end()) {
+      split.push_back(b);
+      return;
+    }
+    middle_of_edge(found->second, element);
+    ObjKinds middle{obj_.data[obj_position].of_file() + found->second, no_obj_data, no_obj_data};
+    for (std::size_t kind = obj_texture; kind < obj_kinds; ++kind)
+      middle[kind] = middle_of(kind, a[kind], b[kind], element);
+    append_edge(a, middle, element, split);
+    append_edge(middle, b, element, split);
+  }
+
   ObjKinds made() const {
     ObjKinds made;
     for (std::size_t kind = 0; kind < obj_kinds; ++kind) made[kind] = obj_.data[kind].added();
@@ -82,13 +112,15 @@ class CornerMaker {
     }
   }
 
+  /// Of a vertex of the product whose datum is made already, or is in the file.
+  int datum(int vertex) const {
+    const int made = vertex - obj_.data[obj_position].of_file();
+    return made < 0 ? vertex : middles_[static_cast<std::size_t>(made)];
+  }
+
   int middle_of_edge(int edge, const ObjElement& element) {
     int& middle = middles_[static_cast<std::size_t>(edge)];
     if (middle != no_obj_data) return middle;
-    const auto datum = [&](int vertex) {
-      const int made = vertex - obj_.data[obj_position].of_file();
-      return made < 0 ? vertex : middles_[static_cast<std::size_t>(made)];
-    };
     const auto [a, b] = splits_.vertices[static_cast<std::size_t>(edge)];
     middle = add(obj_position, datum(a), datum(b), element);
     if (pairs_normals_) add(obj_normal, datum(a), datum(b), element);
@@ -111,7 +143,8 @@ class CornerMaker {
   ObjText& obj_;
   const FaceSplits& splits_;
   const FaceParts& parts_;
-  std::vector<int> middles_;  // of the splits' edges
+  std::vector<int> middles_;                  // of the splits' edges
+  std::map<std::pair<int, int>, int> edges_;  // their numbers, by their vertices
   std::array<std::map<std::pair<int, int>, int>, obj_kinds> shared_;
   bool pairs_normals_;  // no corner names any, and as many as positions stand in front of every element
 };
@@ -132,6 +165,8 @@ class Writer {
     for (const ObjElement& element : obj_.elements) {
       if (element.is_face && parts_.is_split(polygon))
         edits.push_back({element.text, with_parts(polygon, element)});
+      else if (!element.split.empty())
+        edits.push_back({element.text, split_line(element)});
       else
         renumber(element, edits);
       if (element.is_face) ++polygon;
@@ -140,8 +175,27 @@ class Writer {
   }
 
  private:
-  /// The new vertex data that stand in front of a face, and its parts.
+  /// The new vertex data that stand in front of a line, and the line.
+  std::string split_line(const ObjElement& element) const {
+    std::string text = made_data(element) + std::string(element.keyword);
+    for (const ObjKinds& corner : element.split) text.append(" ").append(word(corner, {}));
+    return text;
+  }
+
+  /// The same of a face, and its parts.
   std::string with_parts(std::size_t polygon, const ObjElement& element) const {
+    const std::string line_break = line_break_behind(element);
+    std::string text = made_data(element);
+    for (int part = parts_.first(polygon); part < parts_.first(polygon + 1); ++part) {
+      if (part > parts_.first(polygon)) text += line_break;
+      text += element.keyword;
+      for (const int corner : parts_.corners_of_part(part))
+        text.append(" ").append(word(obj_.faces[static_cast<std::size_t>(corner)].data, {}));
+    }
+    return text;
+  }
+
+  std::string made_data(const ObjElement& element) const {
     const std::string line_break = line_break_behind(element);
     std::string text;
     for (std::size_t kind = 0; kind < obj_kinds; ++kind)
@@ -155,12 +209,6 @@ class Writer {
         }
         text += line_break;
       }
-    for (int part = parts_.first(polygon); part < parts_.first(polygon + 1); ++part) {
-      if (part > parts_.first(polygon)) text += line_break;
-      text += element.keyword;
-      for (const int corner : parts_.corners_of_part(part))
-        text.append(" ").append(word(obj_.faces[static_cast<std::size_t>(corner)].data, {}));
-    }
     return text;
   }
 
@@ -205,8 +253,7 @@ class Writer {
 
   std::string line_break_behind(const ObjElement& element) const {
     const auto behind = static_cast<std::size_t>(element.text.data() + element.text.size() - text_.data());
-    const std::size_t newline = text_.find('\n', behind);
-    return newline != std::string_view::npos && newline > 0 && text_[newline - 1] == '\r' ? "\r\n" : "\n";
+    return std::string(first_line_break(text_.substr(behind)));
   }
 
   std::string_view text_;

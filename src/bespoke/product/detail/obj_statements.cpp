@@ -1,6 +1,6 @@
 #include "bespoke/product/detail/obj_statements.h"
 
-#include <cstring>
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 
@@ -57,18 +57,20 @@ bool ends_word(const char* at, const char* end) {
   return at == end || static_cast<unsigned char>(*at) <= ' ' || *at == '\\' || *at == '#';
 }
 
+/// To the line's first word, or to its line break.
+void skip_blanks(const char*& at, const char* end) {
+  while (at != end && *at != '\n' && *at != '\r' && static_cast<unsigned char>(*at) <= ' ') ++at;
+}
+
 /// Behind the line break of the line at hand, or of the last one that it goes on in.
 const char* behind_statement(const char* at, const char* end, bool may_continue) {
   while (at != end) {
-    const void* const found = std::memchr(at, '\n', static_cast<std::size_t>(end - at));
-    if (!found) return end;
-    const char* const newline = static_cast<const char*>(found);
-    const char* last = newline;
-    while (last != at && last[-1] == '\r') --last;
-    if (!may_continue || last == at || last[-1] != '\\') return newline + 1;
-    at = newline + 1;
+    const char* const found = line_break(at, end);
+    const bool goes_on = may_continue && found != at && found[-1] == '\\';
+    at = behind_line_break(found, end);
+    if (!goes_on) break;
   }
-  return end;
+  return at;
 }
 
 }  // namespace
@@ -79,7 +81,11 @@ void count_obj(std::string_view lines, std::array<std::uint64_t, 3>& sums) {
   const char* const end = at + lines.size();
   while (at != end) {
     const char* const begin = at;
-    while (at != end && *at != '\n' && static_cast<unsigned char>(*at) <= ' ') ++at;
+    skip_blanks(at, end);
+    if (std::string_view(at, static_cast<std::size_t>(end - at)).starts_with(byte_order_mark)) {
+      at += byte_order_mark.size();
+      skip_blanks(at, end);
+    }
     if (at != end && *at == '\\')  // a statement that begins on the next line
       return count_word_by_word({begin, static_cast<std::size_t>(end - begin)}, sums);
     if (at != end && *at == 'v') {
@@ -110,10 +116,10 @@ std::optional<ObjCorner> read_corner(std::string_view word) {
       index = 10 * index + (*at - '0');
     }
     if (counts_back) index = -index;
-    const bool is_left_out = kind == 1 && at == begin;
+    const bool is_left_out = kind > 0 && at == begin;
     if (index == 0 && !is_left_out) return std::nullopt;
     if (kind == 2) corner.normal = {begin, static_cast<std::size_t>(at - begin)};
-    if (at == end) return is_left_out ? std::nullopt : std::optional(corner);
+    if (at == end) return corner;
     if (*at != '/') return std::nullopt;
     ++at;
   }

@@ -20,8 +20,9 @@ inline constexpr LineSyntax obj_syntax{'#', true};
 /// Counts positions, texture coordinates and normals.
 void count_obj(std::string_view lines, std::array<std::uint64_t, 3>& sums);
 
-/// "v", "v/t", "v//n" or "v/t/n": numbers of position, texture coordinate and normal from 1, or back from the
-/// last one read when negative; 0 where there is none.
+/// "v", "v/t", "v//n" or "v/t/n", of which some programs leave parts empty ("v//", "v/t/"): numbers of
+/// position, texture coordinate and normal from 1, or back from the last one read when negative; 0 where
+/// there is none.
 struct ObjCorner {
   std::array<long long, 3> index{};
   std::string_view normal;  ///< the characters of the normal's number

@@ -25,11 +25,9 @@ class Reader {
           read_element(obj_normal);
           break;
         case ObjStatement::face:
-          read_corners(keyword, true);
-          break;
         case ObjStatement::line:
         case ObjStatement::point:
-          read_corners(keyword, false);
+          read_corners(keyword);
           break;
         default:
           break;
@@ -48,11 +46,12 @@ class Reader {
     text_.data[kind].add_of_file(std::move(numbers));
   }
 
-  void read_corners(std::string_view keyword, bool is_face) {
-    std::vector<ObjElementCorner>& corners = is_face ? text_.faces : text_.others;
+  void read_corners(std::string_view keyword) {
     ObjElement element;
     element.keyword = keyword;
-    element.is_face = is_face;
+    element.is_face = obj_statement(keyword) == ObjStatement::face;
+    element.is_line = obj_statement(keyword) == ObjStatement::line;
+    std::vector<ObjElementCorner>& corners = element.is_face ? text_.faces : text_.others;
     element.first = corners.size();
     for (std::size_t kind = 0; kind < obj_kinds; ++kind) element.before[kind] = text_.data[kind].of_file();
     for (std::string_view word = words_.word(); !word.empty(); word = words_.word()) {

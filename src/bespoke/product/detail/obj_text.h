@@ -64,10 +64,11 @@ struct ObjElementCorner {
 struct ObjElement {
   std::string_view text;  ///< from its first word to its last corner
   std::string_view keyword;
-  bool is_face = false;
+  bool is_face = false, is_line = false;
   ObjKinds before{};                     ///< vertex data of the file in front of it
   std::size_t first = 0, last = 0;       ///< its corners, in ObjText's faces or others
   ObjKinds made_before{}, made_until{};  ///< new ones in front of it, without and with its own
+  std::vector<ObjKinds> split;           ///< what the corners of a line become; empty where it stays
 };
 
 struct ObjText {

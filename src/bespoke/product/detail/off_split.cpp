@@ -9,6 +9,7 @@
 #include "bespoke/product/detail/off_text.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/detail/split_numbers.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -25,7 +26,7 @@ class OffSplitter {
         header_(read_off_header(file)),
         splits_(splits),
         parts_(splits, header_.faces, file.path()),
-        line_break_(text.substr(0, header_.size).ends_with("\r\n") ? "\r\n" : "\n") {
+        line_break_(first_line_break(text)) {
     body_.bytes = text.substr(header_.size);
     body_.line = header_.lines + 1;
     decimals_ = position_decimals(OffText(file.path(), header_).records(body_).points);

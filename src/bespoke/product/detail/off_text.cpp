@@ -1,9 +1,9 @@
 #include "bespoke/product/detail/off_text.h"
 
-#include <algorithm>
 #include <string>
 
 #include "bespoke/error.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -32,7 +32,7 @@ bool read_keyword(TextWords& words, OffHeader& header) {
 }  // namespace
 
 OffHeader read_off_header(const InputFile& file) {
-  const std::string head = file_head(file);
+  const std::string head = text_head(file);
   TextBlock block;
   block.bytes = head;
   TextWords words(block, file.path());
@@ -51,7 +51,7 @@ OffHeader read_off_header(const InputFile& file) {
   header.vertices = static_cast<std::uint64_t>(vertices);
   header.faces = static_cast<std::uint64_t>(faces);
   header.size = static_cast<std::uint64_t>(words.line_end() - head.data());
-  header.lines = static_cast<std::size_t>(std::count(head.data(), words.line_end(), '\n'));
+  header.lines = count_line_breaks(std::string_view(head).substr(0, header.size));
   return header;
 }
 

@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/directions.h"
+#include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/ply_binary.h"
 #include "bespoke/product/detail/ply_text.h"
 #include "bespoke/product/detail/product_formats.h"
@@ -16,9 +17,20 @@ class PlyBinaryCarrier {
   PlyBinaryCarrier(const InputFile& file, const PlyHeader& header, const PointMotion& motion)
       : file_(file), header_(header), motion_(motion) {}
 
-  /// Nothing for a block that stays as it is.
-  std::vector<std::string> carry(const PlyBlock& block) const {
-    require_vertices(header_, block, file_.path());
+  struct Carried {
+    std::vector<std::string> frames;  ///< none for a block that stays as it is
+    FaceFaults faults;
+  };
+
+  Carried carry(const PlyBlock& block) const {
+    Carried carried;
+    carried.faults.add(face_corners(header_, block, file_.path()));
+    carried.frames = frames_of(block);
+    return carried;
+  }
+
+ private:
+  std::vector<std::string> frames_of(const PlyBlock& block) const {
     if (block.element != header_.vertex || block.count == 0) return {};
     const PlyPlaces places(header_, block);
     Points x(3, static_cast<Eigen::Index>(block.count)), normals(3, x.cols());
@@ -42,7 +54,6 @@ class PlyBinaryCarrier {
     return frames;
   }
 
- private:
   void require_finite_input(const PlyBlock& block, const Points& x) const {
     if (x.allFinite()) return;
     for (Eigen::Index i = 0; i < x.cols(); ++i)
@@ -59,8 +70,9 @@ class PlyBinaryCarrier {
   const PointMotion& motion_;
 };
 
-void carry_binary(const InputFile& file, std::vector<OutputFile>& outputs, const PlyHeader& header,
-                  const PointMotion& motion, const Progress& progress) {
+FaceFaults carry_binary(const InputFile& file, std::vector<OutputFile>& outputs, const PlyHeader& header,
+                        const PointMotion& motion, const Progress& progress) {
+  FaceFaults faults;
   std::string head(header.size, '\0');
   file.read(0, head.data(), head.size());
   for (OutputFile& output : outputs) output.write(head);
@@ -69,11 +81,14 @@ void carry_binary(const InputFile& file, std::vector<OutputFile>& outputs, const
   walk_blocks(
       file, header.size, [&](const Window& window) { return cutter(window); },
       [&](const PlyBlock& block) { return carrier.carry(block); },
-      [&](const PlyBlock& block, std::vector<std::string>&& frames) {
+      [&](const PlyBlock& block, PlyBinaryCarrier::Carried&& carried) {
+        faults.add(carried.faults);
         for (std::size_t frame = 0; frame < outputs.size(); ++frame)
-          outputs[frame].write(frames.empty() ? block.bytes : std::string_view(frames[frame]));
+          outputs[frame].write(carried.frames.empty() ? block.bytes
+                                                      : std::string_view(carried.frames[frame]));
       },
       progress);
+  return faults;
 }
 
 void require_real(const InputFile& file, const PlyHeader& header) {
@@ -102,7 +117,9 @@ CarrySummary carry_ply(const InputFile& file, std::vector<OutputFile>& outputs, 
   if (header.encoding == PlyHeader::Encoding::ascii) {
     summary = carry_text(file, outputs, PlyText(file.path(), header), motion, progress);
   } else {
-    carry_binary(file, outputs, header, motion, progress);
+    const DegenerateFaces degenerate =
+        carry_binary(file, outputs, header, motion, progress).degenerate(file.path());
+    if (degenerate.count > 0) summary.warnings.push_back(to_string(degenerate));
     summary.points = static_cast<std::size_t>(header.elements[header.vertex].count);
     summary.directions = header.normal ? summary.points : 0;
   }

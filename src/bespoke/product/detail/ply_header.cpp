@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/text_records.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -96,12 +97,13 @@ std::optional<std::size_t> PlyElement::record_size() const {
 }
 
 PlyHeader read_ply_header(const InputFile& file) {
-  const std::string head = file_head(file);
+  const std::string head = text_head(file);
   TextBlock block;
   block.bytes = head;
   TextWords words(block, file.path(), header_syntax);
   PlyHeader header;
-  if (!words.next_line() || words.line_begin() != head.data() || words.word() != "ply")
+  if (!words.next_line() || words.line_begin() != without_byte_order_mark(head).data() ||
+      words.word() != "ply")
     throw FormatError(file.path().string() + ":1: a PLY file begins with ply");
   bool has_format = false;
   while (true) {
@@ -121,9 +123,12 @@ PlyHeader read_ply_header(const InputFile& file) {
     }
   }
   if (!has_format) words.fail("the header names no format");
-  if (words.line_end()[-1] != '\n') words.fail("the file ends behind its header");
   header.size = static_cast<std::size_t>(words.line_end() - head.data());
-  header.lines = static_cast<std::size_t>(std::count(head.data(), words.line_end(), '\n'));
+  const std::string_view whole = std::string_view(head).substr(0, header.size);
+  if (!whole.ends_with('\n') && !whole.ends_with('\r')) words.fail("the file ends behind its header");
+  // Where lines end at CR alone, an LF behind the last one is a byte of the body.
+  if (first_line_break(head) == "\r" && whole.ends_with("\r\n")) --header.size;
+  header.lines = count_line_breaks(whole);
   find_vertices(file, header);
   return header;
 }

@@ -9,6 +9,7 @@
 #include "bespoke/product/detail/ply_binary.h"
 #include "bespoke/product/detail/ply_scalar.h"
 #include "bespoke/product/detail/ply_text.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -83,7 +84,7 @@ void PlyRecords::find_lines(const InputFile& file) {
   std::array<std::uint64_t, 3> sums{};
   line_counter(ply_body_syntax)(block.bytes, sums);
   body.require_complete(sums);
-  if (header_.size > 1 && text_[header_.size - 2] == '\r') line_break_ = "\r\n";
+  line_break_ = first_line_break(text_);
   TextWords words(block, file.path(), ply_body_syntax);
   for (std::size_t i = 0; i < starts_.size(); ++i) {
     starts_[i].push_back(end_);
@@ -135,7 +136,8 @@ void PlyRecords::append(std::string& to, std::size_t element, const PlyValues& v
                          header_.elements[element].name + " does not hold " + format_number(value, 17) +
                          ", which splitting edges needs; give it a wider one");
   };
-  if (is_text() && !to.empty() && to.back() != '\n') to += line_break_;  // the file's last line has none
+  if (is_text() && !to.empty() && to.back() != '\n' && to.back() != '\r')
+    to += line_break_;  // the file's last line has none
   for (std::size_t i = 0; i < properties.size(); ++i) {
     const PlyProperty& property = properties[i];
     if (property.count) {

@@ -6,6 +6,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/strings.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -14,6 +15,7 @@ constexpr std::size_t facets_a_block = std::size_t{1} << 14;
 
 /// The first word of a line, in lower case.
 std::string first_word(std::string_view line) {
+  line = without_byte_order_mark(line);
   const std::size_t begin = std::min(line.find_first_not_of(" \t\r"), line.size());
   return lower_case(line.substr(begin, line.find_first_of(" \t\r\n", begin) - begin));
 }
@@ -52,7 +54,8 @@ std::optional<std::size_t> binary_stl_facets(const InputFile& file) {
     if (facets == 0) throw FormatError(path + ": the file has no facets");
     return facets;
   }
-  if (first_word(head.substr(0, head.find('\n'))) == "solid") return std::nullopt;
+  require_utf8(head, file.path());
+  if (first_word(head.substr(0, head.find_first_of("\r\n"))) == "solid") return std::nullopt;
   if (head.size() < stl_header_size)
     throw FormatError(path +
                       ": neither text that begins with \"solid\" nor as long as a binary STL file's header");

@@ -12,6 +12,7 @@
 #include "bespoke/product/detail/split_numbers.h"
 #include "bespoke/product/detail/stl_file.h"
 #include "bespoke/strings.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -95,6 +96,7 @@ std::string split_text_stl(const InputFile& file, const FaceSplits& splits) {
   const std::vector<std::string_view> facets = facet_texts(block, file.path());
   const Points places = values(corners);
   const int decimals = position_decimals(corners);
+  const std::string_view line_break = first_line_break(content);
   const std::vector<bool> polygons = are_polygons(places);
   const FaceParts parts(splits, count_of(polygons), file.path());
   const auto middle = [&](const TextCorner& a, const TextCorner& b, int) {
@@ -114,11 +116,10 @@ std::string split_text_stl(const InputFile& file, const FaceSplits& splits) {
     for (std::size_t k = 3 * i; k < 3 * i + 3; ++k)
       own.push_back({places.col(static_cast<Eigen::Index>(k)), std::string(text_of(corners[k]))});
     const std::size_t begin = static_cast<std::size_t>(facets[i].data() - content.data());
-    const std::size_t line = content.rfind('\n', begin) + 1;  // 0 where there is none
-    const std::string line_break = line > 1 && content[line - 2] == '\r' ? "\r\n" : "\n";
+    const std::size_t line = content.find_last_of("\r\n", begin) + 1;  // 0 where there is none
     std::string text;
     for (const std::vector<TextCorner>& part : parts.parts(polygon - 1, own, middle)) {
-      if (!text.empty()) text += line_break + content.substr(line, begin - line);
+      if (!text.empty()) text.append(line_break).append(content, line, begin - line);
       std::vector<TextEdit> of_part;
       for (std::size_t k = 0; k < 3; ++k) of_part.push_back({text_of(corners[3 * i + k]), part[k].text});
       text += edited(facets[i], {}, std::move(of_part));

@@ -1,9 +1,9 @@
 #include "bespoke/product/detail/text_blocks.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "bespoke/error.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -13,32 +13,28 @@ constexpr std::size_t block_size = std::size_t{1} << 20;
 // No statement of a text format is near as long; a file without line breaks is none.
 constexpr std::size_t longest_line = std::size_t{1} << 28;
 
-const char* line_break(const char* from, const char* end) {
-  const void* found = std::memchr(from, '\n', static_cast<std::size_t>(end - from));
-  return found ? static_cast<const char*>(found) : end;
-}
+/// Whether the line break at `at` of lines that begin at `begin` has a backslash before it.
+bool is_continued(const char* begin, const char* at) { return at > begin && at[-1] == '\\'; }
 
-/// Whether the line break at `newline` of lines that begin at `begin` has a backslash before it.
-bool is_continued(const char* begin, const char* newline) {
-  const char* last = newline;
-  while (last > begin && last[-1] == '\r') --last;
-  return last > begin && last[-1] == '\\';
-}
+bool is_break(char c) { return c == '\n' || c == '\r'; }
 
 }  // namespace
 
 std::size_t TextCutter::block_end(std::string_view bytes, bool is_last) const {
   const char* const begin = bytes.data();
   const char* const end = begin + bytes.size();
-  for (const char* from = begin + std::min(block_size, bytes.size()); from != end;) {
-    const char* const newline = line_break(from, end);
-    if (newline == end) break;
-    from = newline + 1;
-    if (is_continued(begin, newline)) continue;
+  const char* from = begin + std::min(block_size, bytes.size());
+  if (from != end && *from == '\n' && from[-1] == '\r') --from;
+  while (from != end) {
+    const char* const at = line_break(from, end);
+    from = behind_line_break(at, end);
+    // What follows a last CR is not known yet.
+    if (at == end || (from == end && *at == '\r')) break;
+    if (is_continued(begin, at)) continue;
     if (ends_block_) {
-      const char* line = newline;
-      while (line > begin && line[-1] != '\n') --line;
-      if (!ends_block_({line, static_cast<std::size_t>(newline - line)})) continue;
+      const char* line = at;
+      while (line > begin && !is_break(line[-1])) --line;
+      if (!ends_block_({line, static_cast<std::size_t>(at - line)})) continue;
     }
     return static_cast<std::size_t>(from - begin);
   }
@@ -53,7 +49,7 @@ std::vector<TextBlock> TextCutter::operator()(const Window& window) {
     if (size == 0) break;
     next_.bytes = rest.substr(0, size);
     blocks.push_back(next_);
-    next_.line += static_cast<std::size_t>(std::count(next_.bytes.begin(), next_.bytes.end(), '\n'));
+    next_.line += count_line_breaks(next_.bytes);
     if (count_) count_(next_.bytes, next_.before);
     rest.remove_prefix(size);
   }
@@ -68,14 +64,18 @@ bool TextWords::next_line() {
   while (end_ != end) {
     at_ = end_;
     line_end_ = line_break(at_, end);
-    while (at_ != line_end_ && is_blank(*at_)) ++at_;
+    skip_blanks();
+    if (std::string_view(at_, static_cast<std::size_t>(line_end_ - at_)).starts_with(byte_order_mark)) {
+      at_ += byte_order_mark.size();
+      skip_blanks();
+    }
     const bool is_comment = syntax_.comment != 0 && at_ != line_end_ && *at_ == syntax_.comment;
     if (syntax_.continues && !is_comment)
       while (line_end_ != end && is_continued(end_, line_end_)) {
-        line_end_ = line_break(line_end_ + 1, end);
-        while (at_ != line_end_ && is_blank(*at_)) ++at_;
+        line_end_ = line_break(behind_line_break(line_end_, end), end);
+        skip_blanks();
       }
-    end_ = line_end_ == end ? end : line_end_ + 1;
+    end_ = behind_line_break(line_end_, end);
     if (at_ == line_end_ || (syntax_.comment != 0 && *at_ == syntax_.comment)) continue;
     begin_ = at_;
     return true;
@@ -85,19 +85,22 @@ bool TextWords::next_line() {
 
 // Words are most of the work on a text, and a table is faster than comparisons.
 const TextWords::Characters& TextWords::characters_behind_words(LineSyntax syntax) {
-  const auto table = [](bool continues, char comment) {
-    Characters characters{};
-    for (std::size_t c = 0; c <= ' '; ++c) characters[c] = true;
-    characters['\\'] = continues;
-    if (comment != 0) characters[static_cast<unsigned char>(comment)] = true;
-    return characters;
-  };
-  static const std::array tables{table(false, 0), table(false, '#'), table(true, 0), table(true, '#')};
-  return tables[(syntax.continues ? 2u : 0u) + (syntax.comment != 0 ? 1u : 0u)];
+  static const auto tables = [] {
+    std::array<Characters, 12> all{};
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t c = 0; c <= ' '; ++c) all[i][c] = true;
+      all[i]['#'] = i % 2 == 1;
+      all[i]['\\'] = i / 2 % 2 == 1;
+      if (i / 4 > 0) all[i][i / 4 == 1 ? ',' : ';'] = true;
+    }
+    return all;
+  }();
+  const std::size_t separator = syntax.separator == ',' ? 1 : syntax.separator == ';' ? 2 : 0;
+  return tables[4 * separator + (syntax.continues ? 2u : 0u) + (syntax.comment != 0 ? 1u : 0u)];
 }
 
 std::string_view TextWords::word() {
-  while (at_ != line_end_ && is_blank(*at_)) ++at_;
+  skip_blanks();
   const char* const begin = at_;
   while (at_ != line_end_ && !ends_word_[static_cast<unsigned char>(*at_)]) ++at_;
   if (at_ != line_end_ && syntax_.comment != 0 && *at_ == syntax_.comment) line_end_ = at_;
@@ -108,7 +111,7 @@ NumberText TextWords::number(const char* what) {
   const std::string_view text = word();
   if (text.empty()) fail(std::string("missing ") + what);
   NumberText number;
-  if (!read_number(text.data(), text.data() + text.size(), number))
+  if (!read_number(text, syntax_.point, number))
     fail(std::string(what) + ": " + in_quotes(text) + " is not a finite number");
   return number;
 }
@@ -122,12 +125,14 @@ long long TextWords::integer(const char* what) {
   return value;
 }
 
-void TextWords::fail(const std::string& what) const {
+std::string TextWords::place() const {
   const char* const begin = block_.bytes.data();
   const char* const at = begin_ ? begin_ : begin;
-  const auto line = block_.line + static_cast<std::size_t>(std::count(begin, at, '\n'));
-  throw FormatError(path_.string() + ":" + std::to_string(line) + ": " + what);
+  const std::size_t line = block_.line + count_line_breaks({begin, static_cast<std::size_t>(at - begin)});
+  return path_.string() + ":" + std::to_string(line);
 }
+
+void TextWords::fail(const std::string& what) const { throw FormatError(place() + ": " + what); }
 
 std::function<void(std::string_view, std::array<std::uint64_t, 3>&)> line_counter(LineSyntax syntax) {
   return [syntax](std::string_view lines, std::array<std::uint64_t, 3>& sums) {

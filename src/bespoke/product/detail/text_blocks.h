@@ -50,9 +50,12 @@ class TextCutter {
 struct LineSyntax {
   char comment = '#';      ///< begins a comment up to the end of the line; 0 for none
   bool continues = false;  ///< a backslash at the end of a line, but of a comment, joins the next one
+  char separator = 0;      ///< a comma or a semicolon that is a blank; 0 for none
+  char point = '.';        ///< in numbers, or a comma
 };
 
-/// Walks through the lines of a block, and through the words of a line.
+/// Walks through the lines of a block, and through the words of a line. A byte order mark at the beginning of
+/// a line is a blank: files that begin with one are joined to others.
 class TextWords {
  public:
   /// The block and the path must outlive the iteration.
@@ -75,6 +78,8 @@ class TextWords {
   const char* line_begin() const { return begin_; }  ///< of the line's first word
   const char* line_end() const { return end_; }      ///< behind its line break
 
+  /// "path:line" of the last word.
+  std::string place() const;
   /// FormatError "path:line: what" for the line of the last word.
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -83,7 +88,11 @@ class TextWords {
   static const Characters& characters_behind_words(LineSyntax syntax);
 
   bool is_blank(char c) const {
-    return static_cast<unsigned char>(c) <= ' ' || (c == '\\' && syntax_.continues);
+    return static_cast<unsigned char>(c) <= ' ' || (c == '\\' && syntax_.continues) ||
+           (c == syntax_.separator && c != 0);
+  }
+  void skip_blanks() {
+    while (at_ != line_end_ && is_blank(*at_)) ++at_;
   }
 
   const TextBlock& block_;

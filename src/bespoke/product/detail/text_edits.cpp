@@ -52,7 +52,10 @@ std::string edited(std::string_view text, std::vector<NumberEdit> numbers, std::
     replace_texts_before(edit.number.begin);
     if (stays(edit.number.value, edit.value, edit.decimals)) continue;
     result.append(at, edit.number.begin);
+    const std::size_t begin = result.size();
     append_number(result, edit.value, edit.decimals);
+    if (edit.point != '.')
+      std::replace(result.begin() + static_cast<std::ptrdiff_t>(begin), result.end(), '.', edit.point);
     at = edit.number.begin + edit.number.length;
   }
   replace_texts_before(end);

@@ -16,6 +16,7 @@ struct NumberEdit {
   NumberText number;
   double value = 0;
   int decimals = 0;
+  char point = '.';  ///< before the decimals, or a comma
 };
 
 /// Characters of a text and what takes their place.

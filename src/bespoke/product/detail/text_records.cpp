@@ -4,6 +4,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/detail/directions.h"
+#include "bespoke/product/detail/gathered_faces.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -15,10 +17,14 @@ struct Findings {
   std::size_t points = 0, normals = 0;
   Box box;
   CarriedDecimals point_decimals, normal_decimals;
+  FaceFaults faults;
 };
 
 Findings inspect(const TextRecords& records) {
-  Findings found{records.points.size(), records.normals.size(), {}, {}, {}};
+  Findings found;
+  found.points = records.points.size();
+  found.normals = records.normals.size();
+  found.faults.add(records.faces);
   for (const NumberTriple& point : records.points) {
     for (const NumberText& number : point) found.point_decimals.add(number);
     found.box.extend(Vector3(point[0].value, point[1].value, point[2].value));
@@ -29,6 +35,7 @@ Findings inspect(const TextRecords& records) {
 }
 
 void merge(const Findings& block, Findings& all) {
+  all.faults.add(block.faults);
   all.points += block.points;
   all.normals += block.normals;
   all.box.extend(block.box);
@@ -64,6 +71,7 @@ std::vector<std::string> carry_block(const TextBlock& block, const TextRecords& 
     if (normal_count > 0)
       add_edits(records.normals, moved_normals(values(records.normals), jacobians[frame]), decimals.normals,
                 edits);
+    for (NumberEdit& edit : edits) edit.point = records.point;
     texts.push_back(edited(block.bytes, std::move(edits)));
   }
   return texts;
@@ -100,6 +108,12 @@ std::string file_head(const InputFile& file) {
   return head;
 }
 
+std::string text_head(const InputFile& file) {
+  std::string head = file_head(file);
+  require_utf8(head, file.path());
+  return head;
+}
+
 CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs, const TextFormat& format,
                         const PointMotion& motion, const Progress& progress) {
   Findings all;
@@ -126,7 +140,12 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(texts[frame]);
       },
       progress);
-  return {all.points, all.normals, {}, {}, {}};
+  CarrySummary summary;
+  summary.points = all.points;
+  summary.directions = all.normals;
+  if (const DegenerateFaces degenerate = all.faults.degenerate(file.path()); degenerate.count > 0)
+    summary.warnings.push_back(to_string(degenerate));
+  return summary;
 }
 
 }  // namespace bespoke

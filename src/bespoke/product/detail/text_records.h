@@ -18,6 +18,7 @@ struct TextRecords {
   std::vector<NumberTriple> normals;
   std::vector<std::uint32_t> faces;            ///< of each the number of its corners, and the corners
   std::vector<std::array<double, 2>> texture;  ///< of each point, of PLY files that have some
+  char point = '.';                            ///< in numbers, or a comma
 };
 
 /// A text format whose normals stand beside their points.
@@ -48,5 +49,7 @@ void require_finite(const Points& images, const std::filesystem::path& path);
 
 /// The first bytes of a file, no more than a header can be long, as a block.
 std::string file_head(const InputFile& file);
+/// The same of a text. Throws FormatError for one in UTF-16.
+std::string text_head(const InputFile& file);
 
 }  // namespace bespoke

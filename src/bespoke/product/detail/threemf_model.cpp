@@ -193,7 +193,8 @@ class ModelReader {
       corners[k] = static_cast<int>(corner);
     }
     const std::string fault = face_fault(corners.data(), corners.size(), 0);
-    if (!fault.empty()) reader_.fail(fault);
+    // A product has them all; what has no area is left out, as in STL.
+    if (!fault.empty()) return;
     mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
   }
 
