@@ -54,7 +54,7 @@ std::string csv_text(std::string_view cell) {
     else
       is_quoted = false;
   }
-  return std::string(without_blanks(text));
+  return text;
 }
 
 std::vector<std::string> csv_texts(const CsvRow& row) {

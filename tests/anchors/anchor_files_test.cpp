@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
+#include "product/text_dialects.h"
 #include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
@@ -154,6 +155,48 @@ TEST_F(AnchorFiles, OldFiducialsAreRasUnlessTheySayOtherwise) {
   EXPECT_THAT(
       error_message<FormatError>([&] { read_anchor_files(write("a.fcsv", "a,1,x,3\n", "b.fcsv", row)); }),
       HasSubstr("a.fcsv:1: \"x\""));
+}
+
+TEST_F(AnchorFiles, AreReadInAllDialectsOfTexts) {
+  const std::string list = R"([[0,0.25,0.5]])";
+  const std::string markups =
+      R"({"markups":[{"type":"Fiducial","coordinateSystem":"LPS","controlPoints":[{"label":"tip","position":[1,2,3]}]}]})";
+  for (const test::TextDialect& dialect : test::line_dialects()) {
+    SCOPED_TRACE(dialect.name);
+    const auto read = [&](const std::string& ending, const std::string& text,
+                          const AnchorFileOptions& options = {}) {
+      const std::string odd = dialect.of(text);
+      const Anchors found = read_anchor_files(write("a" + ending, odd, "b" + ending, odd), options);
+      EXPECT_EQ(found.pairs.size(), 1u);
+      return found.pairs.at(0);
+    };
+    const AnchorPair old = read(".fcsv", "# CoordinateSystem = LPS\n1,1,2,3,0,0,0,1,1,1,0,\"tip, left\",,\n");
+    EXPECT_EQ(old.name, "tip, left");
+    EXPECT_EQ(old.b, Vector3(1, 2, 3));
+    EXPECT_EQ(read(".pts", "Version 1.0\n1\ntip 1 2 3\n").a, Vector3(1, 2, 3));
+    EXPECT_EQ(read(".mrk.json", markups + "\n").a, Vector3(1, 2, 3));
+    EXPECT_EQ(
+        read(".pp", "<PickedPoints>\n<point x=\"1\" y=\"2\" z=\"3\" name=\"tip\"/>\n</PickedPoints>\n").a,
+        Vector3(1, 2, 3));
+  }
+  write("list.json", test::bom + list + "\n", "plain.json", " {}");
+  EXPECT_EQ(anchor_format_of(paths({"list.json"})[0]), AnchorFormat::wrap);
+  EXPECT_EQ(anchor_format_of(paths({"plain.json"})[0]), AnchorFormat::json);
+  const std::string wide = test::utf16("Version 1.0\n1\ntip 1 2 3\n", true, true);
+  EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(write("a.pts", wide, "b.pts", wide)); }),
+              HasSubstr("a.pts: is UTF-16; save as UTF-8"));
+}
+
+TEST_F(AnchorFiles, ACommaInANameIsKept) {
+  Anchors anchors;
+  anchors.pairs.push_back({"chin, left", Vector3(1, 2, 3), Vector3(4, 5, 6)});
+  anchors.pairs.push_back({"say \"x\"", Vector3(7, 8, 9), Vector3(4, 5, 6)});
+  write_anchor_files(paths({"a.fcsv", "b.fcsv"}), anchors);
+  const Anchors found = read_anchor_files(paths({"a.fcsv", "b.fcsv"}));
+  ASSERT_EQ(found.pairs.size(), 2u);
+  EXPECT_EQ(found.pairs[0].name, "chin, left");
+  EXPECT_EQ(found.pairs[1].name, "say \"x\"");
+  EXPECT_EQ(found.pairs[1].a, Vector3(7, 8, 9));
 }
 
 TEST_F(AnchorFiles, PointsOfOneNameArePairsInAnyOrder) {

@@ -8,6 +8,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_transform.h"
+#include "product/text_dialects.h"
 #include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
@@ -71,6 +72,50 @@ TEST_F(ReadAnchors, CsvSaysTheSameAsJson) {
     EXPECT_EQ(anchors.pairs[1].weight, 0.5);
     EXPECT_TRUE(std::isinf(anchors.pairs[2].weight));
   }
+}
+
+TEST_F(ReadAnchors, ReadsTheTextsOfSpreadsheets) {
+  const std::string rows = "chin,1,2.5,-3e-1,4,5,6,0.5\n\"left, ear\",7,8,9.25,10,11,12,\n";
+  const std::string header = "name,ax,ay,az,bx,by,bz,sigma\n";
+  std::vector<test::TextDialect> dialects = test::line_dialects();
+  const auto german = [](const std::string& separator) {
+    return [separator](const std::string& text) {
+      std::string result;
+      bool is_quoted = false;
+      for (const char c : text) {
+        is_quoted = is_quoted != (c == '"');
+        result += is_quoted || (c != ',' && c != '.') ? std::string(1, c) : c == ',' ? separator : ",";
+      }
+      return result;
+    };
+  };
+  dialects.push_back({"semicolons and decimal commas", german(";")});
+  dialects.push_back({"tabs and decimal commas", german("\t")});
+  dialects.push_back(
+      {"a named separator", [=](const std::string& text) { return "sep=;\n" + german(";")(text); }});
+  for (const test::TextDialect& dialect : dialects) {
+    SCOPED_TRACE(dialect.name);
+    const Anchors anchors = read_anchors(write("anchors.csv", dialect.of(header + rows)));
+    ASSERT_EQ(anchors.pairs.size(), 2u);
+    EXPECT_EQ(anchors.pairs[0].a, Vector3(1, 2.5, -0.3));
+    EXPECT_EQ(anchors.pairs[0].sigma, 0.5);
+    EXPECT_EQ(anchors.pairs[1].name, "left, ear");
+    EXPECT_EQ(anchors.pairs[1].a, Vector3(7, 8, 9.25));
+    EXPECT_EQ(anchors.pairs[1].b, Vector3(10, 11, 12));
+    EXPECT_EQ(
+        read_anchors(write("rows.csv", dialect.of(rows.substr(0, rows.find('\n') - 4) + "\n"))).pairs[0].a,
+        Vector3(1, 2.5, -0.3));
+  }
+  const auto complaint = [&](const std::string& name, const std::string& text) {
+    return test::error_message<FormatError>([&] { read_anchors(write(name, text)); });
+  };
+  EXPECT_THAT(complaint("a.csv", "chin;1,5;2;3;4;5;6\near;1.5;2;3;4;5;6\n"),
+              HasSubstr("line 2: \"1.5\" has a decimal point"));
+  EXPECT_THAT(complaint("a.csv", "chin,1,2,3,4,5,6\n\"ear,1,2,3,4,5,6\n"),
+              HasSubstr("line 2: a quote that does not end"));
+  for (const char* name : {"a.csv", "a.json"})
+    EXPECT_THAT(complaint(name, test::utf16(header + rows, false, true)),
+                HasSubstr("is UTF-16; save as UTF-8"));
 }
 
 TEST_F(ReadAnchors, ReadsAccuracies) {

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -55,13 +56,50 @@ TEST_F(SplitProduct, KeepsWhatAnObjFileSays) {
             "f 4/4/3 1/1/1 5/5/1\n"
             "f 4/4/3 5/5/1 2/2/1\n"
             "f 3/3/2 4/4/3 2/2/1 # kept\n"
-            "l -5 -4\n"
+            "l 1 5 2\n"
             "o second\n"
             "v 9 0 0\nv 9 1 0\nv 9 0 1\n"
             "usemtl blue\n"
             "f 6 7 8\n"
             "f -3 -2 -1\n"
             "p 8\n");
+}
+
+TEST_F(SplitProduct, SplitsLines) {
+  EXPECT_EQ(split("a.obj", "v -8 0 9\nv 8 2 9\nv 8 3 9\nvt 0\nvt 1\nl 1/1 2/2 # kept\nl -1 -2\np 3\n", 9),
+            "v -8 0 9\nv 8 2 9\nv 8 3 9\nvt 0\nvt 1\n"
+            "v 0.0000000 1.0000000 9.0000000\nvt 0.500000\nl 1/1 4/3 2/2 # kept\nl -2 -3\np 3\n");
+  EXPECT_EQ(refined_.splits.vertices.size(), 1u);
+  EXPECT_EQ(refined_.chord.edges, 3u);
+  EXPECT_LE(refined_.chord.length, 9);
+  // Halved again and again, in the order in which the line goes.
+  const std::string fine = split("a.obj", "v 8 2 9\rv -8 0 9\rl 1 2\r", 0.6);
+  EXPECT_THAT(fine, StartsWith("v 8 2 9\rv -8 0 9\rv "));
+  EXPECT_THAT(fine, HasSubstr("\rl 1 "));
+  const Product read = read_product(file("fine.obj", fine));
+  ASSERT_EQ(read.line_edges.size(), 16u);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(read.vertices(0, read.line_edges[2 * i]), 8 - 2.0 * static_cast<double>(i), 1e-6);
+    EXPECT_NEAR(read.vertices(0, read.line_edges[2 * i + 1]), 6 - 2.0 * static_cast<double>(i), 1e-6);
+  }
+}
+
+TEST_F(SplitProduct, SplitsDegenerateFacesWithTheirNeighbours) {
+  const std::string out =
+      split("a.obj", "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 4 -1 0\nf 1 2 3\nf 1 4 2 2\nf 1 1 2\n", 1.1);
+  const Product read = read_product(file("split.obj", out));
+  // Every edge of a face's image is that of another face or of the rim: nothing hangs.
+  std::map<std::pair<int, int>, int> uses;
+  const Faces faces = triangulated(read);
+  for (Eigen::Index i = 0; i < faces.cols(); ++i)
+    for (int k = 0; k < 3; ++k) ++uses[std::minmax(int{faces(k, i)}, int{faces((k + 1) % 3, i)})];
+  for (const auto& [edge, count] : uses)
+    for (Eigen::Index v = 0; v < read.vertices.cols(); ++v) {
+      const Vector3 a = read.vertices.col(edge.first), b = read.vertices.col(edge.second),
+                    x = read.vertices.col(v);
+      if (v == edge.first || v == edge.second) continue;
+      EXPECT_GT((x - a).norm() + (b - x).norm(), (b - a).norm() + 1e-6) << out;
+    }
 }
 
 TEST_F(SplitProduct, LeavesAFileThatStaysStraight) { EXPECT_EQ(split("a.obj", everything, 9), everything); }

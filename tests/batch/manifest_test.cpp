@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
+#include "product/text_dialects.h"
+#include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 
@@ -68,6 +70,34 @@ TEST_F(ReadManifest, TakesATableWithAHeader) {
   EXPECT_TRUE(manifest.jobs[0].entries[3].flag);
   EXPECT_EQ(manifest.jobs[1].line, 3u);
   EXPECT_EQ(manifest.jobs[1].entries.size(), 3u);
+}
+
+TEST_F(ReadManifest, IsReadInAllDialectsOfTexts) {
+  const std::string csv = "command,map,tolerance\napply,\"a, b.vdb\",0.5%\n",
+                    json = "{\"command\":\"fit\"}\n{\"command\":\"apply\"}\n";
+  for (const test::TextDialect& dialect : test::line_dialects()) {
+    SCOPED_TRACE(dialect.name);
+    const Manifest table = read("m.csv", dialect.of(csv)), lines = read("m.jsonl", dialect.of(json));
+    EXPECT_THAT(table.faults, IsEmpty());
+    ASSERT_EQ(table.jobs.size(), 1u);
+    EXPECT_EQ(table.jobs[0].line, 2u);
+    EXPECT_THAT(table.jobs[0].entries[0].values, ElementsAre("a, b.vdb"));
+    EXPECT_THAT(lines.faults, IsEmpty());
+    ASSERT_EQ(lines.jobs.size(), 2u);
+    EXPECT_EQ(lines.jobs[1].line, 2u);
+  }
+  for (const std::string& separator : {";", "\t"}) {
+    std::string odd = "command,map,tolerance\napply,\"a; b.vdb\",0_5%\n";
+    for (std::size_t at = 0; (at = odd.find(',', at)) != std::string::npos;) odd.replace(at, 1, separator);
+    odd[odd.find('_')] = ',';
+    const Manifest table = read("m.csv", odd);
+    EXPECT_THAT(table.faults, IsEmpty());
+    ASSERT_EQ(table.jobs.size(), 1u);
+    EXPECT_THAT(table.jobs[0].entries[0].values, ElementsAre("a; b.vdb"));
+    EXPECT_THAT(table.jobs[0].entries[1].values, ElementsAre("0.5%"));
+  }
+  EXPECT_THAT(test::error_message<FormatError>([&] { read("m.csv", test::utf16(csv, false, true)); }),
+              HasSubstr("m.csv: is UTF-16; save as UTF-8"));
 }
 
 TEST_F(ReadManifest, SaysWhatIsWrongWithALine) {

@@ -4,7 +4,9 @@
 #include <cstdlib>
 #include <string>
 
+#include "bespoke/product/product_io.h"
 #include "product/good_products.h"
+#include "product/text_dialects.h"
 
 namespace bespoke {
 namespace {
@@ -28,7 +30,7 @@ const std::filesystem::path& directory() {
 }  // namespace
 }  // namespace bespoke
 
-/// Writes a good file of every kind into the corpus, which is the last argument.
+/// Writes a good file of every kind, and texts in all dialects, into the corpus, which is the last argument.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   using namespace bespoke;
   const std::filesystem::path corpus = (*argv)[*argc - 1];
@@ -37,11 +39,17 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     const std::string ending = std::filesystem::path(good.name).extension().string();
     const auto kind = std::find(endings.begin(), endings.end(), ending) - endings.begin();
     test::write_text(corpus / ("good_" + good.name), static_cast<char>(kind) + good.content);
+    std::vector<test::TextDialect> dialects = test::line_dialects();
+    for (const test::TextDialect& dialect : test::blank_dialects()) dialects.push_back(dialect);
+    for (std::size_t i = 0; i < dialects.size() && good.content.find('\0') == std::string::npos; ++i)
+      test::write_text(corpus / ("dialect_" + std::to_string(i) + "_" + good.name),
+                       static_cast<char>(kind) + dialects[i].of(good.content));
   }
   return 0;
 }
 
-/// A file is refused by one of the library's errors, or comes out of the identity as it was.
+/// A file is refused by one of the library's errors, or comes out of the identity as it was. Its faces are
+/// read, or it is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace bespoke;
   if (size < 2) return 0;
@@ -59,6 +67,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (test::read_text(out) != content) {
     std::fputs("what the identity carries has changed\n", stderr);
     std::abort();
+  }
+  if (!can_read_product(in)) return 0;
+  try {
+    triangulated(read_product(in));
+  } catch (const Error&) {
   }
   return 0;
 }

@@ -5,5 +5,6 @@ foreach(command IN ITEMS "--preset fuzz -S ${SOURCE_DIR} -B ${BINARY_DIR}" "--bu
 endforeach()
 file(MAKE_DIRECTORY ${BINARY_DIR}/corpus)
 execute_process(
-  COMMAND ${BINARY_DIR}/bin/product_fuzzer -max_total_time=${SECONDS} -timeout=10 -rss_limit_mb=4096 ${BINARY_DIR}/corpus
+  COMMAND ${BINARY_DIR}/bin/product_fuzzer -max_total_time=${SECONDS} -timeout=10 -rss_limit_mb=4096
+          -dict=${SOURCE_DIR}/tests/fuzz/dialects.dict ${BINARY_DIR}/corpus
   WORKING_DIRECTORY ${BINARY_DIR} COMMAND_ERROR_IS_FATAL ANY)

@@ -16,6 +16,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/strings.h"
+#include "bespoke/text_lines.h"
 #include "bespoke/unknown_ending.h"
 
 namespace bespoke {
@@ -23,7 +24,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const std::filesystem::path& path) {
+/// XML says itself how it is encoded.
+std::string file_text(const std::filesystem::path& path) {
+  if (anchor_format_of(path) != AnchorFormat::meshlab) return read_text_file(path);
   std::ifstream file(path, std::ios::binary);
   if (!file || std::filesystem::is_directory(path))
     throw FileError(path.string() + ": cannot be opened for reading");
@@ -63,12 +66,13 @@ void require_models(AnchorFormat format, const AnchorFileOptions& options) {
 // ---- vertex numbers
 
 Anchors parse_indices(const std::string& text, const std::string& file, const AnchorFileOptions& options) {
-  std::istringstream rows(text);
+  const std::vector<std::string_view> lines = text_lines(text);
   Anchors anchors;
-  std::string row;
-  for (int line = 1; std::getline(rows, row); ++line) {
-    const std::string where = file + ":" + std::to_string(line);
-    std::replace(row.begin(), row.end(), ',', ' ');
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    const std::string where = file + ":" + std::to_string(line + 1);
+    std::string row(lines[line]);
+    std::replace_if(
+        row.begin(), row.end(), [](char c) { return c == ',' || c == ';'; }, ' ');
     std::istringstream words(row);
     long a = 0, b = 0;
     std::string rest;
@@ -244,9 +248,12 @@ AnchorFormat anchor_format_of(const std::filesystem::path& path) {
         path.string() +
         ": unknown ending; known are .json, .csv, .pp, .mrk.json, .fcsv, .pts, .wrap.json and .txt");
   // Wrap's files have no ending of their own; they are arrays.
-  std::ifstream file(path);
-  char first = 0;
-  return file >> first && first == '[' ? AnchorFormat::wrap : AnchorFormat::json;
+  std::ifstream file(path, std::ios::binary);
+  std::string head(64, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  const std::string_view text = without_byte_order_mark(head);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '[' ? AnchorFormat::wrap : AnchorFormat::json;
 }
 
 bool has_file_per_side(AnchorFormat format) {
@@ -258,9 +265,9 @@ Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const
   require_files(paths, format);
   require_models(format, options);
   if (format == AnchorFormat::json || format == AnchorFormat::csv) return read_anchors(paths[0]);
-  if (format == AnchorFormat::indices) return parse_indices(text_of(paths[0]), paths[0].string(), options);
-  return paired(parse_side(text_of(paths[0]), format, paths[0].string(), options.source, options.models),
-                parse_side(text_of(paths[1]), format, paths[1].string(), options.target, options.models),
+  if (format == AnchorFormat::indices) return parse_indices(file_text(paths[0]), paths[0].string(), options);
+  return paired(parse_side(file_text(paths[0]), format, paths[0].string(), options.source, options.models),
+                parse_side(file_text(paths[1]), format, paths[1].string(), options.target, options.models),
                 paths);
 }
 

@@ -4,55 +4,19 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
-#include <sstream>
+#include <optional>
 #include <string_view>
-#include <utility>
 
 #include "bespoke/anchors/detail/anchor_json.h"
+#include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/strings.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
-    throw FileError(path.string() + ": cannot be opened for reading");
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw FileError(path.string() + ": reading failed");
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
-  return text;
-}
-
-// ---- CSV
-
-/// Fields between commas, without surrounding blanks; a field in double quotes may hold commas and "" for ".
-std::vector<std::string> csv_fields(std::string_view row) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (row[i] == '"' && quoted && i + 1 < row.size() && row[i + 1] == '"')
-      fields.back() += row[i++];
-    else if (row[i] == '"')
-      quoted = !quoted;
-    else if (row[i] == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += row[i];
-  }
-  for (std::string& field : fields) {
-    constexpr const char* blanks = " \t\r";
-    field.erase(0, std::min(field.find_first_not_of(blanks), field.size()));
-    field.erase(field.find_last_not_of(blanks) + 1);
-  }
-  return fields;
-}
 
 constexpr std::array<const char*, 7> csv_columns = {"name", "ax", "ay", "az", "bx", "by", "bz"};
 constexpr std::array<const char*, 2> csv_accuracy_columns = {"weight", "sigma"};
@@ -69,7 +33,8 @@ bool is_csv_header(const std::vector<std::string>& fields) {
          (fields.size() < csv_columns.size() + 2 || fields[csv_columns.size()] != fields.back());
 }
 
-double csv_number(const std::string& field, const char* column, const std::string& where) {
+double csv_number(const std::string& cell, const char* column, const std::string& where) {
+  const std::string field(csv_characters(cell));
   double number = 0;
   const char* end = field.data() + field.size();
   const auto [stop, error] = std::from_chars(field.data(), end, number);
@@ -111,21 +76,59 @@ AnchorPair csv_pair(const std::vector<std::string>& fields, const std::vector<st
   return pair;
 }
 
+/// Whether the fields are those of the header, or of a row: a name and numbers, which may have decimal
+/// commas.
+bool is_csv_table(const std::vector<std::string>& fields) {
+  if (is_csv_header(fields)) return true;
+  constexpr std::string_view of_numbers = "0123456789+-.,eE";
+  return fields.size() >= csv_columns.size() &&
+         std::all_of(fields.begin() + 1, fields.begin() + csv_columns.size(), [&](const std::string& field) {
+           return !field.empty() && field.find_first_not_of(of_numbers) == std::string::npos;
+         });
+}
+
+/// Turns the decimal commas of a row into points, where the table has them.
+void use_points(std::vector<std::string>& fields, const std::string& where) {
+  for (auto field = fields.begin() + 1; field != fields.end(); ++field) {
+    if (field->find('.') != std::string::npos)
+      throw FormatError(where + ": \"" + *field + "\" has a decimal point, but the table has decimal commas");
+    if (has_decimal_comma(*field)) (*field)[field->find(',')] = '.';
+  }
+}
+
+bool has_decimal_commas(const std::vector<std::string_view>& lines, char separator) {
+  return separator != ',' && std::any_of(lines.begin(), lines.end(), [&](std::string_view line) {
+           const std::vector<std::string> fields = csv_texts(csv_row(line, separator));
+           return std::any_of(fields.begin() + 1, fields.end(), has_decimal_comma);
+         });
+}
+
 Anchors parse_csv(const std::string& text, const std::string& file) {
   Anchors anchors;
-  std::istringstream rows(text);
-  std::string row;
+  const std::vector<std::string_view> lines = text_lines(text);
   std::vector<std::string> accuracy_columns(csv_accuracy_columns.begin(), csv_accuracy_columns.end());
-  bool first = true;
-  for (int line = 1; std::getline(rows, row); ++line) {
-    const std::vector<std::string> fields = csv_fields(row);
-    if (fields.size() == 1 && fields[0].empty()) continue;
-    if (std::exchange(first, false) && is_csv_header(fields))
+  std::optional<char> separator;
+  bool has_commas = false;
+  for (std::size_t line = 0; line < lines.size(); ++line) {
+    const std::string where = file + ": line " + std::to_string(line + 1);
+    if (lines[line].find_first_not_of(" \t") == std::string_view::npos) continue;
+    if (!separator && csv_named_separator(lines[line])) continue;
+    const bool is_first = !separator;
+    if (is_first) {
+      separator = csv_separator(lines[line], is_csv_table).value_or(',');
+      has_commas = has_decimal_commas(lines, *separator);
+    }
+    const CsvRow row = csv_row(lines[line], *separator);
+    if (!row.is_closed) throw FormatError(where + ": a quote that does not end in its line");
+    std::vector<std::string> fields = csv_texts(row);
+    if (is_first && is_csv_header(fields)) {
       accuracy_columns.assign(fields.begin() + csv_columns.size(), fields.end());
-    else
-      anchors.pairs.push_back(csv_pair(fields, accuracy_columns, file + ": line " + std::to_string(line)));
+      continue;
+    }
+    if (has_commas) use_points(fields, where);
+    anchors.pairs.push_back(csv_pair(fields, accuracy_columns, where));
   }
-  if (first) throw FormatError(file + ": no rows");
+  if (!separator) throw FormatError(file + ": no rows");
   return anchors;
 }
 
@@ -139,7 +142,7 @@ Points points(const Anchors& anchors, Vector3 AnchorPair::*end) {
 }  // namespace
 
 Anchors read_anchors(const std::filesystem::path& path) {
-  const std::string text = read_text(path);
+  const std::string text = read_text_file(path);
   if (lower_ending(path) != ".csv") return parse_anchors(text, path.string());
   Anchors anchors = parse_csv(text, path.string());
   require_distinct_names(anchors.pairs, "pairs", path.string());

@@ -2,21 +2,20 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
 
 constexpr const char* command_key = "command";
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // which spreadsheets write
 
 [[noreturn]] void fail(const std::string& what) { throw FormatError(what); }
 
@@ -79,29 +78,23 @@ ManifestJob json_job(std::size_t line, const std::string& text) {
   return job_of(line, std::move(entries), command_key);
 }
 
-/// The cells of a line; one in double quotes may hold commas, and quotes written twice.
-std::vector<std::string> cells(const std::string& line) {
-  std::vector<std::string> found(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && i + 1 < line.size() && line[i + 1] == '"')
-        found.back() += line[++i];
-      else
-        quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      found.emplace_back();
-    } else {
-      found.back() += line[i];
-    }
+/// The texts of a line's cells, with points where a spreadsheet writes decimal commas. No option takes two
+/// numbers with a comma between them.
+std::vector<std::string> cells(std::string_view line, char separator) {
+  const CsvRow row = csv_row(line, separator);
+  if (!row.is_closed) fail("a double quote is not closed");
+  std::vector<std::string> texts = csv_texts(row);
+  if (separator == ',') return texts;
+  for (std::string& text : texts) {
+    const std::string_view number =
+        std::string_view(text).substr(0, text.find_first_not_of("0123456789+-,eE"));
+    if (has_decimal_comma(number)) text[text.find(',')] = '.';
   }
-  if (quoted) fail("a double quote is not closed");
-  return found;
+  return texts;
 }
 
-ManifestJob csv_job(std::size_t line, const std::vector<std::string>& keys, const std::string& text,
-                    const std::string& command) {
-  const std::vector<std::string> values = cells(text);
+ManifestJob csv_job(std::size_t line, const std::vector<std::string>& keys,
+                    const std::vector<std::string>& values, const std::string& command) {
   if (values.size() != keys.size())
     fail(std::to_string(values.size()) + " cells, but the header has " + std::to_string(keys.size()));
   std::vector<ManifestEntry> entries;
@@ -112,21 +105,18 @@ ManifestJob csv_job(std::size_t line, const std::vector<std::string>& keys, cons
   return job_of(line, std::move(entries), command);
 }
 
-bool is_blank(const std::string& line) {
+bool is_blank(std::string_view line) {
   return std::all_of(line.begin(), line.end(), [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
 /// Gives every line that is not blank to `take`, whose FormatError is its fault.
 template <class Take>
 Manifest read_lines(const std::filesystem::path& path, const Take& take) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw FileError(path.string() + ": cannot be read");
+  const std::string text = read_text_file(path);
   Manifest manifest;
   std::size_t number = 0;
-  for (std::string line; std::getline(file, line);) {
+  for (const std::string_view line : text_lines(text)) {
     ++number;
-    if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
-    if (!line.empty() && line.back() == '\r') line.pop_back();
     if (is_blank(line)) continue;
     try {
       take(manifest, number, line);
@@ -134,7 +124,6 @@ Manifest read_lines(const std::filesystem::path& path, const Take& take) {
       manifest.faults.push_back({number, error.what()});
     }
   }
-  if (file.bad()) throw FileError(path.string() + ": cannot be read to its end");
   return manifest;
 }
 
@@ -142,18 +131,24 @@ Manifest read_lines(const std::filesystem::path& path, const Take& take) {
 
 Manifest read_table(const std::filesystem::path& path, const std::string& key) {
   std::optional<std::vector<std::string>> header;
-  return read_lines(path, [&](Manifest& manifest, std::size_t number, const std::string& line) {
-    if (header)
-      manifest.jobs.push_back(csv_job(number, *header, line, key));
-    else
-      header = cells(line);
+  char separator = ',';
+  const auto has_key = [&](const std::vector<std::string>& keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  return read_lines(path, [&](Manifest& manifest, std::size_t number, std::string_view line) {
+    if (header) {
+      manifest.jobs.push_back(csv_job(number, *header, cells(line, separator), key));
+    } else if (!csv_named_separator(line)) {
+      separator = csv_separator(line, has_key).value_or(',');
+      header = cells(line, separator);
+    }
   });
 }
 
 Manifest read_manifest(const std::filesystem::path& path) {
   if (path.extension() == ".csv") return read_table(path, command_key);
-  return read_lines(path, [](Manifest& manifest, std::size_t number, const std::string& line) {
-    manifest.jobs.push_back(json_job(number, line));
+  return read_lines(path, [](Manifest& manifest, std::size_t number, std::string_view line) {
+    manifest.jobs.push_back(json_job(number, std::string(line)));
   });
 }
 

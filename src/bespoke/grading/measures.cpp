@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
 #include <set>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "bespoke/grading/surface_line.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -81,10 +81,9 @@ Measure measure_of(const Json& entry) {
 }
 
 Json parse_file(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw FileError(path.string() + ": cannot be read");
+  const std::string text = read_text_file(path);
   try {
-    return Json::parse(file);
+    return Json::parse(text);
   } catch (const Json::parse_error& error) {
     const std::string what = error.what();
     throw FormatError(path.string() + ": " + what.substr(what.find("] ") + 2));

@@ -4,18 +4,45 @@ import { finite_number, finite_triple, numbered_lines } from "./file_text";
 const columns = ["name", "ax", "ay", "az", "bx", "by", "bz"];
 const accuracies = ["weight", "sigma"];
 
-/** Fields between commas, without surrounding blanks; a field in double quotes may hold commas and "" for ". */
-function fields_of(line: string): string[] {
+/** Fields between separators, without surrounding blanks; one that begins with a double quote may hold separators and "" for ". */
+export function fields_of(line: string, separator: string): string[] {
   const fields = [""];
   let quoted = false;
   for (let i = 0; i < line.length; ++i) {
     const last = fields.length - 1;
     if (line[i] === '"' && quoted && line[i + 1] === '"') fields[last] += line[i++];
-    else if (line[i] === '"') quoted = !quoted;
-    else if (line[i] === "," && !quoted) fields.push("");
+    else if (line[i] === '"' && (quoted || fields[last].trim() === "")) quoted = !quoted;
+    else if (line[i] === separator && !quoted) fields.push("");
     else fields[last] += line[i];
   }
-  return fields.map((field) => field.replace(/^[ \t\r]+|[ \t\r]+$/g, ""));
+  return fields.map((field) => field.replace(/^[ \t]+|[ \t]+$/g, ""));
+}
+
+/** A name as a field. */
+export function quoted(name: string): string {
+  return /[,;\t"]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name;
+}
+
+/** Whether a line's fields are those of the header, or a name and numbers, which may have decimal commas. */
+function is_table(fields: string[]): boolean {
+  return is_header(fields) || (fields.length >= columns.length && fields.slice(1, columns.length).every((field) => /^[-+0-9.,eE]+$/.test(field)));
+}
+
+/** The fields of all lines, as spreadsheets save them: between commas, semicolons or tabs, with decimal commas where no comma separates. */
+function rows_of(lines: { line: string; where: string }[]): { fields: string[]; where: string }[] {
+  const filled = lines.filter(({ line }) => line.trim() !== "" && !/^sep=[,;\t]$/.test(line));
+  if (filled.length === 0) return [];
+  const separator = [",", ";", "\t"].find((each) => is_table(fields_of(filled[0].line, each))) ?? ",";
+  const rows = filled.map(({ line, where }) => ({ fields: fields_of(line, separator), where }));
+  const comma = /^[-+]?\d+,\d+([eE][-+]?\d+)?$/;
+  if (separator === "," || !rows.some(({ fields }) => fields.slice(1).some((field) => comma.test(field)))) return rows;
+  return rows.map(({ fields, where }) => ({
+    where,
+    fields: fields.map((field, k) => {
+      if (k > 0 && field.includes(".")) throw new Error(`${where}: "${field}" has a decimal point, but the table has decimal commas`);
+      return k > 0 && comma.test(field) ? field.replace(",", ".") : field;
+    }),
+  }));
 }
 
 function is_header(fields: string[]): boolean {
@@ -43,7 +70,7 @@ function pair_of(fields: string[], more: string[], where: string): CompletePair 
 }
 
 export function parse_csv(text: string, file: string): CompletePair[] {
-  const rows = numbered_lines(text, file).map(({ line, where }) => ({ fields: fields_of(line), where })).filter(({ fields }) => fields.length > 1 || fields[0] !== "");
+  const rows = rows_of(numbered_lines(text, file));
   if (rows.length === 0) throw new Error(`${file}: no rows`);
   const has_header = is_header(rows[0].fields);
   const more = has_header ? rows[0].fields.slice(columns.length) : accuracies;
@@ -51,7 +78,6 @@ export function parse_csv(text: string, file: string): CompletePair[] {
 }
 
 export function csv_text(pairs: CompletePair[]): string {
-  const quoted = (name: string): string => (/[",]/.test(name) ? `"${name.replaceAll('"', '""')}"` : name);
   const rows = pairs.map((pair) => [quoted(pair.name), ...pair.a, ...pair.b, pair.weight ?? "", pair.weight === null ? (pair.sigma ?? "") : ""].join(","));
   return ["name,ax,ay,az,bx,by,bz,weight,sigma", ...rows].join("\n") + "\n";
 }

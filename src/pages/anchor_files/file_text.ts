@@ -15,9 +15,9 @@ export function finite_triple(texts: string[], where: string): Triple {
 
 /** The lines of a text with what messages call them: "a.pts:3". */
 export function numbered_lines(text: string, file: string): { line: string; where: string }[] {
-  const lines = text.split("\n");
+  const lines = text.replace(/^\uFEFF/, "").split(/\r\n|\n|\r/);
   if (lines[lines.length - 1] === "") lines.pop();
-  return lines.map((line, i) => ({ line: line.replace(/\r$/, ""), where: `${file}:${i + 1}` }));
+  return lines.map((line, i) => ({ line, where: `${file}:${i + 1}` }));
 }
 
 /** What stands between blanks. */

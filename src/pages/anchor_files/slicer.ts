@@ -1,3 +1,4 @@
+import { fields_of, quoted } from "./csv";
 import type { Triple } from "../scene/scene";
 import { finite_triple, is_finite, is_object, numbered_lines, parsed_json } from "./file_text";
 import type { FileSide, NamedLine, NamedPoint } from "./side";
@@ -89,8 +90,8 @@ export function parse_fiducials(text: string, file: string, models: PatientSyste
   let system: PatientSystem = "RAS";
   return numbered_lines(text, file).flatMap(({ line, where }) => {
     if (line.startsWith(system_mark)) system = system_named(line.slice(system_mark.length), where);
-    if (line === "" || line.startsWith("#")) return [];
-    const fields = line.split(",");
+    if (line.trim() === "" || line.startsWith("#")) return [];
+    const fields = fields_of(line, ",");
     if (fields.length < 4) throw new Error(`${where}: fewer than four columns`);
     return [{ name: fields[label_column] ?? "", x: in_system(finite_triple(fields.slice(1, 4), where), system, models) }];
   });
@@ -98,7 +99,7 @@ export function parse_fiducials(text: string, file: string, models: PatientSyste
 
 export function fiducials_text(points: NamedPoint[], models: PatientSystem): string {
   const head = `# Markups fiducial file version = 5.0\n${system_mark}${models}\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n`;
-  // A comma would end the column.
-  const rows = points.map(({ name, x }, i) => `${i + 1},${x.join(",")},0,0,0,1,1,1,0,${name.replaceAll(",", " ")},,\n`);
+  // A comma would end the column but for quotes.
+  const rows = points.map(({ name, x }, i) => `${i + 1},${x.join(",")},0,0,0,1,1,1,0,${quoted(name)},,\n`);
   return head + rows.join("");
 }

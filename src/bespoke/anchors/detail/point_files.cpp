@@ -9,8 +9,10 @@
 #include "bespoke/anchors/detail/patient_system.h"
 #include "bespoke/anchors/detail/point_text.h"
 #include "bespoke/anchors/detail/slicer_markups.h"
+#include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -21,32 +23,23 @@ std::string triple(const Vector3& x, const char* separator) {
   return all_digits(x.x()) + separator + all_digits(x.y()) + separator + all_digits(x.z());
 }
 
-std::vector<std::string> split(const std::string& row, char separator) {
-  std::vector<std::string> fields(1);
-  for (const char letter : row)
-    if (letter == separator)
-      fields.emplace_back();
-    else if (letter != '\r')
-      fields.back() += letter;
-  return fields;
-}
-
 // ---- 3D Slicer's older fiducials
 
 std::vector<NamedPoint> parse_fiducials(const std::string& text, const std::string& file,
                                         PatientSystem models) {
-  std::istringstream rows(text);
   // What files without the line mean: 3D Slicer wrote RAS before it wrote the line.
   PatientSystem system = PatientSystem::ras;
   std::vector<NamedPoint> points;
-  std::string row;
-  const std::string mark = "# CoordinateSystem = ";
-  for (int line = 1; std::getline(rows, row); ++line) {
-    const std::string where = file + ":" + std::to_string(line);
-    if (!row.empty() && row.back() == '\r') row.pop_back();
-    if (row.starts_with(mark)) system = patient_system_named(row.substr(mark.size()), where);
-    if (row.empty() || row[0] == '#') continue;
-    const std::vector<std::string> fields = split(row, ',');
+  const std::vector<std::string_view> rows = text_lines(text);
+  constexpr std::string_view mark = "# CoordinateSystem = ";
+  for (std::size_t line = 0; line < rows.size(); ++line) {
+    const std::string where = file + ":" + std::to_string(line + 1);
+    const std::string_view row = rows[line];
+    if (row.starts_with(mark)) system = patient_system_named(std::string(row.substr(mark.size())), where);
+    if (row.find_first_not_of(" \t") == std::string_view::npos || row[0] == '#') continue;
+    const CsvRow cells = csv_row(row, ',');
+    if (!cells.is_closed) throw FormatError(where + ": a quote that does not end in its line");
+    const std::vector<std::string> fields = csv_texts(cells);
     constexpr std::size_t label_column = 11;
     if (fields.size() < 4) throw FormatError(where + ": fewer than four columns");
     points.push_back({fields.size() > label_column ? fields[label_column] : "",
@@ -62,10 +55,9 @@ std::string fiducials_text(const std::vector<NamedPoint>& points, PatientSystem 
   text += models == PatientSystem::lps ? "LPS" : "RAS";
   text += "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // A comma would end the column.
-    std::string label = points[i].name;
-    std::replace(label.begin(), label.end(), ',', ' ');
-    text += std::to_string(i + 1) + "," + triple(points[i].x, ",") + ",0,0,0,1,1,1,0," + label + ",,\n";
+    // A comma would end the column but for quotes, which 3D Slicer reads too.
+    text += std::to_string(i + 1) + "," + triple(points[i].x, ",") + ",0,0,0,1,1,1,0," +
+            csv_cell(points[i].name) + ",,\n";
   }
   return text;
 }
@@ -73,13 +65,12 @@ std::string fiducials_text(const std::vector<NamedPoint>& points, PatientSystem 
 // ---- Landmark Editor
 
 std::vector<NamedPoint> parse_landmarks(const std::string& text, const std::string& file) {
-  std::istringstream rows(text);
+  const std::vector<std::string_view> rows = text_lines(text);
   std::vector<NamedPoint> points;
-  std::string row;
   std::size_t promised = 0;
-  for (int line = 1; std::getline(rows, row); ++line) {
-    const std::string where = file + ":" + std::to_string(line);
-    std::istringstream stream(row);
+  for (std::size_t line = 0; line < rows.size(); ++line) {
+    const std::string where = file + ":" + std::to_string(line + 1);
+    std::istringstream stream{std::string(rows[line])};
     std::vector<std::string> words;
     for (std::string word; stream >> word;) words.push_back(word);
     if (words.empty() || words[0] == "Version") continue;

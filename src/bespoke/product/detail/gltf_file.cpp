@@ -11,6 +11,7 @@
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/product/detail/gltf_extensions.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -162,6 +163,7 @@ GltfFile read_gltf(const InputFile& file) {
     read_chunks(file, gltf, binary);
   else
     gltf.text = read_bytes(file, 0, file.size());
+  require_utf8(gltf.text, gltf.path);
   gltf.json = parse_gltf_json(gltf.text, gltf.path);
   require_known_extensions(gltf.root());
   read_buffers(gltf, std::move(binary));

@@ -193,8 +193,7 @@ class ModelReader {
       corners[k] = static_cast<int>(corner);
     }
     const std::string fault = face_fault(corners.data(), corners.size(), 0);
-    // A product has them all; what has no area is left out, as in STL.
-    if (!fault.empty()) return;
+    if (!fault.empty()) reader_.fail(fault);
     mesh.corners.insert(mesh.corners.end(), corners.begin(), corners.end());
   }
 
