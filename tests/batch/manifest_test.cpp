@@ -86,7 +86,7 @@ TEST_F(ReadManifest, IsReadInAllDialectsOfTexts) {
     ASSERT_EQ(lines.jobs.size(), 2u);
     EXPECT_EQ(lines.jobs[1].line, 2u);
   }
-  for (const std::string& separator : {";", "\t"}) {
+  for (const std::string separator : {";", "\t"}) {
     std::string odd = "command,map,tolerance\napply,\"a; b.vdb\",0_5%\n";
     for (std::size_t at = 0; (at = odd.find(',', at)) != std::string::npos;) odd.replace(at, 1, separator);
     odd[odd.find('_')] = ',';

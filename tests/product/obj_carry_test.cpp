@@ -84,7 +84,8 @@ TEST_F(CarryObj, JoinsNormalsWithPointsInTheirOrderWhereNoFaceDoes) {
   EXPECT_EQ(carried("a.obj", "vn 0 0 1\nv 0 0 0\nvn 0 0 1\nv 1 0 0\n", bend_motion()),
             "vn 0 0 1\nv 0 0 0\nvn -0.7071068 0 0.7071068\nv 1 0 0.5000000\n");
   carried("a.obj", "v 0 0 0\nvn 0 0 1\nvn 1 0 0\nf 1//1 1//1 1//1\n", bend_motion());
-  EXPECT_THAT(summary_.warnings, ::testing::ElementsAre(HasSubstr("1 normals that no face uses")));
+  EXPECT_THAT(summary_.warnings, ::testing::ElementsAre(HasSubstr("1 degenerate face, which was kept"),
+                                                        HasSubstr("1 normals that no face uses")));
 }
 
 TEST_F(CarryObj, WritesEveryFrame) {

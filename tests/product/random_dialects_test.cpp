@@ -184,7 +184,7 @@ class RandomDialects : public test::ProductFiles, public ::testing::WithParamInt
 
 TEST_P(RandomDialects, AreCarriedAsThePlainOne) {
   const std::string ending = GetParam(), name = "a" + ending;
-  for (unsigned seed = 0; seed < 400; ++seed) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
     const Numbers points = random_numbers(random);
     const std::string odd = Writer(ending, points, seed).text(), plain = Writer(ending, points, {}).text();

@@ -180,7 +180,7 @@ TEST_F(TextDialects, BinaryPlyBehindAHeaderOfAnyLineBreaksKeepsItsFirstByte) {
   // A coordinate whose first byte looks like a line feed.
   std::string body = test::bytes(1.5f) + test::bytes(2.5f) + test::bytes(3.5f);
   body[0] = '\n';
-  for (const std::string& line_break : {"\n", "\r\n", "\r"})
+  for (const std::string line_break : {"\n", "\r\n", "\r"})
     for (const std::string& mark : {std::string(), bom}) {
       const std::string ply = mark + with_each(header, '\n', line_break) + body;
       EXPECT_EQ(carried("a.ply", ply, identity_motion()), ply);

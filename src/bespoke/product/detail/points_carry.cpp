@@ -27,6 +27,15 @@ NumberTriple next_triple(TextWords& words, const std::array<const char*, 3>& nam
   return {words.number(names[0]), words.number(names[1]), words.number(names[2])};
 }
 
+/// "0,5 1,5" is not four numbers between commas: these then stand between all numbers.
+bool are_between(char separator, const NumberTriple& numbers) {
+  for (std::size_t axis = 0; separator != 0 && axis < 2; ++axis) {
+    const char* const end = numbers[axis].begin + numbers[axis].length;
+    if (std::find(end, numbers[axis + 1].begin, separator) == numbers[axis + 1].begin) return false;
+  }
+  return true;
+}
+
 /// A point a line: x, y, z, and whatever follows.
 class XyzText : public TextFormat {
  public:
@@ -41,6 +50,8 @@ class XyzText : public TextFormat {
     TextWords words(block, path_, syntax_);
     while (words.next_line()) {
       records.points.push_back(next_triple(words, position_names));
+      if (!are_between(syntax_.separator, records.points.back()))
+        words.fail(std::string("blanks where '") + syntax_.separator + "' separates numbers in other lines");
       if (!has_normals_) continue;
       records.normals.push_back(next_triple(words, normal_names));
       if (!is_unit(records.normals.back())) not_all_units_ = true;
@@ -71,10 +82,12 @@ TextBlock whole_lines(const InputFile& file, std::string_view head) {
 /// Whether all lines begin with three numbers.
 bool are_points(const TextBlock& block, const std::filesystem::path& path, LineSyntax syntax) {
   TextWords words(block, path, syntax);
-  NumberText number;
-  while (words.next_line())
-    for (int axis = 0; axis < 3; ++axis)
+  NumberTriple numbers;
+  while (words.next_line()) {
+    for (NumberText& number : numbers)
       if (!read_number(words.word(), syntax.point, number)) return false;
+    if (!are_between(syntax.separator, numbers)) return false;
+  }
   return true;
 }
 
