@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "bespoke/apply/apply_mapping.h"
+#include "bespoke/csv_rows.h"
 #include "bespoke/number_format.h"
 
 namespace bespoke {
@@ -18,14 +19,6 @@ std::string fixed(double value, int decimals, const char* format = "%.*f") {
 
 /// Digits that programs read: more than a float of a model's file has.
 std::string number(double value) { return format_number(value, 9); }
-
-/// A name as a cell of a table whose cells end at commas.
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string markdown_cell(const std::string& text) {
   std::string cell;

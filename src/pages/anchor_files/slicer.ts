@@ -99,7 +99,7 @@ export function parse_fiducials(text: string, file: string, models: PatientSyste
 
 export function fiducials_text(points: NamedPoint[], models: PatientSystem): string {
   const head = `# Markups fiducial file version = 5.0\n${system_mark}${models}\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n`;
-  // A comma would end the column but for quotes.
+  // A comma ends the column except in quotes.
   const rows = points.map(({ name, x }, i) => `${i + 1},${x.join(",")},0,0,0,1,1,1,0,${quoted(name)},,\n`);
   return head + rows.join("");
 }

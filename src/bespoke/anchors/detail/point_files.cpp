@@ -55,7 +55,7 @@ std::string fiducials_text(const std::vector<NamedPoint>& points, PatientSystem 
   text += models == PatientSystem::lps ? "LPS" : "RAS";
   text += "\n# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n";
   for (std::size_t i = 0; i < points.size(); ++i) {
-    // A comma would end the column but for quotes, which 3D Slicer reads too.
+    // A comma ends the column except in quotes.
     text += std::to_string(i + 1) + "," + triple(points[i].x, ",") + ",0,0,0,1,1,1,0," +
             csv_cell(points[i].name) + ",,\n";
   }
