@@ -134,7 +134,8 @@ void export_morph(const ExportArguments& arguments, const RunContext& context) {
   MorphedFaces faces{{}, unit};
   if (!keeps_file) faces.product = read_product(arguments.product);
   if (faces.product.degenerate.count > 0)
-    context.warn(arguments.product + ": " + to_string(faces.product.degenerate));
+    context.warn(arguments.product + ": " + to_string(faces.product.degenerate),
+                 Entry::content_left_as_it_is);
   OutputFiles files;
   double off_path = 0;
   files.write(arguments.output, [&](const std::filesystem::path& path) {

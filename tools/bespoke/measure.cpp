@@ -59,7 +59,8 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
   std::vector<std::string> names;
   for (const std::string& path : arguments.products) {
     const Product product = read_product(path);
-    if (product.degenerate.count > 0) context.warn(path + ": " + to_string(product.degenerate));
+    if (product.degenerate.count > 0)
+      context.warn(path + ": " + to_string(product.degenerate), Entry::content_left_as_it_is);
     names.push_back(std::filesystem::path(path).filename().string());
     products.push_back({path, {product.vertices, triangulated(product)}});
   }
