@@ -34,7 +34,7 @@ Pairs pairs_of(const Anchors& anchors) {
 }
 
 /// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame, the first `count` of
-/// which somebody gave.
+/// which were given.
 Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, Eigen::Index count,
                      const Anchors& anchors, CoarseSummary& summary) {
   const Stopwatch watch;
@@ -94,12 +94,12 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
   summary.surface_method = options.surface_fit.method;
 }
 
-/// Where the source's vertices are laid on the target, 3×n, target frame.
+/// The source's registered vertices, 3×n, target frame.
 Points registered_vertices(const FittedMapping& registered) {
   return registered.target_from_source * registered.fitted_vertices;
 }
 
-/// Where points on or near the source are once it is laid on the target, target frame.
+/// The images of points on or near the source under the registration, target frame.
 Points registered_with_source(const FittedMapping& registered, const TriangleMesh& source, const Points& x) {
   const ClosestPointTree tree(source);
   const Points vertices = registered_vertices(registered);
@@ -109,7 +109,7 @@ Points registered_with_source(const FittedMapping& registered, const TriangleMes
   return places;
 }
 
-/// The source laid by its rated pairs without some of them.
+/// The source registered by its estimated pairs without some of them.
 struct RegistrationTrial {
   const RegistrationInput& input;
   const EstimatedAnchors& estimated;
@@ -117,7 +117,7 @@ struct RegistrationTrial {
   const Progress& progress;
   FittedMapping registered;  // the last
 
-  /// Those of the pairs left out that surfaces so laid displace.
+  /// Those of the pairs left out that the surfaces then displace.
   std::vector<RejectedAnchor> register_without(const std::vector<std::size_t>& left_out) {
     std::vector<RejectedAnchor> all;
     for (const std::size_t index : left_out) all.push_back({index, 0});
@@ -126,11 +126,11 @@ struct RegistrationTrial {
   }
 };
 
-/// Lays the source without the pairs that surfaces so laid reject, and takes that if it explains the target
-/// no worse than `result`, laid with them. Where it explains it worse, right pairs may have been rejected
-/// beside wrong ones: then each of a few is requested alone. Of a few that are left out, those are reset
-/// that raise no doubt, and with which the target is explained no worse, once the others are left out.
-/// Returns the pairs then to be used.
+/// Registers the source without the pairs that the surfaces then displace, and keeps that if it explains the
+/// target no worse than `result`. Where it explains it worse, right pairs may have been rejected beside wrong
+/// ones: then each of a few is tested alone. Of a few rejected pairs those are reinstated that are no
+/// suspects, and with which the target is explained no worse, without the others. Returns the pairs to be
+/// used.
 EstimatedAnchors register_by_inliers(FittedMapping& result, const RegistrationInput& input,
                                      const EstimatedAnchors& estimated, const AnchorOutlierTest& outlier_test,
                                      const AnchorAudit& audit, const std::vector<std::size_t>& suspects,
@@ -185,16 +185,17 @@ std::vector<AnchorPair> pairs_of(const GeodesicCounterparts& counterparts, doubl
   return pairs;
 }
 
-/// Whether the source as laid may be wrong somewhere: what it did not find is bare, what was drawn to the
-/// wrong place is distorted. With five anchors, of the pairs of CounterpartOptions, those that had lost a
-/// limb were distorted by 0.18 to 0.3; right ones in one pose by 0.03 to 0.16, and covered 0.995 and more,
-/// except for scans with debris (0.91, 0.98).
+/// Whether the registration may be wrong somewhere: missed parts are uncovered, displaced ones distorted.
+/// With five anchors, of the pairs of CounterpartOptions, those that had lost a limb were distorted by 0.18
+/// to 0.3; right ones in one pose by 0.03 to 0.16, and covered 0.995 and more, except for scans with debris
+/// (0.91, 0.98).
 bool is_suspect(const PlacementFigures& registered) {
   return registered.distortion > 0.15 || registered.covered < 0.99;
 }
 
 /// Where some parts of the source are far from all pairs, and came to lie elsewhere than distances along the
-/// surfaces put them: lays the source by these too, and takes that if it explains the target clearly better.
+/// surfaces put them: registers the source by these too, and keeps that if it explains the target clearly
+/// better.
 void register_by_counterparts(FittedMapping& result, const RegistrationInput& input,
                               const EstimatedAnchors& estimated, const Progress& progress) {
   // Of the target's diagonal. 0.5 and 2 % on the pairs of CounterpartOptions: errors x 1.15 and 1.10 when
@@ -223,7 +224,7 @@ void register_by_counterparts(FittedMapping& result, const RegistrationInput& in
                                  static_cast<std::size_t>(displaced), taken, watch.seconds()};
 }
 
-/// Γ and H'_a by anchors, those of curves included; only those that somebody gave are judged. Returns the
+/// Γ and H'_a by anchors, those of curves included; only given ones are tested. Returns the
 /// anchors as the fit took them.
 Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& input, const Anchors& anchors,
                             const Progress& progress) {
