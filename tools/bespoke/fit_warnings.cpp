@@ -22,9 +22,14 @@ void warn_of_far_anchors(const RunContext& context, const std::string& role, con
                  Entry::anchors_far_away);
 }
 
-void warn_of_contradictions(const RunContext& context, const Anchors& anchors) {
-  const std::string text = to_string(contradicting_anchors(anchors), anchors);
-  if (!text.empty()) context.warn(text, Entry::contradicting_anchors);
+/// Pairs that the fit did not take as they were given, or that its map misses.
+void warn_of_anchors(const RunContext& context, const FitSummary& summary, const Anchors& anchors) {
+  const auto warn = [&](const std::string& text, Entry entry) {
+    if (!text.empty()) context.warn(text, entry);
+  };
+  if (summary.accuracy.doubts_any()) warn(to_string(summary.accuracy, anchors), Entry::anchors_missed);
+  if (summary.coarse) warn(to_string(summary.coarse->contradicting, anchors), Entry::contradicting_anchors);
+  warn(to_string(summary.missed, anchors), Entry::anchors_missed);
 }
 
 /// Why the bake's error exceeds the tolerance, and what lowers it.
@@ -100,7 +105,6 @@ void warn_of_input(const RunContext& context, const TriangleMesh& source, const 
                    const Anchors& anchors) {
   warn_of_far_anchors(context, "source", source, source_points(anchors), anchors.unit);
   warn_of_far_anchors(context, "target", target, target_points(anchors), anchors.unit);
-  warn_of_contradictions(context, anchors);
 }
 
 void warn_of_missing_certificate(const RunContext& context, const Certificate& certificate) {
@@ -116,6 +120,7 @@ void warn_of_misses(const RunContext& context, const MakeMapInput& input, const 
   const FitSummary& summary = made.fit.summary;
   const double size = diagonal(input.target.vertices);
   warn_of_missing_certificate(context, whole_certificate(made.asset));
+  warn_of_anchors(context, summary, input.anchors);
   if (summary.parts)
     context.warn(to_string(*summary.parts) +
                      "; if the target has such a part, give an anchor on it, else leave it out of the source",

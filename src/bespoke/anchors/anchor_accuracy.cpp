@@ -13,7 +13,6 @@
 namespace bespoke {
 namespace {
 
-constexpr double resolution = 1e-3;          // of the source's diagonal, as large as the target: the least σ
 constexpr double inlier_sigmas = 3;          // farther ones do not shape the estimate: 0.3 % of normal errors
 constexpr double outlier_sigmas = 4;         // 1 in 16,000 of normal errors
 constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
@@ -76,7 +75,7 @@ EstimatedAnchors estimate_anchor_sigmas(const Anchors& anchors, const TriangleMe
     return !(has_no_given_sigma(anchors.pairs[pair.first]) && has_no_given_sigma(anchors.pairs[pair.second]));
   });
   const double size_scale = power_of_two_scale(size_ratio(anchors, source, target));
-  const double least = resolution * size_scale * diagonal(source.vertices);
+  const double least = anchor_resolution * size_scale * diagonal(source.vertices);
   const std::vector<OutlierAnchor> off = offsets(anchors, source, target, size_scale);
   if (!off.empty()) {
     const double deviation = robust_deviation(off);
@@ -139,6 +138,12 @@ std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors) {
   for (const RejectedAnchor& anchor : accuracy.left_out) {
     std::snprintf(number, sizeof number, " lies %.4g from where the surfaces put it and is left out",
                   anchor.distance);
+    text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + number;
+  }
+  for (const GivenWayAnchor& anchor : accuracy.given_way) {
+    std::snprintf(number, sizeof number,
+                  " gave way (sigma %.4g), since meeting it would stretch the surface too much",
+                  anchor.sigma);
     text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + number;
   }
   if (!accuracy.swapped.empty()) text += (text.empty() ? "" : "; ") + to_string(accuracy.swapped, anchors);

@@ -22,6 +22,12 @@ struct RejectedAnchor {
   double distance = 0;  ///< of its target from where they put it, mesh units
 };
 
+/// An exact pair that is not met, since meeting it would stretch the surface too much.
+struct GivenWayAnchor {
+  std::size_t index = 0;
+  double sigma = 0;  ///< accuracy that it was given instead, mesh units
+};
+
 /// What the models say about anchors that came without a weight and without a σ.
 struct AnchorAccuracy {
   std::size_t estimated = 0;  ///< pairs whose σ was estimated
@@ -29,6 +35,12 @@ struct AnchorAccuracy {
   std::vector<OutlierAnchor> outliers;
   std::vector<SwappedAnchors> swapped;
   std::vector<RejectedAnchor> left_out;
+  std::vector<GivenWayAnchor> given_way;
+
+  /// Whether some pairs were not taken as they were given.
+  bool doubts_any() const {
+    return !(outliers.empty() && swapped.empty() && left_out.empty() && given_way.empty());
+  }
 };
 
 /// Anchors as the fit uses them.
@@ -39,6 +51,9 @@ struct EstimatedAnchors {
                                ///< target, of one that is left out the distance
   AnchorAccuracy accuracy;
 };
+
+/// Of the source's diagonal, as large as the target is: a σ below it cannot be told from remeshing.
+inline constexpr double anchor_resolution = 1e-3;
 
 /// Of the source's diagonal: anchors within it belong to the surface, farther ones are points of space.
 inline constexpr double near_surface = 0.02;

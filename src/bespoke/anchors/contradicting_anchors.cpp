@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 
 #include "bespoke/mesh/triangle_mesh.h"
@@ -34,8 +35,12 @@ std::optional<Similarity> similarity_around(const Points& sources, const Points&
 
 }  // namespace
 
-std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) {
+std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors,
+                                                        const std::vector<double>& sigmas) {
   constexpr std::size_t min_pairs = 4;
+  // Of the targets' diagonal: the root mean square difference of two places, each accurate to
+  // anchor_resolution (anchor_accuracy.h) in every coordinate.
+  constexpr double explained = std::numbers::sqrt2 * std::numbers::sqrt3 * 1e-3;
   constexpr double near = 0.05;  // of the targets' diagonal
   std::vector<ContradictingAnchors> found;
   if (anchors.pairs.size() < min_pairs) return found;
@@ -43,12 +48,16 @@ std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors) 
   if (!(diagonal(sources) > 0)) return found;  // the rigid part says so
   const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
   const double reach = near * diagonal(targets);
-  const auto contradicts = [](const ContradictingAnchors& pair) {
-    return pair.target_difference > pair.source_distance;
+  const double noise = explained * diagonal(targets);
+  const auto contradicts = [&](const ContradictingAnchors& pair) {
+    return pair.target_difference > std::max(pair.source_distance, noise);
+  };
+  const auto is_met_exactly = [&](std::size_t pair) {
+    return is_exact(anchors.pairs[pair]) && (sigmas.empty() || sigmas[pair] == 0);
   };
   for (std::size_t first = 0; first < anchors.pairs.size(); ++first)
     for (std::size_t second = first + 1; second < anchors.pairs.size(); ++second) {
-      if (!(is_exact(anchors.pairs[first]) && is_exact(anchors.pairs[second]))) continue;
+      if (!(is_met_exactly(first) && is_met_exactly(second))) continue;
       const auto i = static_cast<Eigen::Index>(first), j = static_cast<Eigen::Index>(second);
       const auto under = [&](const Similarity& map) -> ContradictingAnchors {
         const Vector3 arm = map.scale * (map.rotation * (sources.col(j) - sources.col(i)));

@@ -73,6 +73,19 @@ std::vector<RejectedAnchor> AnchorOutlierTest::displaced_pairs(const Points& reg
   return displaced;
 }
 
+AnchorAudit AnchorOutlierTest::unexplained(AnchorAudit audit, const Points& registered) const {
+  if (audit.suspicious.empty()) return audit;
+  const Eigen::VectorXd strains = strain_around(source_, registered, feet_, near_surface * source_size_);
+  std::erase_if(audit.suspicious, [&](const SuspiciousAnchor& anchor) {
+    const auto found = std::lower_bound(tested_.begin(), tested_.end(), anchor.index);
+    if (found == tested_.end() || *found != anchor.index) return false;
+    const auto k = static_cast<std::size_t>(found - tested_.begin());
+    return is_matched(k, distance(registered, k)) &&
+           !(strains[static_cast<Eigen::Index>(k)] > max_strain_of_contradicted);
+  });
+  return audit;
+}
+
 double AnchorOutlierTest::distance(const Points& registered, std::size_t tested) const {
   return (carried(feet_[tested], source_.faces, registered) - given_.pairs[tested_[tested]].b).norm();
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bespoke/pipeline/fit_elastic_map.h"
+#include "bespoke/pipeline/hopeless_fit.h"
 
 namespace bespoke {
 namespace {
@@ -92,6 +93,7 @@ class BakeOfAPlan {
 
   /// What is baked remains unless all steps are planned anew.
   void divide(std::size_t step, BakedSteps& baked) {
+    require_hopeful(fit_, source_, options_);
     if (plan_anew())
       baked = {};
     else

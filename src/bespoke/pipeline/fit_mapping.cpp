@@ -6,15 +6,18 @@
 #include <string>
 #include <utility>
 
+#include "bespoke/anchors/anchor_accuracy.h"
 #include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/error.h"
+#include "bespoke/length.h"
 #include "bespoke/mesh/seams.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/fit_elastic_map.h"
+#include "bespoke/pipeline/hopeless_fit.h"
 #include "bespoke/pipeline/register_source.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
@@ -168,7 +171,13 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
   // IV.D, IV.E: E.
   const TriangleMesh& registered = registered_source(result, source);
   fit_elastic_map(result, registered, estimated, options, progress);
+  require_hopeful(result, registered, options);
   result.anchor_residual = anchor_residuals(result, anchors);
+  if (!result.anchor_sigma.empty())
+    result.summary.missed =
+        missed_anchors(anchors, result.anchor_residual, result.anchor_sigma,
+                       anchor_resolution * power_of_two_scale(size_ratio(anchors, source, target)) *
+                           diagonal(source.vertices));
   measure_lines(result, registered, target, anchors);
   return result;
 }

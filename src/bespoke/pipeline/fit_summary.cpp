@@ -44,6 +44,10 @@ std::string to_string(const CoarseSummary& summary, const Anchors& anchors) {
   std::snprintf(text, sizeof text, "%zu anchors, residual p95 %.4g max %.4g", summary.residuals.count,
                 summary.residuals.p95, summary.residuals.max);
   std::string line = text;
+  if (summary.regularised)
+    line += "; their spread (" + format_number(summary.anchor_widths, 3) +
+            ") does not determine an affine map: it starts near a similarity";
+  if (summary.turned_by_surfaces) line += ", turned about their line by the surfaces";
   if (!summary.audit.suspicious.empty()) line += "; suspicious: " + to_string(summary.audit, anchors);
   return line;
 }
@@ -134,6 +138,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});
+  if (!summary.matched_parts.empty()) lines.push_back({"matched parts", summary.matched_parts});
   lines.push_back({"rigid", to_string(summary.rigid)});
   if (summary.coarse) lines.push_back({"coarse", to_string(*summary.coarse, anchors)});
   if (summary.counterparts) lines.push_back({"counterparts", to_string(*summary.counterparts)});
@@ -144,6 +149,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
     lines.push_back({"uncovered", to_string(*summary.uncovered)});
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
+  if (!summary.missed.empty()) lines.push_back({"missed", to_string(summary.missed, anchors)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});
   if (!summary.patches.empty()) lines.push_back({"patches", to_string(summary.patches)});
   if (summary.bake) lines.push_back({"bake", to_string(*summary.bake)});

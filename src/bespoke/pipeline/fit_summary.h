@@ -7,6 +7,7 @@
 #include "bespoke/anchors/anchor_accuracy.h"
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/anchors/contradicting_anchors.h"
+#include "bespoke/anchors/missed_anchors.h"
 #include "bespoke/bake/bake.h"
 #include "bespoke/cloud/point_cloud_surface.h"
 #include "bespoke/elastic/elastic_methods.h"
@@ -38,6 +39,11 @@ RigidSummary rigid_summary(const RigidTransform& target_from_source, const Point
 
 struct CoarseSummary {
   Statistics residuals;  ///< of the anchors after the warp, mesh units
+  /// The anchors' spread does not determine an affine map: the warp's is drawn towards a similarity
+  /// (regularised_alignment.h).
+  bool regularised = false;
+  bool turned_by_surfaces = false;          ///< about a line near which the anchors lie (anchor_start.h)
+  Vector3 anchor_widths = Vector3::Zero();  ///< standard deviations, the largest first, mesh units
   AnchorAudit audit;
   std::vector<ContradictingAnchors> contradicting;
   double seconds = 0;
@@ -99,6 +105,8 @@ struct FitSummary {
   std::optional<LoosePartsSummary> parts;       ///< empty where all parts of the source are registered
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
+  std::vector<MissedAnchor> missed;             ///< by more than their accuracy explains
+  std::string matched_parts;  ///< how disconnected parts correspond (matched_parts.h); mostly empty
   RigidSummary rigid;
   std::optional<CoarseSummary> coarse;             ///< empty when the fitted source was given, or no anchors
   std::optional<CounterpartSummary> counterparts;  ///< empty where nothing spoke against the anchors alone

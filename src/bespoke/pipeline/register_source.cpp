@@ -1,6 +1,8 @@
 #include "bespoke/pipeline/register_source.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,11 +13,12 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/anchor_outliers.h"
+#include "bespoke/pipeline/anchor_start.h"
 #include "bespoke/pipeline/fit_patches.h"
+#include "bespoke/pipeline/matched_parts.h"
 #include "bespoke/pipeline/rejected_anchors.h"
 #include "bespoke/quality/uncovered_area.h"
 #include "bespoke/rbf/global_rbf.h"
-#include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -33,16 +36,47 @@ Pairs pairs_of(const Anchors& anchors) {
   return {source_points(anchors), target_points(anchors), spline_weights(anchors), sigmas(anchors)};
 }
 
+/// Exact pairs at the corners of a box around the source, a tenth larger, which an affine map moves.
+void add_corners(Pairs& pairs, const TriangleMesh& source, const AffineMap& map) {
+  constexpr double larger = 1.1, thickest_sheet = 0.1;  // the latter of the diagonal
+  const Box box = bounding_box(source.vertices);
+  const Vector3 sizes = larger * box.sizes().cwiseMax(thickest_sheet * box.diagonal().norm());
+  const Eigen::Index count = pairs.sources.cols();
+  Points corners(3, 8);
+  for (int k = 0; k < 8; ++k)
+    corners.col(k) =
+        box.center() + sizes.cwiseProduct(Vector3(k & 4 ? 1 : -1, k & 2 ? 1 : -1, k & 1 ? 1 : -1)) / 2;
+  pairs.sources.conservativeResize(3, count + 8);
+  pairs.sources.rightCols(8) = corners;
+  pairs.targets.conservativeResize(3, count + 8);
+  pairs.targets.rightCols(8) = map * corners;
+  pairs.weights.conservativeResize(count + 8);
+  pairs.weights.tail(8).setConstant(std::numeric_limits<double>::infinity());
+}
+
 /// The coarse warp of the source's vertices (IV.B). pairs: the anchors, source frame, the first `count` of
-/// which were given.
-Points warp_coarsely(const TriangleMesh& source, const Pairs& pairs, Eigen::Index count,
-                     const Anchors& anchors, CoarseSummary& summary) {
+/// which were given. Where their spread does not determine the affine part, corners of a box tell it, as
+/// the regularised alignment takes them.
+Points warp_coarsely(const TriangleMesh& source, Pairs pairs, Eigen::Index count, const AnchorStart& start,
+                     CoarseSummary& summary) {
   const Stopwatch watch;
+  const RegularisedAlignment& alignment = start.alignment;
+  summary.regularised = pairs.sources.cols() > 3 && !alignment.determines_affine_map();
+  summary.turned_by_surfaces = start.turned_by_surfaces;
+  summary.anchor_widths = alignment.widths;
+  if (summary.regularised) {
+    const Matrix3 back = start.target_from_source.rotation.transpose();
+    const AffineMap& map = alignment.affine.linear.determinant() > 0
+                               ? alignment.affine
+                               : AffineMap{alignment.similarity.scale * alignment.similarity.rotation,
+                                           alignment.similarity.translation};
+    add_corners(pairs, source,
+                {back * map.linear, back * (map.offset - start.target_from_source.translation)});
+  }
   const GlobalRbf coarse(pairs.sources, pairs.targets, pairs.weights);
   Points warped = coarse(source.vertices);
   summary.residuals =
       summarize(distances(coarse(pairs.sources.leftCols(count)), pairs.targets.leftCols(count)));
-  summary.contradicting = contradicting_anchors(anchors);
   summary.seconds = watch.seconds();
   return warped;
 }
@@ -70,8 +104,9 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
   // IV.A: Γ. From here on everything is in the source frame.
   const Stopwatch rigid_watch;
   progress.step("rigid", 0, 0);
-  result.target_from_source =
-      align_rigidly(pairs.sources.leftCols(count), pairs.targets.leftCols(count), pairs.weights.head(count));
+  if (const std::string off = off_target(estimated.accuracy, target); !off.empty()) throw InvalidInput(off);
+  const AnchorStart start = start_by_anchors(estimated.anchors, pairs.weights.head(count), source, target);
+  result.target_from_source = start.target_from_source;
   summary.rigid =
       rigid_summary(result.target_from_source, pairs.sources.leftCols(count), pairs.targets.leftCols(count));
   const RigidTransform source_from_target = inverse(result.target_from_source);
@@ -81,8 +116,7 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
 
   // IV.B: Ẽ.
   progress.step("coarse", 0, 0);
-  const Points warped = warp_coarsely(source, pairs, count, given, summary.coarse.emplace());
-  if (const std::string off = off_target(estimated.accuracy, target); !off.empty()) throw InvalidInput(off);
+  const Points warped = warp_coarsely(source, pairs, count, start, summary.coarse.emplace());
 
   // IV.C: H'_a.
   SurfaceFit fit = fit_surface({source, warped, target_in_source, pairs.sources, pairs.targets, pairs.weights,
@@ -224,6 +258,24 @@ void register_by_counterparts(FittedMapping& result, const RegistrationInput& in
                                  static_cast<std::size_t>(displaced), taken, watch.seconds()};
 }
 
+/// Without those of curves.
+std::vector<double> given_sigmas(const EstimatedAnchors& estimated, const Anchors& given) {
+  return {estimated.sigmas.begin(),
+          estimated.sigmas.begin() + static_cast<std::ptrdiff_t>(given.pairs.size())};
+}
+
+/// What the surface fitting did not meet is not exact for those after it.
+void let_give_way(EstimatedAnchors& estimated, const Anchors& given,
+                  const std::vector<AnchorGivenWay>& given_way) {
+  for (const AnchorGivenWay& anchor : given_way) {
+    if (anchor.index >= estimated.kept.size()) continue;  // a counterpart
+    const std::size_t number = estimated.kept[anchor.index];
+    estimated.anchors.pairs[anchor.index].sigma = anchor.sigma;
+    estimated.sigmas[number] = anchor.sigma;
+    if (number < given.pairs.size()) estimated.accuracy.given_way.push_back({number, anchor.sigma});
+  }
+}
+
 /// Γ and H'_a by anchors, those of curves included; only given ones are tested. Returns the
 /// anchors as the fit took them.
 Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& input, const Anchors& anchors,
@@ -238,11 +290,14 @@ Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& inpu
     if (!suspects.empty())
       estimated = register_by_inliers(result, input, estimated, outlier_test, audit, suspects, progress);
     register_by_counterparts(result, input, estimated, progress);
+    audit = outlier_test.unexplained(std::move(audit), registered_vertices(result));
   }
+  result.summary.coarse->contradicting =
+      contradicting_anchors(input.given, given_sigmas(estimated, input.given));
+  let_give_way(estimated, input.given, result.summary.surface->anchors_given_way);
   result.summary.coarse->audit = std::move(audit);
   result.summary.accuracy = std::move(estimated.accuracy);
-  result.anchor_sigma = std::move(estimated.sigmas);
-  result.anchor_sigma.resize(input.given.pairs.size());
+  result.anchor_sigma = given_sigmas(estimated, input.given);
   return estimated.anchors;
 }
 
@@ -289,6 +344,22 @@ void register_by_surfaces(FittedMapping& result, const TriangleMesh& source, con
   summary.unanchored = std::move(fit.summary);
 }
 
+/// Patches of the parts that correspond, where anchors place the source and nobody gave patches.
+void add_matched_parts(FitPatches& patches, const TriangleMesh& source, const TriangleMesh& target,
+                       const Anchors& anchors, const FitOptions& options, FitSummary& summary) {
+  constexpr std::size_t min_pairs = 4;
+  if (options.surface_fit.method != SurfaceFitMethod::deformation_graph || !patches.source.is_empty() ||
+      anchors.pairs.size() < min_pairs || part_count(source) < 2 || part_count(target) < 2)
+    return;
+  const RegularisedAlignment alignment =
+      align_regularised(source_points(anchors), target_points(anchors),
+                        Eigen::VectorXd::Ones(static_cast<Eigen::Index>(anchors.pairs.size())));
+  MatchedParts parts = match_parts(source, alignment.affine * source.vertices, target);
+  summary.matched_parts = to_string(parts);
+  patches.source = std::move(parts.source);
+  patches.target = std::move(parts.target);
+}
+
 /// Γ and H'_a, however they are found. Returns the anchors as the fit took them.
 Anchors register_models(FittedMapping& result, const RegistrationInput& input, const Progress& progress) {
   Anchors lines = input.given;
@@ -303,8 +374,9 @@ Anchors register_models(FittedMapping& result, const RegistrationInput& input, c
 
 Anchors register_source(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
                         const Anchors& anchors, const FitOptions& options, const Progress& progress) {
-  const FitPatches patches = fit_patches(anchors, source, target);
+  FitPatches patches = fit_patches(anchors, source, target);
   result.summary.patches = patches.found;
+  add_matched_parts(patches, source, target, anchors, options, result.summary);
   Anchors estimated = register_models(result, {source, target, patches, anchors, options}, progress);
   constexpr double reach = 0.01;  // of the target's diagonal
   result.summary.uncovered =

@@ -114,22 +114,33 @@ Json to_json(const RigidSummary& summary) {
 }
 
 Json to_json(const AnchorAccuracy& accuracy, const Anchors& anchors) {
-  Json outliers = Json::array(), swapped = Json::array(), left_out = Json::array();
+  Json outliers = Json::array(), swapped = Json::array(), left_out = Json::array(), given_way = Json::array();
   for (const OutlierAnchor& anchor : accuracy.outliers)
     outliers.push_back(
         {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
   for (const RejectedAnchor& anchor : accuracy.left_out)
     left_out.push_back(
         {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"distance", anchor.distance}});
+  for (const GivenWayAnchor& anchor : accuracy.given_way)
+    given_way.push_back(
+        {{"index", anchor.index}, {"name", anchors.pairs[anchor.index].name}, {"sigma", anchor.sigma}});
   for (const SwappedAnchors& pair : accuracy.swapped)
     swapped.push_back({{"indices", {pair.first, pair.second}},
                        {"names", {anchors.pairs[pair.first].name, anchors.pairs[pair.second].name}},
                        {"energy_ratio", pair.energy_ratio}});
-  return {{"estimated", accuracy.estimated},
-          {"sigma", accuracy.sigma},
-          {"slipped_anchors", std::move(outliers)},
-          {"swapped_anchors", std::move(swapped)},
-          {"left_out_anchors", std::move(left_out)}};
+  return {{"estimated", accuracy.estimated},         {"sigma", accuracy.sigma},
+          {"slipped_anchors", std::move(outliers)},  {"swapped_anchors", std::move(swapped)},
+          {"left_out_anchors", std::move(left_out)}, {"given_way_anchors", std::move(given_way)}};
+}
+
+Json to_json(const std::vector<MissedAnchor>& missed, const Anchors& anchors) {
+  Json list = Json::array();
+  for (const MissedAnchor& anchor : missed)
+    list.push_back({{"index", anchor.index},
+                    {"name", anchors.pairs[anchor.index].name},
+                    {"residual", anchor.residual},
+                    {"sigma", anchor.sigma}});
+  return {{"anchors", std::move(list)}};
 }
 
 Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
@@ -147,6 +158,8 @@ Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
                              {"asked", pair.target_difference}});
   return {{"pairs", summary.residuals.count},
           {"residual", to_json(summary.residuals)},
+          {"regularised", summary.regularised},
+          {"turned_by_surfaces", summary.turned_by_surfaces},
           {"suspicious_anchors", std::move(suspicious)},
           {"contradicting_anchors", std::move(contradicting)}};
 }
@@ -268,6 +281,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);
+  if (!summary.matched_parts.empty()) add("matched-parts", {{"text", summary.matched_parts}}, 0);
   add("rigid", to_json(summary.rigid), summary.rigid.seconds);
   if (summary.coarse) add("coarse", to_json(*summary.coarse, anchors), summary.coarse->seconds);
   // Only where there is any: the records of all other fits stay as they were.
@@ -290,6 +304,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
         0);
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
+  if (!summary.missed.empty()) add("missed", to_json(summary.missed, anchors), 0);
   if (!summary.curves.empty()) add("curves", to_json(summary.curves), 0);
   if (!summary.patches.empty()) add("patches", to_json(summary.patches), 0);
   if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);

@@ -100,6 +100,9 @@ std::string to_string(const SurfaceFitSummary& summary) {
   std::string line = text;
   if (summary.off_surface_anchors > 0)
     line += ", " + std::to_string(summary.off_surface_anchors) + " anchors off the surface left to the map";
+  if (!summary.anchors_given_way.empty())
+    line += ", " + std::to_string(summary.anchors_given_way.size()) +
+            " anchors gave way, since meeting them would stretch the surface too much";
   if (summary.target_flipped) line += ", the target's faces flipped to match the source's";
   if (summary.similarity_suffices) line += ", one similarity explains the target";
   if (summary.posed_by_anchors) {

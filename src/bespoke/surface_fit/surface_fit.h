@@ -75,6 +75,12 @@ enum class StopReason {
 
 const char* to_string(StopReason reason);
 
+/// An exact anchor that is not met, since meeting it would stretch the surface too much.
+struct AnchorGivenWay {
+  std::size_t index = 0;  ///< of the fit's anchors
+  double sigma = 0;       ///< accuracy that it was given instead, mesh units
+};
+
 struct SurfaceFitSummary {
   /// Distance of the warped source's vertices from the target surface, without what is excluded or lies in
   /// cavities that the target lacks, mesh units.
@@ -103,6 +109,7 @@ struct SurfaceFitSummary {
   std::size_t repaired_vertices = 0;  ///< drawn over a fold or stretched, so they follow their neighbours
   std::vector<int>
       stretched_vertices;  ///< of those, by index: stretched beyond SurfaceFitOptions::max_stretch
+  std::vector<AnchorGivenWay> anchors_given_way;
   std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
   double seconds = 0;
 };

@@ -13,6 +13,7 @@
 #include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
+#include "bespoke/surface_fit/detail/anchor_meeting.h"
 #include "bespoke/surface_fit/detail/anchor_pose.h"
 #include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
@@ -29,6 +30,7 @@ struct SurfaceAnchors {
   Points sources, targets;  // 3×k
   Eigen::VectorXd weights, sigmas;
   std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
+  std::vector<Eigen::Index> given;  // k: columns among all anchors of the fit
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
@@ -60,7 +62,8 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
                          input.anchor_targets(Eigen::all, near),
                          input.anchor_weights(near),
                          sigmas(near),
-                         {}};
+                         {},
+                         near};
   for (Eigen::Index k = 0; k < anchors.weights.size(); ++k) {
     if (anchors.sigmas[k] > 0)
       anchors.weights[k] = std::numeric_limits<double>::infinity();  // limited by σ instead
@@ -151,6 +154,7 @@ struct Scene {
   double diagonal;
   FacePatches patches;       // of the surface
   std::vector<char> hidden;  // n: in a cavity that the target lacks
+  Points coarse_vertices;    // 3×n: as the coarse deformation left the surface
 
   DetailInput details() const {
     return {surface, target, exact_sources, exact_targets, diagonal, hidden, patches};
@@ -247,6 +251,7 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
   FaceRepairSettings face_repair = settings.face_repair;
   face_repair.max_stretch = options.max_stretch;
   const TriangleMesh coarse{nodes.coarse_vertices, scene.surface.faces};
+  scene.coarse_vertices = nodes.coarse_vertices;
   RepairedSurface mended = repair_misoriented_faces({shape, coarse, details.vertices}, face_repair);
   scene.exact_sources = details.anchor_sources;
   if (mended.repaired_vertices > 0)
@@ -303,15 +308,22 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
               anchors.exact_targets(),
               aligned.scale * diagonal(input.source.vertices),
               std::move(source.patches),
+              {},
               {}};
+  scene.coarse_vertices = scene.surface.vertices;
 
   SurfaceFit fit;
   if (suffices)
     fit.summary.stop_reason = StopReason::converged;
   else
     fit.summary = deform(scene, aligned * anchors.sources, options, settings, progress);
-  fit.vertices =
-      meet_anchors(scene.details(), settings.details).vertices.leftCols(input.source.vertices.cols());
+  const AnchorMeeting meeting =
+      meet_anchors_within(scene.details(), scene.coarse_vertices, options.max_stretch, settings.details);
+  fit.vertices = meeting.vertices.leftCols(input.source.vertices.cols());
+  for (Eigen::Index k = 0; k < meeting.anchor_sigmas.size(); ++k)
+    if (meeting.anchor_sigmas[k] > 0)
+      fit.summary.anchors_given_way.push_back(
+          {static_cast<std::size_t>(anchors.given[anchors.exact[k]]), meeting.anchor_sigmas[k]});
   fit.confidence = confidences({fit.vertices, input.source.faces}, input.source_patches, target,
                                scene.diagonal, settings.confidence);
   for (std::size_t i = 0; i < std::min(scene.hidden.size(), fit.confidence.size()); ++i)

@@ -24,6 +24,13 @@ using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout o
 /// Radians; 0 where a direction is zero.
 double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
+/// Products of a face's edges at its first corner.
+Eigen::Matrix2d face_metric(const Faces& faces, Eigen::Index face, const Points& vertices) {
+  Eigen::Matrix<double, 3, 2> edges;
+  for (int k = 0; k < 2; ++k) edges.col(k) = vertices.col(faces(k + 1, face)) - vertices.col(faces(0, face));
+  return edges.transpose() * edges;
+}
+
 /// How the faces of a surface lie, and how the surface around each does.
 struct FaceNormals {
   Points own;     // 3×m, unit; zero for a face without area
@@ -83,7 +90,7 @@ class FaceChanges {
         found.turned.push_back(face);
       else if (is_folded[face])
         found.folded.push_back(face);
-      else if (stretch(after, face) > max_stretch_)
+      else if (face_stretch(before_.faces, face, before_.vertices, after) > max_stretch_)
         found.stretched.push_back(face);
     }
     return found;
@@ -103,28 +110,6 @@ class FaceChanges {
   double turn(const FaceNormals& after, Eigen::Index face) const {
     const double smoothed = std::max(0.0, normals_.crease(face) - after.crease(face));
     return angle(after.own.col(face), normals_.own.col(face)) - smoothed;
-  }
-
-  /// The larger of the largest factor by which a length in the face grew, and by which one shrank.
-  double stretch(const Points& after, Eigen::Index face) const {
-    const Matrix2 from = metric(before_.vertices, face), to = metric(after, face);
-    if (!(from.determinant() > 0)) return 1;
-    // Squared factors are the eigenvalues of from⁻¹ to.
-    const Matrix2 squared = from.inverse() * to;
-    const double half = squared.trace() / 2, product = squared.determinant();
-    const double largest = half + std::sqrt(std::max(0.0, half * half - product));
-    return std::sqrt(std::max(largest, largest / std::max(product, tiny)));
-  }
-
-  using Matrix2 = Eigen::Matrix2d;
-  static constexpr double tiny = 1e-300;
-
-  /// Products of the face's edges at its first corner.
-  Matrix2 metric(const Points& vertices, Eigen::Index face) const {
-    Eigen::Matrix<double, 3, 2> edges;
-    for (int k = 0; k < 2; ++k)
-      edges.col(k) = vertices.col(before_.faces(k + 1, face)) - vertices.col(before_.faces(0, face));
-    return edges.transpose() * edges;
   }
 
   const TriangleMesh& before_;
@@ -237,6 +222,17 @@ std::vector<int> no_farther_bent(const DrawnSurface& surface, const std::vector<
 }
 
 }  // namespace
+
+double face_stretch(const Faces& faces, Eigen::Index face, const Points& before, const Points& after) {
+  constexpr double tiny = 1e-300;
+  const Eigen::Matrix2d from = face_metric(faces, face, before), to = face_metric(faces, face, after);
+  if (!(from.determinant() > 0)) return 1;
+  // Squared factors are the eigenvalues of from⁻¹ to.
+  const Eigen::Matrix2d squared = from.inverse() * to;
+  const double half = squared.trace() / 2, product = squared.determinant();
+  const double largest = half + std::sqrt(std::max(0.0, half * half - product));
+  return std::sqrt(std::max(largest, largest / std::max(product, tiny)));
+}
 
 RepairedSurface repair_misoriented_faces(const DrawnSurface& surface, const FaceRepairSettings& settings) {
   const TriangleMesh& before = surface.before;

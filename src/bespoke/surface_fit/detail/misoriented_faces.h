@@ -35,4 +35,8 @@ struct RepairedSurface {
 RepairedSurface repair_misoriented_faces(const DrawnSurface& surface,
                                          const FaceRepairSettings& settings = {});
 
+/// The larger of the largest factor by which a length in a face grew, and by which one shrank; 1 for a face
+/// that had no area. before, after: 3×n, mesh units.
+double face_stretch(const Faces& faces, Eigen::Index face, const Points& before, const Points& after);
+
 }  // namespace bespoke

@@ -1,0 +1,88 @@
+#include "bespoke/surface_fit/detail/anchor_meeting.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bespoke/rbf/kernels.h"
+#include "bespoke/surface_fit/detail/misoriented_faces.h"
+
+namespace bespoke {
+namespace {
+
+// Of the largest move. The first is a tenth; the last leaves a millionth of a move.
+constexpr double first_variance = 0.01, growth_of_variance = 4;
+constexpr int max_rounds = 14;
+
+/// Centres of faces that `met` stretches beyond the factor, and more than the surface was before.
+std::vector<Vector3> overstretched(const TriangleMesh& surface, const Points& met, const Points& coarse,
+                                   double max_stretch) {
+  std::vector<Vector3> centres;
+  const Faces& faces = surface.faces;
+  for (Eigen::Index face = 0; face < faces.cols(); ++face) {
+    const double stretch = face_stretch(faces, face, coarse, met);
+    if (!(stretch > max_stretch) || !(stretch > face_stretch(faces, face, coarse, surface.vertices)))
+      continue;
+    centres.push_back((surface.vertices.col(faces(0, face)) + surface.vertices.col(faces(1, face)) +
+                       surface.vertices.col(faces(2, face))) /
+                      3);
+  }
+  return centres;
+}
+
+/// Raises the variances of the anchors within a radius of the places; whether there was one.
+bool raise_around(const std::vector<Vector3>& places, const Points& anchors, double radius,
+                  Eigen::VectorXd& variances) {
+  bool any = false;
+  for (Eigen::Index k = 0; k < anchors.cols(); ++k)
+    for (const Vector3& place : places) {
+      if (!((place - anchors.col(k)).norm() <= radius)) continue;
+      variances[k] = std::max(first_variance, growth_of_variance * variances[k]);
+      any = true;
+      break;
+    }
+  return any;
+}
+
+/// The moves (3×k) as a field with the layer's kernel has them, of which each is a noisy sample.
+Points smoothed(const Points& anchors, const Points& moves, double radius, const Eigen::VectorXd& variances) {
+  const Eigen::Index count = anchors.cols();
+  Eigen::MatrixXd kernel(count, count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double s = (anchors.col(i) - anchors.col(j)).norm() / radius;
+      kernel(i, j) = s < 1 ? WendlandC4::value(s) : 0;
+    }
+  Eigen::MatrixXd system = kernel;
+  constexpr double ridge = 1e-9;  // of equal anchors
+  system.diagonal().array() += variances.array() + ridge;
+  return (kernel * system.ldlt().solve(moves.transpose())).transpose();
+}
+
+}  // namespace
+
+AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse, double max_stretch,
+                                  const DetailSettings& settings) {
+  const Points& anchors = input.anchor_sources;
+  const double radius = settings.anchor_radius * input.diagonal;
+  AnchorMeeting meeting{meet_anchors(input, settings).vertices, Eigen::VectorXd::Zero(anchors.cols())};
+  if (anchors.cols() == 0) return meeting;
+  const Points moves = input.anchor_targets - anchors;
+  const double largest = std::sqrt(moves.colwise().squaredNorm().maxCoeff());
+  Eigen::VectorXd variances = Eigen::VectorXd::Zero(anchors.cols());
+  for (int round = 0; round < max_rounds; ++round) {
+    const std::vector<Vector3> places = overstretched(input.surface, meeting.vertices, coarse, max_stretch);
+    if (places.empty() || !raise_around(places, anchors, radius, variances)) break;
+    Points targets = anchors + smoothed(anchors, moves, radius, variances);
+    for (Eigen::Index k = 0; k < anchors.cols(); ++k)
+      if (variances[k] == 0) targets.col(k) = input.anchor_targets.col(k);
+    const DetailInput relaxed{input.surface,  input.target, anchors,      targets,
+                              input.diagonal, input.hidden, input.patches};
+    meeting.vertices = meet_anchors(relaxed, settings).vertices;
+    meeting.anchor_sigmas = largest * variances.cwiseSqrt();
+  }
+  return meeting;
+}
+
+}  // namespace bespoke
