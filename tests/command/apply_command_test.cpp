@@ -152,7 +152,8 @@ TEST_F(ApplyCommand, CarriesGltfAsObj) {
   scene.accessor(std::vector<float>(points.data(), points.data() + points.size()), "VEC3", 5126,
                  {{"min", bound(points.rowwise().minCoeff())}, {"max", bound(points.rowwise().maxCoeff())}});
   scene.root["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", 0}}}}}}}};
-  scene.root["nodes"] = {{{"mesh", 0}}};
+  scene.root["nodes"] = {
+      {{"mesh", 0}, {"scale", {0.01, 0.01, 0.01}}}};  // a scene is in metres, the map in cm
   write_text(pair_.file("a.glb"), scene.glb());
   write_text(pair_.file("b.gltf"), scene.gltf("data.bin"));
   write_text(pair_.file("data.bin"), scene.data);

@@ -374,8 +374,11 @@ TEST_F(FitCommand, AsksWhetherAnchorsAreInTheModelsUnit) {
     for (const char* side : {"a", "b"})
       for (json& coordinate : anchor[side]) coordinate = 10 * coordinate.get<double>();
   write_text(pair_.file("anchors.json"), anchors.dump());
+  const ProgramResult refused = pair_.fit("other.vdb");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("would if their \"a\" were multiplied by 0.1,"));
   const ProgramResult fit =
-      pair_.fit("map.vdb", {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"});
+      pair_.fit("map.vdb", {"--any-anchors", "--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"});
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   for (const char* role : {"source", "target"})
     EXPECT_THAT(fit.err, HasSubstr(std::string("bespoke: warning: ") + role + ": half of the anchors lie"));

@@ -7,8 +7,10 @@
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
 #include "bespoke/atomic_file.h"
+#include "bespoke/number_format.h"
 #include "bespoke/output_stream.h"
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/report/report.h"
 #include "bespoke/strings.h"
@@ -38,6 +40,7 @@ struct ApplyArguments {
   std::string report;
   std::vector<std::string> rigid, similar;  ///< parts
   std::optional<Length> refine;
+  std::string unit;
   double t = 1;
   std::optional<int> frames;
   std::optional<RotationPath> path;
@@ -187,21 +190,38 @@ MotionOptions motion_options(const ApplyArguments& arguments, const OpenedMap& m
   return {path, order};
 }
 
+std::string conversion(const std::string& name, const std::string& map_unit, double scale,
+                       const ApplyArguments& arguments) {
+  return "is in " + product_unit(name, map_unit, arguments.unit) + ", the map in " + map_unit +
+         ": carried times " + format_number(scale, 6) + " and written in its own unit";
+}
+
 /// Carries the file as it is or, to become another kind of file, its faces.
 ProductSummary apply_one(const ApplyArguments& arguments, const std::string& name,
                          const std::vector<fs::path>& outputs, const OpenedMap& map,
                          const Progress& progress) {
+  const double scale = product_scale(name, map.unit, arguments.unit);
+  const OpenedMap own = in_other_unit(map, scale);
   const MotionOptions motion = motion_options(arguments, map);
   const bool measure_chords = !arguments.report.empty() && can_read_product(name);
   std::optional<double> refine;
-  if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal);
+  if (arguments.refine) refine = arguments.refine->in_mesh_units(map.source_diagonal) / scale;
+  std::optional<Box> model_box;
+  if (arguments.unit.empty()) model_box = own.model_box;
   std::vector<fs::path> targets;
   for (const fs::path& output : outputs) targets.push_back(output_target(output));
-  if (!is_carried(arguments, name, outputs.front()))
-    return convert_product(name, targets, *map.elastic, map.target_from_source, times(arguments),
-                           {motion, refine, measure_chords});
-  return apply_to_product(name, targets, *map.elastic, map.target_from_source, times(arguments),
-                          {motion, parts(arguments), refine, measure_chords, progress});
+  ProductSummary summary;
+  if (!is_carried(arguments, name, outputs.front())) {
+    ConvertOptions options{motion, refine, measure_chords, {}, model_box};
+    options.unit = product_unit(name, map.unit, arguments.unit);
+    summary = convert_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
+  } else {
+    ApplyToProductOptions options{motion, parts(arguments), refine, measure_chords, model_box, progress};
+    summary =
+        apply_to_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
+  }
+  if (scale != 1) summary.warnings.push_back(conversion(name, map.unit, scale, arguments));
+  return summary;
 }
 
 std::vector<JobFigure> figures(const std::vector<AppliedProduct>& applied) {
@@ -231,7 +251,8 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   const fs::path map_file =
       arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
   ProductMap map(map_file, arguments.products,
-                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point},
+                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point,
+                  arguments.unit},
                  context);
   // A batch knows which jobs share a map only where they name it.
   if (arguments.catalog.is_used()) context.maps.close(map_file);
@@ -288,6 +309,12 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
                   "A part that may also be scaled as a whole (a similarity); repeatable")
       ->type_name("NAME")
       ->allow_extra_args(false);
+  apply
+      .add_option(
+          "--unit", arguments.unit,
+          "Unit of the products' coordinates: mm, cm, m, in …, or map for the map's own; they are carried "
+          "and written in it (default: what glTF and 3MF files say, else the map's)")
+      ->type_name("UNIT");
   add_length_option(
       apply, "--refine", arguments.refine,
       "Split edges where the map bends them, until the middle of a mapped edge is no farther than this from "

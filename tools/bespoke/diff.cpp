@@ -5,10 +5,10 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/catalog/difference_report.h"
 #include "bespoke/error.h"
-#include "bespoke/product/product_io.h"
 #include "commands.h"
 #include "help.h"
 #include "length_option.h"
+#include "map_models.h"
 #include "output_files.h"
 
 namespace bespoke::command {
@@ -55,7 +55,8 @@ void run(const DiffArguments& arguments, const RunContext& context) {
   const Asset b = read_asset(arguments.b, {.untrusted = arguments.untrusted});
   require_one_unit(arguments, a, b);
   std::vector<Points> products;
-  for (const std::string& product : arguments.products) products.push_back(read_product(product).vertices);
+  for (const std::string& product : arguments.products)
+    products.push_back(read_product_in(product, a.record.unit).vertices);
   ComparedMaps compared{a, b, map_difference(a, b, products, context.progress), record_difference(a, b),
                         arguments.products};
   if (a.record.source.hash != b.record.source.hash)

@@ -6,6 +6,7 @@
 #include "bespoke/apply/apply_mapping.h"
 #include "bespoke/exchange/glb_file.h"
 #include "bespoke/exchange/image_formats.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/unknown_ending.h"
@@ -108,10 +109,11 @@ struct MorphedFaces {
 /// In metres where their unit is known. Returns how far straight pieces are off.
 double export_faces(const ExportArguments& arguments, const OpenedMap& map, const MorphedFaces& faces,
                     const std::filesystem::path& output) {
+  const std::string& own_unit = faces.product.unit.empty() ? faces.unit : faces.product.unit;
   const MorphingMesh mesh =
       morph_along(faces.product, *map.elastic, map.target_from_source, *arguments.morph, {map.path});
   write_glb(output, mesh,
-            {std::filesystem::path(arguments.product).stem().string(), metres_per_unit(faces.unit)});
+            {std::filesystem::path(arguments.product).stem().string(), metres_per_unit(own_unit)});
   return mesh.off_path;
 }
 
@@ -129,7 +131,8 @@ double export_file(const ExportArguments& arguments, const OpenedMap& map,
 void export_morph(const ExportArguments& arguments, const RunContext& context) {
   const ReadAssetOptions reading{.untrusted = arguments.untrusted};
   const std::string unit = read_asset(arguments.map, reading).record.unit;
-  const OpenedMap map = open_map(arguments.map, MapForm::grids, reading);
+  const double scale = scale_to_unit(arguments.product, unit);
+  const OpenedMap map = in_other_unit(open_map(arguments.map, MapForm::grids, reading), scale);
   const bool keeps_file = is_glb(arguments.product);
   MorphedFaces faces{{}, unit};
   if (!keeps_file) faces.product = read_product(arguments.product);
@@ -147,7 +150,10 @@ void export_morph(const ExportArguments& arguments, const RunContext& context) {
   if (arguments.run.quiet) return;
   std::printf("%-12s %d, with straight motion between them at most %.4g off the map's\n", "targets",
               *arguments.morph, off_path);
-  if (keeps_file)
+  if (scale != 1)
+    std::printf("%-12s %s of the map; the product is in %s: times %s\n", "unit", unit.c_str(),
+                unit_of_format(arguments.product).c_str(), format_number(scale, 6).c_str());
+  else if (keeps_file)
     std::printf("%-12s %s, taken as that of the scene\n", "unit", unit.empty() ? "unknown" : unit.c_str());
   else if (metres_per_unit(unit))
     std::printf("%-12s %s, shown in metres\n", "unit", unit.c_str());

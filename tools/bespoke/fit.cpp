@@ -11,11 +11,13 @@
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/require_surface.h"
+#include "bespoke/number_format.h"
 #include "bespoke/output_stream.h"
 #include "bespoke/page/view_scene.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/pipeline/map_request.h"
+#include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/product/product_io.h"
@@ -76,6 +78,14 @@ TriangleMesh read_model(const std::string& role, const std::string& path, bool v
   TriangleMesh mesh = read_source(path);
   require_model(mesh, role, path, verbose);
   return mesh;
+}
+
+void print_units(const UnitPlan& units, const FitArguments& arguments) {
+  for (const auto& [model, scale] :
+       {std::pair(arguments.source, units.source_scale), std::pair(arguments.target, units.target_scale)})
+    if (scale != 1)
+      std::printf("%-12s %s is in %s, converted to %s: times %s\n", "unit", model.c_str(),
+                  unit_of_format(model).c_str(), units.unit.c_str(), format_number(scale, 6).c_str());
 }
 
 void print_stages(const MadeMap& made, const Anchors& anchors) {
@@ -158,20 +168,24 @@ void run(const FitArguments& arguments, const RunContext& context) {
     throw CLI::ValidationError("--html", "shows the map from its file; give -o the name of a file");
   const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
-  const TriangleMesh source = read_model("source", arguments.source, arguments.verbose);
-  const TargetModel target_model = read_target(arguments.target);
+  TriangleMesh source = read_model("source", arguments.source, arguments.verbose);
+  TargetModel target_model = read_target(arguments.target);
   const TriangleMesh& target = target_model.mesh;
   require_model(target, "target", arguments.target, arguments.verbose);
+  Anchors anchors;
+  if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source, &target});
+  const UnitPlan units =
+      bring_to_one_unit({arguments.unit, unit_of_format(arguments.source), unit_of_format(arguments.target),
+                         arguments.source, arguments.target},
+                        anchors);
+  source.vertices *= units.source_scale;
+  target_model.mesh.vertices *= units.target_scale;
+  if (!arguments.run.quiet) print_units(units, arguments);
   std::optional<TriangleMesh> fitted;
   if (!arguments.fitted.empty()) {
     fitted = read_model("fitted", arguments.fitted, arguments.verbose);
+    fitted->vertices *= scale_to_unit(arguments.fitted, units.unit);
     require_same_connectivity(source, *fitted, arguments.fitted);
-  }
-  Anchors anchors;
-  if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source, &target});
-  for (const std::string& model : {arguments.source, arguments.target}) {
-    require_unit_of_format(model, anchors.unit);
-    if (anchors.unit.empty()) anchors.unit = unit_of_format(model);
   }
   if (!arguments.anchors.empty() && anchors.pairs.empty() && anchors.curves.empty() &&
       arguments.fitted.empty())
@@ -202,7 +216,8 @@ void run(const FitArguments& arguments, const RunContext& context) {
   files.write(arguments.output, [&](const auto& path) { write_asset(path, made.asset); });
   if (!arguments.fitted_out.empty())
     files.write(arguments.fitted_out, [&](const auto& path) {
-      write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces});
+      write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces},
+                          units.unit);
     });
   if (!arguments.confidence_out.empty())
     files.write_text(arguments.confidence_out, confidence_lines(made.fit.confidence));

@@ -55,6 +55,16 @@ void add_input_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_flag("--any-size", arguments.any_size,
                "Accept models that differ by more than eight times in size, which are refused otherwise as "
                "being in two units: the map then goes from one unit to the other");
+  fit.add_flag(
+      "--any-anchors", arguments.any_anchors,
+      "Accept anchors that miss a model by a factor, which are refused otherwise as if one of both had "
+      "been scaled");
+  fit.add_option(
+         "--unit", arguments.unit,
+         "Unit of the map: mm, cm, m, in …; models (glTF, 3MF) and anchors whose files say another are "
+         "converted, others are taken as being in it (default: what the anchors, the source or the target "
+         "say)")
+      ->type_name("UNIT");
   fit.add_flag("--as-given", arguments.as_given,
                "Take the models as they are: by default edges that a file cuts open at the same places are "
                "joined, and a target that is inside out is turned right side out");

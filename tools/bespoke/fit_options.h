@@ -18,6 +18,7 @@ struct FitArguments : MapRequest {
   std::string confidence_out;
   std::string report;
   std::string html;
+  std::string unit;  ///< of the map, where it is given
   bool require_certified = false;
   bool add_corners = false;
   bool verbose = false;

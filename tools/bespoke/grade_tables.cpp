@@ -8,11 +8,13 @@
 
 #include "batch_display.h"
 #include "bespoke/anchors/anchor_files.h"
+#include "bespoke/anchors/anchor_scale.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/grading/grade_table.h"
 #include "bespoke/number_format.h"
+#include "bespoke/product/format_unit.h"
 #include "output_files.h"
 #include "planned_run.h"
 
@@ -75,6 +77,17 @@ void write_tables(const fs::path& directory, const std::string& csv, const std::
   files.keep();
 }
 
+/// In the map's unit, as the fit has taken it: anchors that say none go with their model.
+SizeModel model_of(const GradeSize& size, const std::string& map_unit) {
+  TriangleMesh mesh = read_target(size.target).mesh;
+  const double scale = scale_to_unit(size.target, map_unit);
+  mesh.vertices *= scale;
+  Anchors anchors = anchors_of(size);
+  const double of_anchors = anchors.unit.empty() ? scale : unit_factor(anchors.unit, map_unit).value_or(1);
+  scale_anchors(anchors, of_anchors, of_anchors);
+  return {std::move(mesh), places_of(anchors, &AnchorPair::b)};
+}
+
 BatchJob job_for(const fs::path& directory) {
   BatchJob job;
   job.command = "measures";
@@ -97,7 +110,7 @@ BatchJob size_job(const GradeRequest& request, const GradeSize& size, const Meas
   job.run = [size, series = without_sizes(sheet), lines, directory, &maps](const Progress&) {
     const std::shared_ptr<const OpenedMap> map = maps.open(size.map, MapForm::grids, {});
     std::optional<SizeModel> model;
-    if (size.t == 1) model = {read_target(size.target).mesh, places_of(anchors_of(size), &AnchorPair::b)};
+    if (size.t == 1) model = model_of(size, map->unit);
     const GradedSize graded{size.name, graded_measures(lines, *map, size.t, model ? &*model : nullptr)};
     write_tables(directory, size_csv(graded), size_markdown(series, graded));
     return JobFindings{};

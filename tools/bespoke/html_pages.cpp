@@ -13,7 +13,7 @@
 #include "bespoke/number_format.h"
 #include "bespoke/page/carried_picture.h"
 #include "bespoke/parallel.h"
-#include "bespoke/product/product_io.h"
+#include "map_models.h"
 #include "output_files.h"
 #include "page_output.h"
 
@@ -50,12 +50,9 @@ std::string free_name(const std::string& name, std::set<std::string>& taken) {
   return free;
 }
 
-std::vector<TriangleMesh> meshes_of(const std::vector<std::string>& products) {
+std::vector<TriangleMesh> meshes_of(const std::vector<std::string>& products, const std::string& map_unit) {
   std::vector<TriangleMesh> meshes;
-  for (const std::string& path : products) {
-    const Product product = read_product(path);
-    meshes.push_back({product.vertices, triangulated(product)});
-  }
+  for (const std::string& path : products) meshes.push_back(read_product_in(path, map_unit));
   return meshes;
 }
 
@@ -196,9 +193,9 @@ void HtmlPages::write(const std::string& scene, const OpenedMap& map) const {
 }
 
 void HtmlPages::write_picture(const Row& row, const OpenedMap& map) {
-  const TriangleMesh source = read_source(row.shown.source);
-  const TriangleMesh target = read_target(row.shown.target).mesh;
-  const std::vector<TriangleMesh> products = meshes_of(row.shown.products);
+  const TriangleMesh source = read_source(row.shown.source, map.unit, {});
+  const TriangleMesh target = read_target(row.shown.target, map.unit, {}).mesh;
+  const std::vector<TriangleMesh> products = meshes_of(row.shown.products, map.unit);
   OutputFiles files;
   files.write_text(
       row.picture,

@@ -4,10 +4,19 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 #include "commands.h"
 
 namespace bespoke::command {
+
+void add_unit_option(CLI::App& app, std::string& unit) {
+  app.add_option(
+         "--unit", unit,
+         "Unit of the products' coordinates: mm, cm, m, in …, or map for the map's own (default: what glTF "
+         "and 3MF files say, else the map's)")
+      ->type_name("UNIT");
+}
 
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
   app.add_option("MAP", arguments.map, map_help)->required();
@@ -20,6 +29,7 @@ void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
   app.add_option("--product", arguments.products,
                  "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
+  add_unit_option(app, arguments.unit);
   app.add_option("--confidence", arguments.confidence, "What `fit --confidence-out` wrote")
       ->type_name("FILE");
   app.add_option("--fit-report", arguments.fit_report,
@@ -41,19 +51,24 @@ std::vector<JobFile> inputs_of(const MapModelArguments& arguments) {
 MapModels read_map_models(const MapModelArguments& arguments) {
   MapModels models;
   models.asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  models.source = read_source(arguments.source);
-  TargetModel target = read_target(arguments.target);
+  const AssetRecord& record = models.asset.record;
+  models.source = read_source(arguments.source, record.unit, record.source.hash);
+  TargetModel target = read_target(arguments.target, record.unit, record.target.hash);
   require_source(arguments.source, models.source, models.asset.record);
   require_target(arguments.target, target, models.asset.record);
   models.target = std::move(target.mesh);
   for (const std::string& path : arguments.products) {
-    const Product product = read_product(path);
-    models.products.push_back(
-        {std::filesystem::path(path).filename().string(), {product.vertices, triangulated(product)}});
+    models.products.push_back({std::filesystem::path(path).filename().string(),
+                               read_product_in(path, record.unit, arguments.unit)});
   }
   if (!arguments.confidence.empty()) models.findings.confidence = read_confidence(arguments.confidence);
   if (!arguments.fit_report.empty()) models.findings.unmet = read_unmet_vertices(arguments.fit_report);
   return models;
+}
+
+TriangleMesh read_product_in(const std::string& path, const std::string& map_unit, const std::string& given) {
+  const Product product = read_product(path);
+  return {product_scale(path, map_unit, given) * product.vertices, triangulated(product)};
 }
 
 void require_source(const std::string& path, const TriangleMesh& source, const AssetRecord& record) {

@@ -19,12 +19,18 @@ struct MapModelArguments {
   std::string source;
   std::string target;
   std::vector<std::string> products;
+  std::string unit;  ///< of the products' coordinates, where it is given
   std::string confidence;
   std::string fit_report;
   bool untrusted = false;
 };
 
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments);
+void add_unit_option(CLI::App& app, std::string& unit);
+
+/// A product's triangles in the map's unit (product_scale).
+TriangleMesh read_product_in(const std::string& path, const std::string& map_unit,
+                             const std::string& given = "");
 
 std::vector<JobFile> inputs_of(const MapModelArguments& arguments);
 

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/apply/unit_check.h"
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/open_map.h"
@@ -24,6 +25,7 @@ struct MeasureArguments {
   std::string source;
   std::string target;
   std::vector<std::string> products;
+  std::string unit;
   bool json = false;
   bool exact = false;
   bool untrusted = false;
@@ -51,8 +53,9 @@ std::vector<JobFigure> figures(const MappingQuality& quality) {
 void run(const MeasureArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
-  const TriangleMesh source = read_source(arguments.source);
-  const TargetModel target = read_target(arguments.target);
+  const AssetRecord& record = asset.record;
+  const TriangleMesh source = read_source(arguments.source, record.unit, record.source.hash);
+  const TargetModel target = read_target(arguments.target, record.unit, record.target.hash);
   require_source(arguments.source, source, asset.record);
   require_target(arguments.target, target, asset.record);
   std::vector<NamedProduct> products;
@@ -62,7 +65,8 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
     if (product.degenerate.count > 0)
       context.warn(path + ": " + to_string(product.degenerate), Entry::content_left_as_it_is);
     names.push_back(std::filesystem::path(path).filename().string());
-    products.push_back({path, {product.vertices, triangulated(product)}});
+    products.push_back(
+        {path, {product_scale(path, record.unit, arguments.unit) * product.vertices, triangulated(product)}});
   }
   const auto anchors = static_cast<Eigen::Index>(asset.record.anchors.size());
   Points anchor_sources(3, anchors), anchor_targets(3, anchors);
@@ -75,6 +79,9 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
     elastic = stored_exact_map(arguments.map, asset);
   else
     elastic = std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
+  if (arguments.unit.empty())
+    for (const NamedProduct& product : products)
+      require_unit_of_map(product.name, product.mesh.vertices, *elastic, record.source.box);
   const MappingQuality quality = mapping_quality(
       {source, target.mesh, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       context.progress);
@@ -107,6 +114,7 @@ void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
       ->add_option("--product", arguments->products,
                    "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
+  add_unit_option(*measure, arguments->unit);
   measure->add_flag("--exact", arguments->exact,
                     "Measure the exact map that --keep-exact stored, not the grids");
   measure->add_flag("--untrusted", arguments->untrusted, untrusted_help);

@@ -8,6 +8,7 @@
 #include "bespoke/error.h"
 #include "bespoke/lattice/part_map.h"
 #include "bespoke/pipeline/open_map_part.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 
 namespace bespoke::command {
@@ -25,26 +26,38 @@ std::uintmax_t size_of(const fs::path& file) {
   return error ? 0 : size;
 }
 
-/// The box of all vertices, in the source frame; nothing where it is not known at a small part of the map's
-/// cost.
-std::optional<Box> box_of(const std::vector<std::string>& products, std::uintmax_t map_size) {
+/// The boxes of the products' vertices, in their own units; nothing where they are not known at a small part
+/// of the map's cost.
+std::optional<std::vector<Box>> boxes_of(const std::vector<std::string>& products, std::uintmax_t map_size) {
   std::uintmax_t size = 0;
   for (const std::string& product : products) {
     if (!can_read_product(product)) return std::nullopt;
     size += size_of(product);
   }
   if (size > map_size / map_of_products) return std::nullopt;
-  Box box;
+  std::vector<Box> boxes;
   try {
     for (const std::string& product : products) {
       const Points vertices = read_product(product).vertices;
+      Box& box = boxes.emplace_back();
       for (Eigen::Index i = 0; i < vertices.cols(); ++i) box.extend(Vector3(vertices.col(i)));
+      if (box.isEmpty()) return std::nullopt;
     }
   } catch (const FormatError&) {
     return std::nullopt;  // it may be carried all the same, or is refused then
   }
-  if (box.isEmpty()) return std::nullopt;
-  return box;
+  return boxes;
+}
+
+/// What the map is asked for, in its unit.
+Box box_in_map(const std::vector<std::string>& products, const std::vector<Box>& boxes,
+               const std::string& map_unit, const std::string& given) {
+  Box all;
+  for (std::size_t i = 0; i < products.size(); ++i) {
+    const double scale = product_scale(products[i], map_unit, given);
+    all.extend(Box(scale * boxes[i].min(), scale * boxes[i].max()));
+  }
+  return all;
 }
 
 }  // namespace
@@ -55,8 +68,14 @@ ProductMap::ProductMap(fs::path file, const std::vector<std::string>& products,
   const bool is_partly_enough =
       options.form == MapForm::grids && !options.untrusted && !options.moves_points && !context.is_job;
   if (is_partly_enough && can_open_part(file_)) {
-    if (const std::optional<Box> box = box_of(products, size_of(file_))) {
-      if (std::optional<OpenedPart> part = open_map_part(file_, *box)) {
+    if (const auto boxes = boxes_of(products, size_of(file_))) {
+      const Box stored = box_in_map(products, *boxes, {}, {});
+      std::optional<OpenedPart> part = open_map_part(file_, stored);
+      if (part) {
+        const Box box = box_in_map(products, *boxes, part->map.unit, options_.unit);
+        if (box.min() != stored.min() || box.max() != stored.max()) part = open_map_part(file_, box);
+      }
+      if (part) {
         map_ = std::make_shared<const OpenedMap>(std::move(part->map));
         bytes_read_ = part->bytes_read;
         file_bytes_ = part->file_bytes;

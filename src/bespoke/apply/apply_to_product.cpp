@@ -5,9 +5,11 @@
 
 #include "bespoke/apply/motion_jacobian.h"
 #include "bespoke/apply/refine_product.h"
+#include "bespoke/apply/unit_check.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -102,6 +104,10 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     };
     point_motion.jacobians = [&](const Points& x) {
       return motion_jacobian(elastic, target_from_source, x, own_times, options.motion);
+    };
+    point_motion.accept = [&] {
+      if (options.model_box && in_band == 0 && can_read_product(input))
+        require_unit_of_map(input.string(), read_product(input).vertices, elastic, *options.model_box);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
     CarrySummary carried = carry_product(input, own_outputs, point_motion,

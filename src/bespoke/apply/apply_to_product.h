@@ -30,6 +30,9 @@ struct ApplyToProductOptions {
   /// The summary has the chord error of the last time. The faces are read for it once more, by read_product;
   /// a warning says where they cannot be.
   bool measure_chords = false;
+  /// Of the model that products are around: a product far from it is refused if it looks as if it were in
+  /// another unit (unit_check.h), with nothing written.
+  std::optional<Box> model_box;
   Progress progress;
 };
 

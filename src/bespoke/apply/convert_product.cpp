@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "bespoke/apply/refine_product.h"
+#include "bespoke/apply/unit_check.h"
 #include "bespoke/error.h"
 #include "bespoke/stopwatch.h"
+#include "bespoke/strings.h"
 
 namespace bespoke {
 
@@ -18,9 +20,14 @@ ProductSummary convert_product(const std::filesystem::path& input,
                        " times; the numbers must be equal, and not zero");
   const Stopwatch watch;
   Product product = read_product(input);
+  if (options.model_box) require_unit_of_map(input.string(), product.vertices, elastic, *options.model_box);
+  if (!options.unit.empty()) product.unit = options.unit;
   ProductSummary summary;
   summary.warnings = {"only faces and texture coordinates were kept"};
   if (product.degenerate.count > 0) summary.warnings.push_back(to_string(product.degenerate));
+  if (product.unit.empty() && lower_ending(outputs.front()) == ".3mf")
+    summary.warnings.emplace_back(
+        "nothing says its unit, so that the 3MF file says millimetres; --unit names it");
   try {
     const ImageOfPoints image = image_at(elastic, target_from_source, times.back(), options.motion);
     if (options.refine) {

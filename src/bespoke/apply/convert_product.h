@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bespoke/apply/apply_to_product.h"
@@ -12,7 +13,9 @@ struct ConvertOptions {
   MotionOptions motion;
   std::optional<double>
       refine;  ///< split edges until the chord error is at most this, mesh units (refine_product)
-  bool measure_chords = false;  ///< the summary has a chord error in any case
+  bool measure_chords = false;   ///< the summary has a chord error in any case
+  std::string unit;              ///< of the product's coordinates, for 3MF; empty: what its file says
+  std::optional<Box> model_box;  ///< as in ApplyToProductOptions
 };
 
 /// Carries the faces of a product across a mapping, which the outputs' endings say how to write: polygons and

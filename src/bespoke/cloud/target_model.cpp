@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 
 namespace bespoke {
@@ -27,6 +28,21 @@ TriangleMesh read_source(const std::filesystem::path& path) {
                        ": is a point cloud, which can be a target only: a map is carried by the faces of its "
                        "source; mesh it, or fit the other model onto it");
   return {product.vertices, triangulated(product)};
+}
+
+TargetModel read_target(const std::filesystem::path& path, const std::string& unit, const std::string& hash) {
+  TargetModel target = read_target(path);
+  const double scale = scale_to_unit(path, unit);
+  if (scale != 1 && content_hash(target) != hash) target.mesh.vertices *= scale;
+  return target;
+}
+
+TriangleMesh read_source(const std::filesystem::path& path, const std::string& unit,
+                         const std::string& hash) {
+  TriangleMesh source = read_source(path);
+  const double scale = scale_to_unit(path, unit);
+  if (scale != 1 && content_hash(source) != hash) source.vertices *= scale;
+  return source;
 }
 
 std::string content_hash(const TargetModel& target) {

@@ -23,6 +23,11 @@ TargetModel read_target(const std::filesystem::path& path);
 /// only.
 TriangleMesh read_source(const std::filesystem::path& path);
 
+/// A model that a map was made of: as read above or, unless that has the hash of the map's record, in the
+/// map's unit where the file says another one (format_unit.h).
+TargetModel read_target(const std::filesystem::path& path, const std::string& unit, const std::string& hash);
+TriangleMesh read_source(const std::filesystem::path& path, const std::string& unit, const std::string& hash);
+
 /// Of the cloud, or else of the mesh: names the file's content in an asset.
 std::string content_hash(const TargetModel& target);
 

@@ -9,6 +9,7 @@
 #include "bespoke/anchors/anchor_accuracy.h"
 #include "bespoke/anchors/anchor_curves.h"
 #include "bespoke/anchors/anchor_placement.h"
+#include "bespoke/anchors/anchor_scale.h"
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/error.h"
@@ -66,6 +67,7 @@ void require_models(const TriangleMesh& source, const TriangleMesh& target, cons
   if (!options.any_size) require_one_unit(size_ratio(anchors, source, target), measured_by(anchors));
   if (const std::string mistake = exchanged_sides(anchors, source, target); !mistake.empty())
     throw InvalidInput(mistake);
+  if (!options.any_anchors) require_anchors_at_scale(anchors, source, target);
 }
 
 /// The models as the surface fitting takes them: along a seam a surface does not end.

@@ -27,6 +27,8 @@ struct FitOptions {
   std::optional<int> steps;  ///< of the chain, > 0; by the largest turn and stretch of a part when empty
   /// Whether models may differ by more than eight times in size: else they are refused, as if in two units.
   bool any_size = false;
+  /// Whether anchors may lie off their models as if in another unit (anchor_scale.h): else they are refused.
+  bool any_anchors = false;
 };
 
 /// Everything the fit found; Ψ = Γ∘E.

@@ -84,6 +84,7 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal, d
   if (request.surface_fit) options.fit.surface_fit.method = *request.surface_fit;
   if (request.as_given) options.fit.surface_fit.repair_models = false;
   options.fit.any_size = request.any_size;
+  options.fit.any_anchors = request.any_anchors;
   if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
   if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
   if (request.elastic) options.fit.elastic = *request.elastic;

@@ -30,10 +30,11 @@ struct MapRequest {
   std::optional<std::uint64_t> max_memory;  ///< bytes
   bool keep_exact = false;
   bool half = false;
-  bool strict = false;    ///< the tolerance is met everywhere, whatever it takes
-  bool as_given = false;  ///< models are not repaired (SurfaceFitOptions)
-  bool any_size = false;  ///< models may be in two units (FitOptions)
-  bool paper = false;     ///< the printed method; needs anchors
+  bool strict = false;       ///< the tolerance is met everywhere, whatever it takes
+  bool as_given = false;     ///< models are not repaired (SurfaceFitOptions)
+  bool any_size = false;     ///< models may be in two units (FitOptions)
+  bool any_anchors = false;  ///< anchors may lie off their models (FitOptions)
+  bool paper = false;        ///< the printed method; needs anchors
 };
 
 /// size_scale: see default_options.

@@ -7,6 +7,7 @@
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/mapping/scaled_map.h"
 
 namespace bespoke {
 
@@ -26,6 +27,16 @@ std::shared_ptr<const ElasticMap> inverse_map(std::vector<MapStep> steps,
   return std::make_shared<ElasticChain>(std::move(inverse_steps));
 }
 
+OpenedMap in_other_unit(const OpenedMap& map, double scale) {
+  if (scale == 1) return map;
+  OpenedMap other = map;
+  other.elastic = in_other_unit(map.elastic, scale);
+  other.target_from_source = in_other_unit(map.target_from_source, scale);
+  other.source_diagonal /= scale;
+  other.model_box = Box(map.model_box.min() / scale, map.model_box.max() / scale);
+  return other;
+}
+
 OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAssetOptions& options) {
   Asset asset = read_asset(path, options);
   OpenedMap map{nullptr,
@@ -33,7 +44,9 @@ OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAs
                 asset.path,
                 asset.record.source.box.diagonal().norm(),
                 asset.record.source.hash,
-                asset.record.target.hash};
+                asset.record.target.hash,
+                asset.record.unit,
+                form == MapForm::inverse ? asset.record.target.box : asset.record.source.box};
   switch (form) {
     case MapForm::grids:
       map.elastic = std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));

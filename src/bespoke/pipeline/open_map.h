@@ -26,7 +26,12 @@ struct OpenedMap {
   double source_diagonal = 0;  ///< of the source's bounding box, mesh units
   /// Of the two models of the asset (content_hash), whichever way the map leads.
   std::string source_hash = {}, target_hash = {};
+  std::string unit = {};  ///< of all lengths, "unknown" when nobody said
+  Box model_box = {};     ///< of the model that products are around: the source, the target of an inverse
 };
+
+/// The map for points in another unit, of which one is `scale` > 0 units of the map.
+OpenedMap in_other_unit(const OpenedMap& map, double scale);
 
 /// Throws as read_asset; InvalidInput when the asset has no such map.
 OpenedMap open_map(const std::filesystem::path& path, MapForm form = MapForm::grids,

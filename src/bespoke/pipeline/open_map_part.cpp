@@ -17,7 +17,9 @@ std::optional<OpenedPart> open_map_part(const std::filesystem::path& path, const
                 part->path,
                 part->record.source.box.diagonal().norm(),
                 part->record.source.hash,
-                part->record.target.hash};
+                part->record.target.hash,
+                part->record.unit,
+                part->record.source.box};
   return OpenedPart{std::move(map), part->bytes_read, part->file_bytes};
 }
 

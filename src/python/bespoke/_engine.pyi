@@ -39,12 +39,13 @@ class Map:
         rigid: list[str],
         similar: list[str],
         refine: _Length,
+        unit: str,
         progress: _Progress,
     ) -> str: ...
     def measure(
         self,
-        source: tuple[_Points, _Faces],
-        target: tuple[_Points, _Faces],
+        source: tuple[_Points, _Faces, str],
+        target: tuple[_Points, _Faces, str],
         target_cloud: PointCloud | None,
         products: list[str],
         progress: _Progress,
@@ -59,8 +60,8 @@ class PointCloud:
     @property
     def hash(self) -> str: ...
 
-def read_mesh(path: str) -> tuple[_Points, _Faces, PointCloud | None]: ...
-def write_mesh(path: str, vertices: npt.ArrayLike, faces: npt.ArrayLike) -> None: ...
+def read_mesh(path: str) -> tuple[_Points, _Faces, PointCloud | None, str]: ...
+def write_mesh(path: str, vertices: npt.ArrayLike, faces: npt.ArrayLike, unit: str) -> None: ...
 def read_anchors(path: str) -> str: ...
 def fit(
     source: tuple[npt.ArrayLike, npt.ArrayLike],

@@ -42,6 +42,8 @@ def fit(
     steps: int | None = None,
     as_given: bool = False,
     any_size: bool = False,
+    any_anchors: bool = False,
+    unit: str = "",
     paper: bool = False,
     anchor_sigma: Length | None = None,
     lambda_: Length | None = None,
@@ -60,7 +62,8 @@ def fit(
 
     The options are those of `bespoke fit`, with its defaults; lengths are numbers in the models' unit or texts like
     "10%" of the source's diagonal, `max_memory` is in bytes. Without anchors models in similar pose are aligned by their
-    surfaces, or refused. `Anchors` hold curves and patches too. Given the same input, the map is the command's, bit for bit.
+    surfaces, or refused. `unit` is that of the map: meshes and anchors that say another are converted, others are taken
+    as being in it; by default it is what anchors, source or target say. `Anchors` hold curves and patches too. Given the same input, the map is the command's, bit for bit.
 
     Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be
     aligned with certainty), MemoryLimitError.
@@ -75,6 +78,11 @@ def fit(
         "steps": steps,
         "as_given": as_given,
         "any_size": any_size,
+        "any_anchors": any_anchors,
+        "unit": unit,
+        "source_unit": source.unit,
+        "target_unit": target.unit,
+        "fitted_unit": "" if fitted is None else fitted.unit,
         "paper": paper,
         "anchor_sigma": anchor_sigma,
         "lambda_": lambda_,
@@ -98,4 +106,7 @@ def fit(
         options,
         progress,
     )
-    return Fit(Map(engine), Mesh(vertices, source.faces), confidence, FitReport._from(json.loads(report)))
+    made = Map(engine)
+    known = made.info.unit
+    laid = Mesh(vertices, source.faces, unit="" if known == "unknown" else known)
+    return Fit(made, laid, confidence, FitReport._from(json.loads(report)))

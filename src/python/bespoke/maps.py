@@ -70,13 +70,15 @@ class Map:
         rigid: Sequence[str] = (),
         similar: Sequence[str] = (),
         refine: Length | None = None,
+        unit: str = "",
         progress: Progress | None = None,
     ) -> ApplySummary:
         """Carries a product's file: positions and directions move, everything else is copied through.
 
         Parts named in `rigid` and `similar` keep their shape: groups, objects and materials of OBJ, nodes of glTF,
         components of PLY. `refine` splits edges of a product until their middles lie no farther than this from
-        where the map takes them.
+        where the map takes them. `unit` is that of the product's coordinates ("mm", ..., "map" for the map's own), by
+        default what a glTF or 3MF file says, else the map's; the product stays in it.
         With several times, `output` names as many files, and they cost one look-up. All files are written or none.
         """
         times = [float(t)] if isinstance(t, (int, float)) else [float(time) for time in t]
@@ -93,6 +95,7 @@ class Map:
                 list(rigid),
                 list(similar),
                 refine,
+                unit,
                 progress,
             )
         )
@@ -148,8 +151,8 @@ class Map:
         return Quality._from(
             json.loads(
                 self._engine.measure(
-                    _source_arrays(source),
-                    _arrays(target, "target"),
+                    (*_source_arrays(source), source.unit),
+                    (*_arrays(target, "target"), target.unit),
                     target.cloud,
                     [os.fspath(product) for product in products],
                     progress,

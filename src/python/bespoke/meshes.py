@@ -18,6 +18,7 @@ class Mesh:
     vertices: npt.NDArray[np.float64]  #: (n, 3), the model's unit
     faces: npt.NDArray[np.int32]  #: (m, 3), indices of vertices, counter-clockwise seen from outside
     cloud: _engine.PointCloud | None = None  #: of a target: the points that it is the surface of
+    unit: str = ""  #: "m", "mm", ... of the vertices, where a file says it (glTF, 3MF) or its maker does
 
     @property
     def diagonal(self) -> float:
@@ -53,5 +54,5 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
 
 
 def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:
-    """Writes OBJ, PLY, STL or OFF, by the ending of the name; the file appears whole or not at all."""
-    _engine.write_mesh(os.fspath(path), mesh.vertices, mesh.faces)
+    """Writes OBJ, PLY, STL, OFF or 3MF, by the ending of the name; the file appears whole or not at all."""
+    _engine.write_mesh(os.fspath(path), mesh.vertices, mesh.faces, mesh.unit)

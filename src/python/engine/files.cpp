@@ -6,6 +6,7 @@
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
 #include "numpy_points.h"
 #include "parts.h"
@@ -15,7 +16,7 @@ namespace py = pybind11;
 namespace fs = std::filesystem;
 namespace {
 
-/// (vertices, faces, PointCloud or None)
+/// (vertices, faces, PointCloud or None, unit)
 py::tuple read_mesh(const fs::path& path) {
   TargetModel model;
   {
@@ -23,13 +24,14 @@ py::tuple read_mesh(const fs::path& path) {
     model = read_target(path);
   }
   const py::tuple arrays = to_arrays(model.mesh);
-  return py::make_tuple(arrays[0], arrays[1], model.cloud);
+  return py::make_tuple(arrays[0], arrays[1], model.cloud, unit_of_format(path));
 }
 
-void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArray& faces) {
+void write_mesh(const fs::path& path, const PointArray& vertices, const FaceArray& faces,
+                const std::string& unit) {
   const TriangleMesh mesh = to_mesh(vertices, faces, path.string());
   const py::gil_scoped_release release;
-  write_triangle_mesh(path, mesh);
+  write_triangle_mesh(path, mesh, unit);
 }
 
 /// As the text of a JSON file, whatever the file was.
@@ -44,7 +46,8 @@ void add_files(py::module_& engine) {
       .def_readonly("hash", &PointCloudSummary::hash)
       .def("__str__", [](const PointCloudSummary& summary) { return to_string(summary); });
   engine.def("read_mesh", &read_mesh, py::arg("path"));
-  engine.def("write_mesh", &write_mesh, py::arg("path"), py::arg("vertices"), py::arg("faces"));
+  engine.def("write_mesh", &write_mesh, py::arg("path"), py::arg("vertices"), py::arg("faces"),
+             py::arg("unit"));
   engine.def("read_anchors", &anchors_of_file, py::arg("path"));
 }
 

@@ -7,6 +7,8 @@
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
 #include "bespoke/pipeline/map_request.h"
+#include "bespoke/pipeline/model_units.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/stopwatch.h"
 #include "loaded_asset.h"
 #include "parts.h"
@@ -52,6 +54,7 @@ class RequestReader {
     request.strict = flag("strict");
     request.as_given = flag("as_given");
     request.any_size = flag("any_size");
+    request.any_anchors = flag("any_anchors");
     request.paper = flag("paper");
     return request;
   }
@@ -99,11 +102,18 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
     require_valid(made, role);
     return made;
   };
-  const TriangleMesh source = mesh(source_arrays, "source"), target = mesh(target_arrays, "target");
+  TriangleMesh source = mesh(source_arrays, "source"), target = mesh(target_arrays, "target");
   std::optional<TriangleMesh> fitted;
   if (!fitted_arrays.is_none()) fitted = mesh(fitted_arrays, "fitted");
   const MapRequest request = RequestReader(options).read();
   Anchors anchors = to_anchors(anchors_text);
+  const auto unit = [&](const char* name) {
+    return py::object(options.attr("get")(name, "")).cast<std::string>();
+  };
+  const UnitPlan units = bring_to_one_unit({unit("unit"), unit("source_unit"), unit("target_unit")}, anchors);
+  source.vertices *= units.source_scale;
+  target.vertices *= units.target_scale;
+  if (fitted) fitted->vertices *= unit_factor(unit("fitted_unit"), units.unit).value_or(1);
   const bool has_anchors = !anchors.pairs.empty() || !anchors.curves.empty() || !anchors.patches.empty();
   require_usable(request, {has_anchors, fitted.has_value(), add_corners});
   const double size = diagonal(source.vertices),

@@ -3,10 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bespoke/apply/unit_check.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/mapping/scaled_map.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/derive_map.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/inspection.h"
@@ -106,16 +109,23 @@ std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsse
 std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vector<fs::path>& outputs,
                        const std::vector<double>& times, const std::string& path, const std::string& order,
                        const std::vector<std::string>& rigid, const std::vector<std::string>& similar,
-                       const py::object& refine, const py::object& callback) {
+                       const py::object& refine, const std::string& unit, const py::object& callback) {
+  const AssetRecord& record = map.asset().record;
+  const double scale = product_scale(product, record.unit, unit);
   ApplyToProductOptions options;
   options.motion = motion(map, path, order);
   for (const std::string& name : rigid) options.parts.push_back({name, PartMotion::rigid});
   for (const std::string& name : similar) options.parts.push_back({name, PartMotion::similar});
   if (const auto length = to_length(refine, "refine"))
-    options.refine = length->in_mesh_units(map.asset().record.source.box.diagonal().norm());
+    options.refine = length->in_mesh_units(record.source.box.diagonal().norm()) / scale;
+  if (unit.empty()) options.model_box = Box(record.source.box.min() / scale, record.source.box.max() / scale);
+  // Not the owner: the map outlives the call.
+  const std::shared_ptr<const ElasticMap> elastic =
+      in_other_unit(std::shared_ptr<const ElasticMap>(std::shared_ptr<void>(), &map.carrier()), scale);
   const ProductSummary summary = released(callback, [&](const Progress& progress) {
     options.progress = progress;
-    return apply_to_product(product, outputs, map.carrier(), map.asset().target_from_source, times, options);
+    return apply_to_product(product, outputs, *elastic, in_other_unit(map.asset().target_from_source, scale),
+                            times, options);
   });
   return apply_report({{product.filename().string(), summary}}, times, summary.points.seconds);
 }
@@ -123,9 +133,10 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
 std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
                     const std::optional<PointCloudSummary>& target_cloud,
                     const std::vector<fs::path>& products, const py::object& callback) {
-  const auto model = [](const py::tuple& arrays, const std::string& role) {
+  const auto model = [&](const py::tuple& arrays, const std::string& role) {
     TriangleMesh mesh = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
     require_valid(mesh, role);
+    mesh.vertices *= unit_factor(arrays[2].cast<std::string>(), map.asset().record.unit).value_or(1);
     return mesh;
   };
   const auto require = [](const std::string& hash, const ModelRecord& record, const std::string& role) {
@@ -142,7 +153,9 @@ std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& 
     std::vector<std::string> names;
     for (const fs::path& path : products) {
       const Product product = read_product(path);
-      named.push_back({path.string(), {product.vertices, triangulated(product)}});
+      named.push_back(
+          {path.string(), {scale_to_unit(path, record.unit) * product.vertices, triangulated(product)}});
+      require_unit_of_map(path.string(), named.back().mesh.vertices, map.certified_map(), record.source.box);
       names.push_back(path.filename().string());
     }
     const MappingQuality quality = mapping_quality(
@@ -165,7 +178,8 @@ void add_map(py::module_& engine) {
       .def("composed", &composed, py::arg("second"), py::arg("tolerance"), py::arg("half"),
            py::arg("any_models"), py::arg("progress"))
       .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
-           py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("progress"))
+           py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("unit"),
+           py::arg("progress"))
       .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
            py::arg("products"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });

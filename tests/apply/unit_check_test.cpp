@@ -1,0 +1,41 @@
+#include "bespoke/apply/unit_check.h"
+
+#include <gmock/gmock.h>
+
+#include "bespoke/error.h"
+#include "support/analytic_map.h"
+#include "support/error_message.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A model of radius 10 about (0, 0, 100), and a map that acts as far as 20.
+const Box model(Vector3(-10, -10, 90), Vector3(10, 10, 110));
+
+std::string refusal(const Points& points) {
+  const AnalyticMap map({{Vector3(0, 0, 100), 20, Vector3(1, 0, 0)}});
+  return test::error_message<InvalidInput>([&] { require_unit_of_map("a.obj", points, map, model); });
+}
+
+Points around_model() { return (7 * Points::Random(3, 5000)).colwise() + Vector3(0, 0, 100); }
+
+TEST(UnitCheck, NamesTheFactorOfAnotherUnit) {
+  EXPECT_EQ(refusal(around_model()), "accepted");
+  for (const double factor : {10.0, 100.0, 1000.0, 25.4, 2.54}) {
+    EXPECT_THAT(refusal(around_model() / factor), HasSubstr("a.obj: none of its points is near the model"));
+    EXPECT_THAT(refusal(around_model() * factor), HasSubstr("as if it were in another unit"));
+  }
+  EXPECT_THAT(refusal(around_model() / 100), HasSubstr("multiplied by 100 they would be"));
+}
+
+TEST(UnitCheck, LeavesWhatIsElsewhereOrPartlyNear) {
+  EXPECT_EQ(refusal(around_model().colwise() + Vector3(500, 0, 0)), "accepted");  // in no unit near it
+  EXPECT_EQ(refusal(1000 * Points::Random(3, 500)), "accepted");                  // a landscape
+  EXPECT_EQ(refusal(Points(3, 0)), "accepted");
+  EXPECT_EQ(refusal(Points::Constant(3, 1, 1e6)), "accepted");
+}
+
+}  // namespace
+}  // namespace bespoke
