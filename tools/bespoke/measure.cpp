@@ -8,6 +8,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/open_map.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
