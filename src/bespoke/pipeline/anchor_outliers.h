@@ -30,8 +30,8 @@ class AnchorOutlierTest {
   std::vector<RejectedAnchor> displaced_pairs(const Points& registered,
                                               const std::vector<std::size_t>& pairs) const;
 
-  /// The audit without pairs on the source that the laid source meets, as displaced_pairs has it, straining
-  /// it no more than such pairs may: there the surfaces explain what the pairs alone do not.
+  /// The audit without pairs on the source that the registered source meets, as displaced_pairs has it,
+  /// straining it no more than such pairs may: there the surfaces explain what the pairs alone do not.
   AnchorAudit unexplained(AnchorAudit audit, const Points& registered) const;
 
  private:

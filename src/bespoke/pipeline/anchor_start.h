@@ -10,7 +10,7 @@
 
 namespace bespoke {
 
-/// Mean distance between a source laid by a similarity and its target, from either to the other, at some
+/// Mean distance between a source placed by a similarity and its target, from either to the other, at some
 /// hundred vertices of each, mesh units of the target.
 class SimilarityDistance {
  public:

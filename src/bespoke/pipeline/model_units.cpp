@@ -7,11 +7,11 @@ namespace bespoke {
 
 UnitPlan bring_to_one_unit(const ModelUnits& units, Anchors& anchors) {
   UnitPlan plan;
-  if (units.asked.empty()) {
+  if (units.requested.empty()) {
     require_unit_of_anchors(units.source_name, units.source, anchors.unit);
     require_unit_of_anchors(units.target_name, units.target, anchors.unit);
   }
-  for (const std::string& said : {units.asked, anchors.unit, units.source, units.target})
+  for (const std::string& said : {units.requested, anchors.unit, units.source, units.target})
     if (plan.unit.empty()) plan.unit = said;
   const auto scale = [&](const std::string& unit) {
     return unit.empty() || unit == plan.unit ? 1 : required_unit_factor(unit, plan.unit);

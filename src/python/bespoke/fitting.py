@@ -108,5 +108,5 @@ def fit(
     )
     made = Map(engine)
     known = made.info.unit
-    laid = Mesh(vertices, source.faces, unit="" if known == "unknown" else known)
-    return Fit(made, laid, confidence, FitReport._from(json.loads(report)))
+    registered = Mesh(vertices, source.faces, unit="" if known == "unknown" else known)
+    return Fit(made, registered, confidence, FitReport._from(json.loads(report)))
