@@ -141,9 +141,10 @@ TEST_F(TextDialects, Utf16IsNamed) {
       for (const bool has_mark : {false, true}) {
         const std::string wide = test::utf16(plain.content, is_big, has_mark);
         EXPECT_THAT(complaint(plain.name, wide), HasSubstr(plain.name + ": is UTF-16; save as UTF-8"));
-        if (can_read_product(plain.name))
+        if (can_read_product(plain.name)) {
           EXPECT_THAT(test::error_message<FormatError>([&] { read_product(file(plain.name, wide)); }),
                       HasSubstr("is UTF-16; save as UTF-8"));
+        }
       }
 }
 
