@@ -19,7 +19,7 @@ using ::testing::Not;
 
 const std::string setup = BESPOKE_SOURCE_DIR "/tools/setup";
 const std::vector<std::string> everything = {"--pages",   "--tests",   "--figures", "--viewers",
-                                             "--cluster", "--package", "--fuzz", "--docs"};
+                                             "--cluster", "--package", "--fuzz",    "--docs"};
 
 test::ProgramResult run_setup(std::vector<std::string> options) {
   options.insert(options.begin(), setup);

@@ -11,8 +11,8 @@
 namespace bespoke {
 namespace {
 
-// Distance from which a group counts as a whole, in its radii: on nested spheres the largest error is 0.056 at
-// 2, which Barill et al. recommend for one derivative more, and 0.01 at 4.
+// Distance from which a group counts as a whole, in its radii: on nested spheres the largest error is 0.056
+// at 2, which Barill et al. recommend for one derivative more, and 0.01 at 4.
 constexpr double far_in_radii = 4;
 
 /// Van Oosterom, Strackee 1983, Eq. 8; a, b, c from the point.

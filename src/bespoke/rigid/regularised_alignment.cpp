@@ -9,7 +9,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double smallest_ratio = 1e-7;  // of the widest: thinner directions are rounding
+constexpr double min_width_ratio = 1e-7;  // of the widest: thinner directions are rounding
 
 /// Of residuals (3×n) with weights of sum 1: the larger of that of a coordinate and of that along a unit
 /// vector. freedom: the share of the residuals that no slope has taken.
@@ -20,7 +20,7 @@ double standard_deviation(const Points& residuals, const Eigen::VectorXd& weight
   return std::sqrt(std::max(mean, one) / freedom);
 }
 
-void require_pairs(const Points& source, const Points& target, const Eigen::VectorXd& weights) {
+void require_weighted_pairs(const Points& source, const Points& target, const Eigen::VectorXd& weights) {
   if (source.cols() != target.cols() || source.cols() != weights.size() || source.cols() < 3)
     throw InvalidInput("a regularised alignment needs three pairs of points at least, and their weights");
   if (!((weights.array() > 0).all() && weights.allFinite()))
@@ -31,7 +31,7 @@ void require_pairs(const Points& source, const Points& target, const Eigen::Vect
 
 RegularisedAlignment align_regularised(const Points& source, const Points& target,
                                        const Eigen::VectorXd& weights) {
-  require_pairs(source, target, weights);
+  require_weighted_pairs(source, target, weights);
   const Eigen::VectorXd shares = weights / weights.sum();
   RegularisedAlignment result;
   result.similarity = align_similarly(source, target, shares);
@@ -46,7 +46,7 @@ RegularisedAlignment align_regularised(const Points& source, const Points& targe
   Points left = target - result.similarity * source;
   result.affine.linear = scale * result.similarity.rotation;
   for (int k = 0; k < 3; ++k) {
-    if (!(result.widths[k] > smallest_ratio * result.widths[0])) break;
+    if (!(result.widths[k] > min_width_ratio * result.widths[0])) break;
     const Vector3 direction = result.directions.col(k);
     const double variance = result.widths[k] * result.widths[k];
     const double freedom = std::max(1.0, count - 1 - k) / count;
