@@ -6,6 +6,7 @@
 #include "bespoke/bake/detail/adaptive_bake.h"
 #include "bespoke/bake/detail/uniform_bake.h"
 #include "bespoke/error.h"
+#include "bespoke/lattice/baked_map.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -15,6 +16,26 @@ bool is_empty(const Support& support) {
   for (const BallCloud& cloud : support.clouds)
     if (cloud.centers.cols() > 0) return false;
   return true;
+}
+
+/// The lattices of a map that is trilinear on them; half precision rounds them, and that is the error.
+Bake stored_as_it_is(const BakedMap& map, const BakeOptions& options, const Progress& progress) {
+  Bake result;
+  result.pyramid = map.pyramid();
+  std::vector<double> rounded;
+  if (options.precision == ValuePrecision::half) {
+    result.pyramid.precision = ValuePrecision::half;
+    for (PyramidLevel& level : result.pyramid.levels) {
+      const std::vector<float> before = level.values;
+      round_values(level.values, options.tolerance, ValuePrecision::half);
+      for (std::size_t i = 0; i + 2 < before.size(); i += 3)
+        rounded.push_back(std::hypot(level.values[i] - before[i], level.values[i + 1] - before[i + 1],
+                                     level.values[i + 2] - before[i + 2]));
+    }
+  }
+  result.summary.error = summarize(std::move(rounded));
+  result.certificate = certify(result.pyramid, map.affine(), 1, progress);
+  return result;
 }
 
 }  // namespace
@@ -57,8 +78,11 @@ Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& pro
     throw InvalidInput("a largest turn of faces of " + std::to_string(options.max_face_turn) +
                        " degrees is not above 0 and at most 180");
   Bake result;
+  const auto* on_lattices = dynamic_cast<const BakedMap*>(&map);
   if (is_empty(map.support()))
     result.certificate = certify(result.pyramid, map.affine(), 1, progress);
+  else if (on_lattices != nullptr && !options.voxel_size)
+    result = stored_as_it_is(*on_lattices, options, progress);
   else
     result = options.voxel_size ? bake_uniformly(map, *options.voxel_size, options, progress)
                                 : bake_adaptively(map, options, progress);

@@ -91,8 +91,8 @@ struct Bake {
 /// Samples u of the map over its support as a nested pyramid that is fine only where the map needs it, or on
 /// one lattice (src/bespoke/README.md, "Bake"). Cells of the nested pyramid that fold are refined, then
 /// repaired; where not all can be, none is. Those of one lattice stay. What is left is in the summary.
-/// Reproduces affine maps exactly (no leaf at all). Values are rounded to a 32nd of the tolerance or less, so
-/// that files compress.
+/// A BakedMap is stored as it is, unless a voxel size is given. Reproduces affine maps exactly (no leaf at
+/// all). Values are rounded to a 32nd of the tolerance or less, so that files compress.
 ///
 /// A bake ends. Where u jumps or is steeper than ‖∇u‖ = 2 or so, the tolerance may be missed: voxels stop at
 /// half of it (PyramidBuilder), and the summary says so. Where the whole would take more than max_memory it

@@ -16,6 +16,17 @@ constexpr StoredMapType stored(std::uint32_t number) {
           [](ExactMapReader& reader) -> std::shared_ptr<const ElasticMap> { return read_map(reader); }};
 }
 
+ElasticFit finite_elements(const ElasticInput& input, const ElasticOptions& options,
+                           const Progress& progress) {
+  FiniteElementOptions elements;
+  elements.lambda = options.lambda;
+  elements.fit_tolerance = options.fit_tolerance;
+  elements.max_memory = options.max_memory;
+  elements.affine_part = options.affine_part;
+  FiniteElementFit fit = fit_finite_elements(input.sources, input.targets, input.source, elements, progress);
+  return {std::move(fit.map), std::move(fit.summary)};
+}
+
 ElasticFit csrbf(const ElasticInput& input, const ElasticOptions& options, const Progress& progress) {
   CsrbfOptions csrbf;
   csrbf.lambda = options.lambda;
@@ -65,8 +76,16 @@ ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const 
 
 }  // namespace
 
-constinit const std::array<ElasticMethodRow, 5> elastic_methods{
-    {{"csrbf", ElasticMethod::csrbf, csrbf, true, false, false, {}, stored<CsrbfMap, read_csrbf>(1)},
+constinit const std::array<ElasticMethodRow, 6> elastic_methods{
+    {{"finite-elements",
+      ElasticMethod::finite_elements,
+      finite_elements,
+      true,
+      true,
+      false,
+      {},
+      stored<BakedMap, read_baked>(5)},
+     {"csrbf", ElasticMethod::csrbf, csrbf, true, false, false, {}, stored<CsrbfMap, read_csrbf>(1)},
      {"multiscale",
       ElasticMethod::multiscale,
       multiscale<false>,

@@ -9,6 +9,7 @@
 
 #include "bespoke/elastic/csrbf.h"
 #include "bespoke/elastic/elastic_fit.h"
+#include "bespoke/elastic/finite_elements.h"
 #include "bespoke/elastic/multiscale.h"
 #include "bespoke/elastic/pffd.h"
 #include "bespoke/elastic/pffd_smooth.h"
@@ -17,15 +18,16 @@
 namespace bespoke {
 
 enum class ElasticMethod {
-  csrbf,          ///< the paper's, one scale (Eq. 16)
-  multiscale,     ///< residual correction over halved scales
-  diffeomorphic,  ///< the same layers composed, each a diffeomorphism
-  pffd,           ///< the paper's p-FFD as printed (Eq. 18), with jumps
-  pffd_smooth,    ///< p-FFD with weights that make it continuous
+  finite_elements,  ///< the map of least distortion, on the lattices that store it
+  csrbf,            ///< the paper's, one scale (Eq. 16)
+  multiscale,       ///< residual correction over halved scales
+  diffeomorphic,    ///< the same layers composed, each a diffeomorphism
+  pffd,             ///< the paper's p-FFD as printed (Eq. 18), with jumps
+  pffd_smooth,      ///< p-FFD with weights that make it continuous
 };
 
 /// What the method found; each has to_string and figures.
-using ElasticFindings = std::variant<CsrbfSummary, MultiscaleSummary, PffdSummary>;
+using ElasticFindings = std::variant<FiniteElementSummary, CsrbfSummary, MultiscaleSummary, PffdSummary>;
 
 struct ElasticFit {
   std::shared_ptr<const ElasticMap> map;
@@ -67,7 +69,7 @@ struct ElasticMethodRow {
   StoredMapType stored;
 };
 
-extern const std::array<ElasticMethodRow, 5> elastic_methods;
+extern const std::array<ElasticMethodRow, 6> elastic_methods;
 
 /// Throws InvalidInput for a value without a row.
 const ElasticMethodRow& elastic_method(ElasticMethod method);

@@ -1,277 +1,376 @@
 #include "bespoke/elastic/finite_elements.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <deque>
 #include <utility>
 
 #include "bespoke/elastic/detail/element_distortion.h"
+#include "bespoke/elastic/detail/exact_map_bytes.h"
 #include "bespoke/elastic/detail/nested_elements.h"
+#include "bespoke/elastic/detail/preconditioned_bfgs.h"
+#include "bespoke/elastic/detail/upright_affine.h"
+#include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/rigid/affine_alignment.h"
-#include "bespoke/rigid/similarity_alignment.h"
+#include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
 namespace {
 
-struct VertexTerm {
-  std::vector<ElementPlace> places;  // per level; the last is the finest cell that holds it
-  Vector3 target;                    // of u
-  double weight;
+// Of the fit tolerance: how far a vertex gives way under unit stress, and what halves the cells around it.
+constexpr double compliance = 0.25, refined_beyond = 3;
+// Of λ: the coarsest voxel.
+constexpr double coarsest_voxel = 0.25;
+// Of a finer voxel, along each axis: nodes around a vertex that is missed.
+constexpr double refined_reach = 2;
+// Of the mean size of the sources' displacement: how soft data are at first; their stiffness then grows
+// fourfold.
+constexpr double softest = 0.25, stiffening = 4;
+// Of the energy, per iteration: while data are soft, and on the finest level; half of that on the one before,
+// …
+constexpr double soft_decrease = 1e-2, last_decrease = 3e-3;
+constexpr int max_iterations = 60;
+
+/// What one place wants of u.
+struct DataTerm {
+  std::vector<ElementPlace> places;  ///< per level; the last is in a finest cell
+  Vector3 wanted;                    ///< mesh units
 };
 
-/// Distortion and data as a function of the coefficients.
-class LatticeObjective {
+Vector3 interpolated(const std::vector<Points>& values, const ElementPlace& place) {
+  const Points& of_level = values[static_cast<std::size_t>(place.level)];
+  Vector3 value = Vector3::Zero();
+  for (std::size_t corner = 0; corner < 8; ++corner)
+    value += place.weights[corner] * of_level.col(place.corners[corner]);
+  return value;
+}
+
+/// Distortion and data of one set of elements as a function of the coefficients.
+class Objective {
  public:
-  LatticeObjective(const NestedElements& elements, std::vector<VertexTerm> terms)
-      : elements_(elements), terms_(std::move(terms)) {}
-
-  double operator()(const Points& coefficients, Points& gradient) {
-    std::vector<Points> values = elements_.values(coefficients), gradients(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) gradients[k].setZero(3, values[k].cols());
-    const Distortion distortion = add_distortion(elements_, values, gradients);
-    ++evaluations;
-    if (!std::isfinite(distortion.energy)) return distortion.energy;
-    min_determinant = distortion.min_determinant;
-    double data = 0;
-    for (const VertexTerm& term : terms_) {
-      const ElementPlace& place = term.places.back();
-      const auto level = static_cast<std::size_t>(place.level);
-      const Vector3 off = value_at(values[level], place) - term.target;
-      data += term.weight * off.squaredNorm() / 2;
-      for (std::size_t corner = 0; corner < 8; ++corner)
-        gradients[level].col(place.corners[corner]) += term.weight * place.weights[corner] * off;
-    }
-    gradient = elements_.restricted(gradients);
-    return distortion.energy + data;
-  }
-
-  Eigen::VectorXd inverse_diagonal(const Points& coefficients) const {
-    std::vector<std::vector<double>> diagonal = distortion_diagonal(elements_, elements_.values(coefficients));
-    for (const VertexTerm& term : terms_)
+  Objective(const NestedElements& elements, const Points& sources, const Points& wanted,
+            const DistortionBounds& bounds)
+      : elements_(elements), bounds_(bounds), terms_(static_cast<std::size_t>(sources.cols())) {
+    parallel_for(terms_.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto column = static_cast<Eigen::Index>(i);
+        terms_[i] = {elements.places(sources.col(column)), wanted.col(column)};
+      }
+    });
+    for (const ElementLevel& level : elements.levels()) data_diagonal_.emplace_back(level.points.size(), 0.0);
+    for (const DataTerm& term : terms_)
       for (const ElementPlace& place : term.places)
         for (std::size_t corner = 0; corner < 8; ++corner)
-          diagonal[static_cast<std::size_t>(place.level)][static_cast<std::size_t>(place.corners[corner])] +=
-              term.weight * place.weights[corner] * place.weights[corner];
+          data_diagonal_[static_cast<std::size_t>(place.level)]
+                        [static_cast<std::size_t>(place.corners[corner])] +=
+              place.weights[corner] * place.weights[corner];
+  }
+
+  void set_bounds(const DistortionBounds& bounds) { bounds_ = bounds; }
+  void set_weight(double weight) { weight_ = weight; }
+
+  double operator()(const Points& coefficients, Points& gradient) {
+    const std::vector<Points> values = elements_.values(coefficients);
+    std::vector<Points> gradients(values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) gradients[k].setZero(3, values[k].cols());
+    distortion_ = add_distortion(elements_, values, bounds_, gradients);
+    if (!std::isfinite(distortion_.energy)) return distortion_.energy;
+    double data = 0;
+    for (const DataTerm& term : terms_) {
+      if (term.places.empty()) continue;
+      const ElementPlace& place = term.places.back();
+      const Vector3 off = interpolated(values, place) - term.wanted;
+      data += weight_ * off.squaredNorm() / 2;
+      Points& of_level = gradients[static_cast<std::size_t>(place.level)];
+      for (std::size_t corner = 0; corner < 8; ++corner)
+        of_level.col(place.corners[corner]) += weight_ * place.weights[corner] * off;
+    }
+    gradient = elements_.restricted(gradients);
+    return distortion_.energy + data;
+  }
+
+  /// At the state of the last call.
+  Eigen::VectorXd inverse_diagonal() const {
+    const std::vector<std::vector<double>> diagonal = distortion_diagonal(elements_, distortion_.stiffness);
     Eigen::VectorXd inverse(static_cast<Eigen::Index>(elements_.unknowns()));
     for (std::size_t k = 0; k < elements_.levels().size(); ++k) {
       const ElementLevel& level = elements_.levels()[k];
-      for (std::size_t n = 0; n < level.nodes.size(); ++n)
+      for (std::size_t n = 0; n < level.nodes.size(); ++n) {
+        const auto point = static_cast<std::size_t>(level.point_of_node[n]);
         inverse[static_cast<Eigen::Index>(level.first_unknown + n)] =
-            1 / diagonal[k][static_cast<std::size_t>(level.point_of_node[n])];
+            1 / (diagonal[k][point] + weight_ * data_diagonal_[k][point]);
+      }
     }
     return inverse;
   }
 
+  /// Per place, mesh units.
   std::vector<double> residuals(const Points& coefficients) const {
     const std::vector<Points> values = elements_.values(coefficients);
     std::vector<double> result;
-    for (const VertexTerm& term : terms_) {
-      const ElementPlace& place = term.places.back();
-      result.push_back((value_at(values[static_cast<std::size_t>(place.level)], place) - term.target).norm());
-    }
+    for (const DataTerm& term : terms_)
+      result.push_back(
+          ((term.places.empty() ? Vector3::Zero() : interpolated(values, term.places.back())) - term.wanted)
+              .norm());
     return result;
   }
 
-  void set_weight(double weight) {
-    for (VertexTerm& term : terms_) term.weight = weight;
+  std::size_t outside() const {
+    return static_cast<std::size_t>(std::count_if(terms_.begin(), terms_.end(),
+                                                  [](const DataTerm& term) { return term.places.empty(); }));
   }
 
-  int evaluations = 0;
-  double min_determinant = 0;
+  const Distortion& distortion() const { return distortion_; }  ///< of the last call
 
  private:
-  static Vector3 value_at(const Points& values, const ElementPlace& place) {
-    Vector3 value = Vector3::Zero();
-    for (std::size_t corner = 0; corner < 8; ++corner)
-      value += place.weights[corner] * values.col(place.corners[corner]);
-    return value;
-  }
-
   const NestedElements& elements_;
-  std::vector<VertexTerm> terms_;
+  DistortionBounds bounds_;
+  std::vector<DataTerm> terms_;
+  std::vector<std::vector<double>> data_diagonal_;  ///< of the Hessian for weight 1, per point and level
+  double weight_ = 0;
+  Distortion distortion_;
 };
 
-double dot(const Points& a, const Points& b) { return a.cwiseProduct(b).sum(); }
-
-/// Limited-memory BFGS with a diagonal start. Never accepts a point of infinite energy.
-int minimise(LatticeObjective& objective, Points& x, int max_iterations, double relative_decrease) {
-  constexpr std::size_t memory = 6;
-  Points gradient;
-  double energy = objective(x, gradient);
-  Eigen::VectorXd scale = objective.inverse_diagonal(x);
-  std::deque<Points> steps, changes;
-  std::deque<double> products;
-  int iteration = 0;
-  Points trial_gradient;
-  const bool verbose = std::getenv("FE_VERBOSE") != nullptr;
-  int slow = 0;
-  for (; iteration < max_iterations; ++iteration) {
-    Points direction = gradient;
-    std::vector<double> alphas(steps.size());
-    for (std::size_t i = steps.size(); i-- > 0;) {
-      alphas[i] = dot(steps[i], direction) / products[i];
-      direction -= alphas[i] * changes[i];
-    }
-    double gamma = 1;
-    if (!steps.empty()) {
-      const Points scaled = changes.back() * scale.asDiagonal();
-      gamma = products.back() / dot(changes.back(), scaled);
-    }
-    direction = gamma * (direction * scale.asDiagonal());
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const double beta = dot(changes[i], direction) / products[i];
-      direction += (alphas[i] - beta) * steps[i];
-    }
-    const double slope = -dot(gradient, direction);
-    double t = steps.empty() ? 0.3 : 1, trial = 0;
-    Points next;
-    int halvings = 0;
-    for (;; t /= 2, ++halvings) {
-      next = x - t * direction;
-      trial = objective(next, trial_gradient);
-      if (trial <= energy + 1e-4 * t * slope) break;
-      if (halvings > 20) break;
-    }
-    if (!(trial < energy)) break;
-    Points step = next - x, change = trial_gradient - gradient;
-    const double product = dot(step, change);
-    if (product > 0) {
-      steps.push_back(std::move(step));
-      changes.push_back(std::move(change));
-      products.push_back(product);
-      if (steps.size() > memory) steps.pop_front(), changes.pop_front(), products.pop_front();
-    }
-    if (verbose)
-      std::fprintf(stderr, "   it %d energy %.6g slope %.3g t %g min det %.4g\n", iteration, trial, slope, t,
-                   objective.min_determinant);
-    const double decrease = energy - trial;
-    x = std::move(next);
-    energy = trial;
-    std::swap(gradient, trial_gradient);
-    slow = decrease < relative_decrease * energy ? slow + 1 : 0;
-    if (slow >= 2) break;
-  }
-  return iteration;
-}
-
-std::vector<LatticeCoordinates> band_nodes(const Points& sources, const Faces* faces, const Lattice& lattice,
+/// The nodes within lambda of the surface.
+std::vector<LatticeCoordinates> band_nodes(const TriangleMesh& surface, const Lattice& lattice,
                                            double lambda) {
-  Box box = Box();
-  for (const auto& x : sources.colwise()) box.extend(Vector3(x));
+  const ClosestPointTree tree(surface);
+  const Box box = bounding_box(surface.vertices);
   const LatticeCoordinates low = lattice.cell_of(box.min() - Vector3::Constant(lambda)),
                            high = lattice.cell_of(box.max() + Vector3::Constant(lambda));
-  const ClosestPointTree tree(TriangleMesh{sources, *faces});
+  std::vector<std::vector<LatticeCoordinates>> slabs(static_cast<std::size_t>(high[0] - low[0] + 2));
+  parallel_for(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slab = begin; slab < end; ++slab)
+      for (int j = low[1]; j <= high[1] + 1; ++j)
+        for (int k = low[2]; k <= high[2] + 1; ++k) {
+          const LatticeCoordinates node{low[0] + static_cast<int>(slab), j, k};
+          if (tree.closest(lattice(node), {.max_distance = lambda})) slabs[slab].push_back(node);
+        }
+  });
   std::vector<LatticeCoordinates> nodes;
-  for (int i = low[0]; i <= high[0] + 1; ++i)
-    for (int j = low[1]; j <= high[1] + 1; ++j)
-      for (int k = low[2]; k <= high[2] + 1; ++k)
-        if (tree.closest(lattice({i, j, k}), {.max_distance = lambda})) nodes.push_back({i, j, k});
+  for (const auto& slab : slabs) nodes.insert(nodes.end(), slab.begin(), slab.end());
   return nodes;
 }
 
-/// Nodes within `reach` voxels of x, along each axis.
-void add_nodes_around(const Lattice& lattice, const Vector3& x, double reach,
-                      std::vector<LatticeCoordinates>& nodes) {
+void add_nodes_around(const Lattice& lattice, const Vector3& x, std::vector<LatticeCoordinates>& nodes) {
   const Vector3 at = (x - lattice.origin) / lattice.voxel_size;
-  LatticeCoordinates low, high;
-  for (int axis = 0; axis < 3; ++axis) {
-    low[axis] = static_cast<int>(std::ceil(at[axis] - reach));
-    high[axis] = static_cast<int>(std::floor(at[axis] + reach));
-  }
+  const Eigen::Vector3i low = (at.array() - refined_reach).ceil().cast<int>(),
+                        high = (at.array() + refined_reach).floor().cast<int>();
   for (int i = low[0]; i <= high[0]; ++i)
     for (int j = low[1]; j <= high[1]; ++j)
       for (int k = low[2]; k <= high[2]; ++k) nodes.push_back({i, j, k});
 }
 
+void require_usable(const Points& sources, const Points& targets, const FiniteElementOptions& options) {
+  if (sources.cols() != targets.cols() || sources.cols() == 0)
+    throw InvalidInput("finite elements: " + std::to_string(sources.cols()) + " sources and " +
+                       std::to_string(targets.cols()) + " targets; there must be as many, and one at least");
+  if (!sources.allFinite() || !targets.allFinite())
+    throw InvalidInput("finite elements: a source or target has a coordinate that is not finite");
+  const auto require = [](double value, double above, const char* what) {
+    if (!(value > above && std::isfinite(value)))
+      throw InvalidInput(std::string("finite elements: ") + what + " is " + std::to_string(value) +
+                         ", but must be finite and above " + std::to_string(above));
+  };
+  require(options.lambda, 0, "the effective distance");
+  require(options.fit_tolerance, 0, "the fit tolerance");
+  require(options.max_squeeze, 1, "the largest squeeze of a volume");
+  require(options.max_length_squeeze, 1, "the largest squeeze of a length");
+  if (options.max_levels < 1) throw InvalidInput("finite elements: there must be one level at least");
+}
+
+/// Solves on one level, then adds finer ones where vertices are missed.
+class Solver {
+ public:
+  Solver(const Points& sources, Points wanted, const TriangleMesh& source, double tolerance,
+         const FiniteElementOptions& options, const Progress& progress)
+      : sources_(sources),
+        wanted_(std::move(wanted)),
+        tolerance_(tolerance),
+        options_(options),
+        bounds_{1 / options.max_squeeze, options.max_length_squeeze * options.max_length_squeeze + 2},
+        progress_(progress),
+        coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
+    weighted_area_ = vertex_areas(source).sum() / static_cast<double>(sources.cols());
+    elements_ = std::make_unique<NestedElements>(
+        coarsest_,
+        std::vector<std::vector<LatticeCoordinates>>{band_nodes(source, coarsest_, options.lambda)});
+    coefficients_ = Points::Zero(3, static_cast<Eigen::Index>(elements_->unknowns()));
+  }
+
+  void solve() {
+    for (int level = 1;; ++level) {
+      progress_.step("elastic", static_cast<std::size_t>(level - 1),
+                     static_cast<std::size_t>(options_.max_levels));
+      const std::vector<double> residuals = minimised(level);
+      if (level == options_.max_levels || !refine(residuals)) break;
+    }
+    for (const ElementLevel& level : elements_->levels()) {
+      summary_.voxel_sizes.push_back(level.voxel_size);
+      summary_.nodes.push_back(level.nodes.size());
+      summary_.cells.push_back(level.finest.size());
+    }
+  }
+
+  const NestedElements& elements() const { return *elements_; }
+  const Points& coefficients() const { return coefficients_; }
+  FiniteElementSummary summary() const { return summary_; }
+
+ private:
+  /// |u(vᵢ) − uᵢ| at the minimum.
+  std::vector<double> minimised(int level) {
+    Objective objective(*elements_, sources_, wanted_, bounds_);
+    const Energy energy = [&](const Points& x, Points& gradient) {
+      progress_.check();
+      return objective(x, gradient);
+    };
+    const auto inverse_diagonal = [&] { return objective.inverse_diagonal(); };
+    Points unused;
+    while (!std::isfinite(objective(coefficients_, unused))) {
+      bounds_.max_inverse_squared *= 4;
+      objective.set_bounds(bounds_);
+    }
+    std::size_t iterations = 0;
+    const auto run = [&](double soft, double decrease) {
+      objective.set_weight(weighted_area_ / soft);
+      iterations += static_cast<std::size_t>(
+          minimise(energy, inverse_diagonal, {max_iterations, decrease}, coefficients_));
+    };
+    // From the identity stiff data would push single cells to their bounds, which stops all.
+    const double stiff = compliance * tolerance_;
+    if (level == 1)
+      for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
+        run(soft, soft_decrease);
+    run(stiff, std::ldexp(last_decrease, level - options_.max_levels));
+    const double volume = cell_volume();
+    objective(coefficients_, unused);
+    summary_.iterations.push_back(iterations);
+    summary_.distortion = volume > 0 ? objective.distortion().energy / volume : 0;
+    summary_.min_determinant = elements_->unknowns() > 0 ? objective.distortion().min_determinant : 1;
+    summary_.outside = objective.outside();
+    return objective.residuals(coefficients_);
+  }
+
+  double cell_volume() const {
+    double volume = 0;
+    for (const ElementLevel& level : elements_->levels())
+      volume += static_cast<double>(level.finest.size()) * std::pow(level.voxel_size, 3);
+    return volume;
+  }
+
+  /// Whether any vertex asks for it.
+  bool refine(const std::vector<double>& residuals) {
+    std::vector<std::vector<LatticeCoordinates>> nodes;
+    for (const ElementLevel& level : elements_->levels()) nodes.push_back(level.nodes);
+    nodes.emplace_back();
+    const Lattice finer{coarsest_.origin, elements_->levels().back().voxel_size / 2};
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
+      if (residuals[i] > refined_beyond * tolerance_ && !elements_->places(x).empty())
+        add_nodes_around(finer, x, nodes.back());
+    }
+    if (nodes.back().empty()) return false;
+    auto refined = std::make_unique<NestedElements>(coarsest_, std::move(nodes));
+    coefficients_ = transferred(*elements_, coefficients_, *refined);
+    elements_ = std::move(refined);
+    return true;
+  }
+
+  const Points& sources_;
+  Points wanted_;
+  double tolerance_;
+  FiniteElementOptions options_;
+  DistortionBounds bounds_;
+  const Progress& progress_;
+  Lattice coarsest_;
+  double weighted_area_ = 0;  ///< of a place
+  std::unique_ptr<NestedElements> elements_;
+  Points coefficients_;
+  FiniteElementSummary summary_;
+};
+
 }  // namespace
 
-FiniteElementFit fit_finite_elements(const ElasticInput& input, const FiniteElementOptions& options,
-                                     const Progress&) {
+std::string to_string(const FiniteElementSummary& summary) {
+  std::size_t nodes = 0;
+  for (const std::size_t count : summary.nodes) nodes += count;
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%zu nodes on %zu levels, mean distortion %.3g, least determinant %.3g of the affine part's, "
+                "residual %s, %.2f s",
+                nodes, summary.nodes.size(), summary.distortion, summary.min_determinant,
+                to_string(summary.residuals).c_str(), summary.seconds);
+  return text;
+}
+
+std::vector<Figure> figures(const FiniteElementSummary& summary) {
+  return {{"voxel_sizes", summary.voxel_sizes},
+          {"nodes", summary.nodes},
+          {"cells", summary.cells},
+          {"iterations", summary.iterations},
+          {"distortion", summary.distortion},
+          {"min_determinant", summary.min_determinant},
+          {"outside", summary.outside}};
+}
+
+FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,
+                                     const FiniteElementOptions& options, const Progress& progress) {
+  require_usable(sources, targets, options);
   const Stopwatch watch;
-  const Points& sources = input.sources;
-  const AffineMap affine =
-      align_affinely(sources, input.targets, FlatDirections::of_squared_width_1e_12);
-  const Matrix3 back = affine.linear.inverse();
-  const Points wanted = back * (input.targets.colwise() - affine.offset) - sources;  // u of x + u(x)
+  const AffineMap affine = upright_affine(sources, targets, options.affine_part);
+  const double scale = std::cbrt(affine.linear.determinant());
+  Points wanted = affine.linear.inverse() * (targets.colwise() - affine.offset) - sources;
+  Solver solver(sources, std::move(wanted), source, options.fit_tolerance / scale, options, progress);
+  solver.solve();
 
-  Lattice coarsest;
-  coarsest.voxel_size = options.lambda / 4;
-  coarsest.origin = sources.rowwise().minCoeff();
-  const double size = diagonal(sources);
-  const Eigen::VectorXd areas = vertex_areas(input.source);
-  const double mean_area = areas.sum() / static_cast<double>(sources.cols());
+  Pyramid pyramid = pyramid_of(solver.elements(), solver.coefficients(), affine.linear);
+  for (PyramidLevel& level : pyramid.levels)
+    round_values(level.values, options.fit_tolerance, ValuePrecision::single);
+  FiniteElementFit fit{std::make_shared<BakedMap>(affine, std::move(pyramid)), solver.summary()};
+  fit.summary.residuals = summarize(distances((*fit.map)(sources), targets));
+  fit.summary.seconds = watch.seconds();
+  return fit;
+}
 
-  std::vector<std::vector<LatticeCoordinates>> nodes{
-      band_nodes(input.source.vertices, &input.source.faces, coarsest, options.lambda)};
-  auto elements = std::make_unique<NestedElements>(coarsest, nodes);
-  Points coefficients = Points::Zero(3, static_cast<Eigen::Index>(elements->unknowns()));
-  FiniteElementSummary summary;
-  const bool verbose = std::getenv("FE_VERBOSE") != nullptr;
-  for (int level = 0;; ++level) {
-    std::vector<VertexTerm> terms;
-    for (Eigen::Index v = 0; v < sources.cols(); ++v) {
-      std::vector<ElementPlace> places = elements->places(sources.col(v));
-      if (places.empty()) continue;
-      terms.push_back({std::move(places), wanted.col(v), mean_area / options.compliance});
-    }
-    LatticeObjective objective(*elements, std::move(terms));
-    const Stopwatch solve;
-    if (level == 0) {
-      const double start = std::getenv("FE_START") ? std::atof(std::getenv("FE_START")) : 1e-2;
-      const double factor = std::getenv("FE_FACTOR") ? std::atof(std::getenv("FE_FACTOR")) : 4;
-      for (double soft = start * size; soft > options.compliance * 1.5; soft /= factor) {
-        objective.set_weight(mean_area / soft);
-        const int its = minimise(objective, coefficients, options.iterations, 1e-2);
-        if (verbose) {
-          const Statistics at = summarize(objective.residuals(coefficients));
-          std::fprintf(stderr, "  soft %.3g: %d iterations, %d evals, p50 %.4f%% max %.4f%% min det %.4f\n", soft / size, its, objective.evaluations, 100 * at.median / size, 100 * at.max / size, objective.min_determinant);
-        }
-      }
-      objective.set_weight(mean_area / options.compliance);
-    }
-    const double decrease = std::getenv("FE_DECREASE") ? std::atof(std::getenv("FE_DECREASE")) : 1e-3;
-    summary.iterations.push_back(minimise(objective, coefficients, options.iterations, decrease));
-    const std::vector<double> residuals = objective.residuals(coefficients);
-    summary.residuals = summarize(residuals);
-    summary.min_determinant = objective.min_determinant;
-    std::size_t missed = 0;
-    for (const double r : residuals) missed += r > options.tolerance;
-    std::size_t cells = 0;
-    for (const ElementLevel& each : elements->levels()) cells += each.finest.size();
-    if (verbose)
-      std::fprintf(stderr, "level %d: h %.4f%% unknown nodes %zu cells %zu iterations %d evals %d  %.2f s  missed %zu  p50 %.4f%% p95 %.4f%% p99 %.4f%% max %.3f%%  min det %.4f (total %.2f s)\n",
-                   level, 100 * elements->levels().back().voxel_size / size, elements->unknowns(), cells,
-                   summary.iterations.back(), objective.evaluations, solve.seconds(), missed,
-                   100 * summary.residuals.median / size, 100 * summary.residuals.p95 / size,
-                   100 * summary.residuals.p99 / size, 100 * summary.residuals.max / size,
-                   objective.min_determinant, watch.seconds());
-    if (level == options.max_levels || missed == 0) break;
-    nodes.clear();
-    for (const ElementLevel& each : elements->levels()) nodes.push_back(each.nodes);
-    nodes.emplace_back();
-    const Lattice finer{coarsest.origin, elements->levels().back().voxel_size / 2};
-    const double reach = std::getenv("FE_REACH") ? std::atof(std::getenv("FE_REACH")) : 2;
-    for (Eigen::Index v = 0; v < sources.cols(); ++v)
-      if (residuals[static_cast<std::size_t>(v)] > options.tolerance)
-        add_nodes_around(finer, sources.col(v), reach, nodes.back());
-    auto refined = std::make_unique<NestedElements>(coarsest, nodes);
-    coefficients = transferred(*elements, coefficients, *refined);
-    elements = std::move(refined);
+void write_exact(const BakedMap& map, ExactMapWriter& writer) {
+  writer.affine(map.affine());
+  const Pyramid& pyramid = map.pyramid();
+  writer.numbers(pyramid.origin);
+  writer.integer(static_cast<std::uint64_t>(pyramid.levels.size()));
+  for (const PyramidLevel& level : pyramid.levels) {
+    writer.number(level.voxel_size);
+    writer.integer(static_cast<std::uint64_t>(level.leaves.size()));
+    for (const LeafCoordinates& leaf : level.leaves)
+      for (const int coordinate : leaf) writer.integer(static_cast<std::uint32_t>(coordinate));
+    for (const float value : level.values) writer.number(value);
   }
-  for (const ElementLevel& each : elements->levels()) {
-    summary.voxel_sizes.push_back(each.voxel_size);
-    summary.nodes.push_back(each.nodes.size());
-    summary.cells.push_back(each.finest.size());
+}
+
+std::shared_ptr<const BakedMap> read_baked(ExactMapReader& reader) {
+  const AffineMap affine = reader.affine();
+  Pyramid pyramid;
+  reader.numbers(pyramid.origin, "an origin");
+  const Eigen::Index levels = reader.count(2 * sizeof(double), "levels");
+  for (Eigen::Index k = 0; k < levels; ++k) {
+    PyramidLevel level;
+    level.voxel_size = reader.positive("a voxel size");
+    const Eigen::Index leaves = reader.count(sizeof(double) * leaf_floats, "leaves");
+    for (Eigen::Index leaf = 0; leaf < leaves; ++leaf) {
+      LeafCoordinates coordinates;
+      for (int& coordinate : coordinates) coordinate = static_cast<int>(reader.integer<std::uint32_t>());
+      level.leaves.push_back(coordinates);
+    }
+    level.values.resize(leaf_floats * level.leaves.size());
+    for (float& value : level.values) value = static_cast<float>(reader.number("a node"));
+    pyramid.levels.push_back(std::move(level));
   }
-  Pyramid pyramid = pyramid_of(*elements, coefficients, affine.linear);
-  for (PyramidLevel& each : pyramid.levels)
-    round_values(each.values, options.tolerance, ValuePrecision::single);
-  summary.seconds = watch.seconds();
-  return {std::make_shared<BakedMap>(affine, std::move(pyramid)), summary};
+  try {
+    return std::make_shared<const BakedMap>(affine, std::move(pyramid));
+  } catch (const InvalidInput& invalid) {
+    reject_exact_map(invalid.what());
+  }
 }
 
 }  // namespace bespoke

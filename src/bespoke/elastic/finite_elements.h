@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,33 +12,60 @@
 
 namespace bespoke {
 
+class ExactMapReader;
+class ExactMapWriter;
+
 struct FiniteElementOptions {
-  double lambda = 0;     ///< effective distance around the sources, > 0, mesh units
-  double tolerance = 0;  ///< cells are halved where a vertex is missed by more, > 0, mesh units
-  /// How far a vertex gives way under unit stress, > 0, mesh units.
-  double compliance = 0;
-  int max_levels = 6;
-  int iterations = 60;   ///< of the minimiser, at most, per level
+  double lambda = 0;         ///< effective distance around the source, > 0, mesh units
+  double fit_tolerance = 0;  ///< how far a vertex may be missed, > 0, mesh units of the targets
+  /// Largest factor by which a volume shrinks relative to the affine part, anywhere; > 1, no unit.
+  double max_squeeze = 50;
+  /// The same of a length, at the nodes of cells; doubled where splitting a cell finds more inside.
+  double max_length_squeeze = 10;
+  int max_levels = 4;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
+  std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
 };
 
 struct FiniteElementSummary {
-  std::vector<double> voxel_sizes;       ///< mesh units, one per level
-  std::vector<std::size_t> nodes;        ///< with an unknown, one per level
-  std::vector<std::size_t> cells;        ///< finest cells, one per level
-  std::vector<int> iterations;           ///< per level added
-  double energy = 0;
-  double min_determinant = 0;            ///< at the corners of finest cells, relative to the affine part
-  Statistics residuals;                  ///< |E(vᵢ) − v'ᵢ|, mesh units
+  std::vector<double> voxel_sizes;      ///< mesh units, one per level
+  std::vector<std::size_t> nodes;       ///< with an unknown, one per level
+  std::vector<std::size_t> cells;       ///< finest cells, one per level
+  std::vector<std::size_t> iterations;  ///< of the minimiser when the level was added
+  double distortion = 0;       ///< mean symmetric Dirichlet energy over the cells, 0 for an affine map
+  double min_determinant = 0;  ///< at the nodes of cells, relative to the affine part, no unit
+  Statistics residuals;        ///< |E(vᵢ) − v'ᵢ|, mesh units of the targets
+  std::size_t outside = 0;     ///< places too far from the source for any cell
   double seconds = 0;
 };
+
+/// One line.
+std::string to_string(const FiniteElementSummary& summary);
+std::vector<Figure> figures(const FiniteElementSummary& summary);
 
 struct FiniteElementFit {
   std::shared_ptr<const BakedMap> map;
   FiniteElementSummary summary;
 };
 
-FiniteElementFit fit_finite_elements(const ElasticInput& input, const FiniteElementOptions& options,
-                                     const Progress& progress = {});
+/// The map E = affine ∘ (id + u) of least distortion that takes sources to targets (3×n each, mesh units),
+///
+///     ∫ ψ(F) dx + Σ_i w/2 · |u(vᵢ) − uᵢ|²,   F = I + ∇u,
+///     ψ(F) = |F|²/2 + |F⁻¹|²/2 − 3 + barriers,
+///
+/// with the symmetric Dirichlet energy (Smith and Schaefer 2015) and barriers at the bounds of
+/// FiniteElementOptions (element_distortion.h). u is trilinear on nested cells around `source`, exactly zero
+/// beyond λ and one coarse cell, and cells are halved where a vertex is missed. w = (mean area of a
+/// vertex)/(compliance), a quarter of the fit tolerance: a vertex gives way by that much under unit stress.
+/// Minimised by limited-memory BFGS from the identity, at first with soft data; no iterate turns a cell over,
+/// which its Bézier coefficients prove. So the stored map is the map, and its certificate the minimiser's
+/// invariant. Throws InvalidInput (sizes, non-finite values, affine part with det ≤ 0, values out of range),
+/// MemoryLimitError, Interrupted.
+FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,
+                                     const FiniteElementOptions& options, const Progress& progress = {});
+
+/// Its bytes (exact_map_io.h): the affine part and the levels. Reading throws FormatError.
+void write_exact(const BakedMap& map, ExactMapWriter& writer);
+std::shared_ptr<const BakedMap> read_baked(ExactMapReader& reader);
 
 }  // namespace bespoke

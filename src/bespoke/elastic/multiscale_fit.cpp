@@ -1,9 +1,9 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "bespoke/elastic/detail/upright_affine.h"
 #include "bespoke/elastic/multiscale.h"
 #include "bespoke/error.h"
 #include "bespoke/mapping/affine_map.h"
@@ -11,8 +11,6 @@
 #include "bespoke/rbf/layer_solver.h"
 #include "bespoke/rbf/layer_stack.h"
 #include "bespoke/rbf/point_grid.h"
-#include "bespoke/rigid/affine_alignment.h"
-#include "bespoke/rigid/similarity_alignment.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -53,19 +51,6 @@ void require_usable(const Points& sources, const Points& targets, const Multisca
     throw InvalidInput("multiscale: " + std::to_string(options.max_levels) +
                        " levels; there must be one at least");
   require_usable(options.guides);
-}
-
-AffineMap upright_affine(const Points& sources, const Points& targets, AffinePart part) {
-  if (part == AffinePart::similarity) {
-    const Similarity similarity = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
-    return {similarity.scale * similarity.rotation, similarity.translation};
-  }
-  AffineMap map = align_affinely(sources, targets, FlatDirections::of_squared_width_1e_12);
-  if (!(map.linear.determinant() > 0))
-    throw InvalidInput("multiscale: the affine part of the correspondences has determinant " +
-                       std::to_string(map.linear.determinant()) +
-                       ", so one model is a mirror image of the other or is flattened; mirror it back first");
-  return map;
 }
 
 /// Damps the layer's coefficients around places where its gradient may exceed the bound, then scales what is

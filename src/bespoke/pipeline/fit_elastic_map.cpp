@@ -119,7 +119,7 @@ void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Ancho
   summary.divided_where_missed = false;
   result.plan.reset();
   fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
-  const bool follows = elastic_method(options.elastic).keeps_orientation && options.fit_tolerance > 0;
+  const bool follows = elastic_method(options.elastic).composition && options.fit_tolerance > 0;
   if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
 }
 

@@ -1,24 +1,42 @@
 #pragma once
 
+#include <limits>
+#include <vector>
+
 #include "bespoke/elastic/detail/nested_elements.h"
 
 namespace bespoke {
 
-/// Of a map x ↦ x + u(x).
-struct Distortion {
-  double energy = 0;           ///< infinite where a corner of a cell is turned over
-  double min_determinant = 0;  ///< over the corners of all finest cells
+/// What a map may squeeze, relative to none.
+struct DistortionBounds {
+  double min_determinant = 0.02;     ///< of F, anywhere, > 0
+  double max_inverse_squared = 102;  ///< of |F⁻¹|² there
 };
 
-/// Symmetric Dirichlet energy ∫ (|F|² + |F⁻¹|²)/2 − 3 dx, F = I + ∇u (Smith and Schaefer 2015), with the corners
-/// of the finest cells as quadrature points. values: of u, 3×points per level. Adds the energy's gradient to
-/// `gradients`, sized alike. Corner quadrature sees every mode of a trilinear cell.
-Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
-                          std::vector<Points>& gradients);
+/// Of a map x ↦ x + u(x).
+struct Distortion {
+  double energy = 0;                                                 ///< infinite where a bound does not hold
+  double min_determinant = std::numeric_limits<double>::infinity();  ///< over the corners of all finest cells
+  /// How stiff each finest cell is, per level: about its largest second derivative, 4 at rest. No unit.
+  std::vector<std::vector<double>> stiffness;
+};
 
-/// The diagonal of its Hessian, about, at the state `values`: one per point and level, of hat functions of that
-/// level (the preconditioner of Bramble, Pasciak and Xu 1990).
+/// ∫ ψ(F) dx over the finest cells, F = I + ∇u, with the corners of cells as quadrature points, which see
+/// every mode of a trilinear cell. ψ is the symmetric Dirichlet energy |F|²/2 + |F⁻¹|²/2 − 3 (Smith and
+/// Schaefer 2015) and two barriers that are negligible away from their bounds: with J = det F, m its bound, s
+/// = |F⁻¹|² and S its bound,
+///
+///     m · (1/(J − m) − 1/(1 − m) + (J − 1)/(1 − m)²)  and  (s/S)²/(1 − s/S).
+///
+/// In a cell all Bézier coefficients of J are above m (Johnen, Weill and Remacle 2017), so those of its parts
+/// are when it is split. values: of u, 3×points per level; the energy's gradient is added to `gradients`,
+/// sized alike.
+Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
+                          const DistortionBounds& bounds, std::vector<Points>& gradients);
+
+/// About the diagonal of its Hessian where the finest cells have this stiffness (Distortion): one per point
+/// and level, of hat functions of that level (the preconditioner of Bramble, Pasciak and Xu 1990).
 std::vector<std::vector<double>> distortion_diagonal(const NestedElements& elements,
-                                                     const std::vector<Points>& values);
+                                                     const std::vector<std::vector<double>>& stiffness);
 
 }  // namespace bespoke

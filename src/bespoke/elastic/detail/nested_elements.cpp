@@ -1,6 +1,7 @@
 #include "bespoke/elastic/detail/nested_elements.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace bespoke {
@@ -70,9 +71,24 @@ void NestedElements::add_points(ElementLevel& level, const ElementLevel* coarser
       level.corners[c][corner] = table.find(corners[8 * c + corner]);
   for (const LatticeCoordinates& node : level.nodes) level.point_of_node.push_back(table.find(node));
   const auto k = static_cast<std::size_t>(&level - levels_.data());
-  for (std::size_t c = 0; c < level.cells.size(); ++c)
-    if (k + 1 == levels_.size() || levels_[k + 1].cell_table.find(child_of(level.cells[c], 0)) == no_leaf)
-      level.finest.push_back(static_cast<int>(c));
+  level.first_part.assign(level.cells.size(), no_leaf);
+  for (std::size_t c = 0; c < level.cells.size(); ++c) {
+    if (k + 1 < levels_.size())
+      level.first_part[c] = levels_[k + 1].cell_table.find(child_of(level.cells[c], 0));
+    if (level.first_part[c] == no_leaf) level.finest.push_back(static_cast<int>(c));
+  }
+  level.incident_begin.assign(level.points.size() + 1, 0);
+  for (const int cell : level.finest)
+    for (const int corner : level.corners[static_cast<std::size_t>(cell)])
+      ++level.incident_begin[static_cast<std::size_t>(corner) + 1];
+  std::partial_sum(level.incident_begin.begin(), level.incident_begin.end(), level.incident_begin.begin());
+  level.incident.resize(8 * level.finest.size());
+  std::vector<int> next = level.incident_begin;
+  for (std::size_t number = 0; number < level.finest.size(); ++number)
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+      const int point = level.corners[static_cast<std::size_t>(level.finest[number])][corner];
+      level.incident[static_cast<std::size_t>(next[static_cast<std::size_t>(point)]++)] = 8 * number + corner;
+    }
   if (coarser == nullptr) return;
   const LeafTable coarse_table(coarser->points);
   level.parents_begin.push_back(0);
@@ -118,11 +134,13 @@ std::vector<Points> NestedElements::values(const Points& coefficients) const {
       for (std::size_t p = 0; p < level.points.size(); ++p) {
         Vector3 sum = Vector3::Zero();
         const int begin = level.parents_begin[p], end = level.parents_begin[p + 1];
-        for (int q = begin; q < end; ++q) sum += values[k - 1].col(level.parents[static_cast<std::size_t>(q)]);
+        for (int q = begin; q < end; ++q)
+          sum += values[k - 1].col(level.parents[static_cast<std::size_t>(q)]);
         here.col(static_cast<Eigen::Index>(p)) = sum / (end - begin);
       }
     for (std::size_t n = 0; n < level.nodes.size(); ++n)
-      here.col(level.point_of_node[n]) += coefficients.col(static_cast<Eigen::Index>(level.first_unknown + n));
+      here.col(level.point_of_node[n]) +=
+          coefficients.col(static_cast<Eigen::Index>(level.first_unknown + n));
   }
   return values;
 }
@@ -132,12 +150,14 @@ Points NestedElements::restricted(std::vector<Points>& gradients) const {
   for (std::size_t k = levels_.size(); k-- > 0;) {
     const ElementLevel& level = levels_[k];
     for (std::size_t n = 0; n < level.nodes.size(); ++n)
-      result.col(static_cast<Eigen::Index>(level.first_unknown + n)) = gradients[k].col(level.point_of_node[n]);
+      result.col(static_cast<Eigen::Index>(level.first_unknown + n)) =
+          gradients[k].col(level.point_of_node[n]);
     if (k == 0) break;
     for (std::size_t p = 0; p < level.points.size(); ++p) {
       const int begin = level.parents_begin[p], end = level.parents_begin[p + 1];
       const Vector3 share = gradients[k].col(static_cast<Eigen::Index>(p)) / (end - begin);
-      for (int q = begin; q < end; ++q) gradients[k - 1].col(level.parents[static_cast<std::size_t>(q)]) += share;
+      for (int q = begin; q < end; ++q)
+        gradients[k - 1].col(level.parents[static_cast<std::size_t>(q)]) += share;
     }
   }
   return result;

@@ -19,17 +19,20 @@ struct ElementPlace {
 
 /// One level of nested trilinear elements.
 struct ElementLevel {
-  double voxel_size = 0;                         ///< mesh units
-  std::vector<LatticeCoordinates> nodes;         ///< that hold an unknown, in lexicographic order
-  std::vector<LatticeCoordinates> points;        ///< corners of the level's cells
-  std::vector<int> point_of_node;                ///< one per node
-  std::vector<LatticeCoordinates> cells;         ///< lower corners
-  std::vector<std::array<int, 8>> corners;       ///< points, one array per cell, by corner_step
-  std::vector<int> finest;                       ///< cells that no finer level splits
-  std::vector<int> parents_begin;                ///< one more than there are points
-  std::vector<int> parents;                      ///< points of the coarser level whose mean interpolates a point
-  LeafTable cell_table;                          ///< finds cells by their lower corner
-  std::size_t first_unknown = 0;                 ///< of the first node, among those of all levels
+  double voxel_size = 0;                    ///< mesh units
+  std::vector<LatticeCoordinates> nodes;    ///< that hold an unknown, in lexicographic order
+  std::vector<LatticeCoordinates> points;   ///< corners of the level's cells
+  std::vector<int> point_of_node;           ///< one per node
+  std::vector<LatticeCoordinates> cells;    ///< lower corners
+  std::vector<std::array<int, 8>> corners;  ///< points, one array per cell, by corner_step
+  std::vector<int> first_part;      ///< per cell: the first of its eight parts on the finer level, or no_leaf
+  std::vector<int> finest;          ///< cells that no finer level splits
+  std::vector<int> incident_begin;  ///< one more than there are points
+  std::vector<std::size_t> incident;  ///< corners of finest cells at a point: 8·(number in finest) + corner
+  std::vector<int> parents_begin;     ///< one more than there are points
+  std::vector<int> parents;           ///< points of the coarser level whose mean interpolates a point
+  LeafTable cell_table;               ///< finds cells by their lower corner
+  std::size_t first_unknown = 0;      ///< of the first node, among those of all levels
 };
 
 /// The functions that a Pyramid can hold (lattice/pyramid.h) as finite elements: a hat function per node, on
