@@ -65,6 +65,9 @@ struct ElasticMethodRow {
   /// Whether its maps fold nowhere, so that a bake's folds are those of its voxels.
   bool keeps_orientation;
   bool takes_guides;  ///< in space, beside the surface
+  /// In fit tolerances: vertices missed by more are listed. A least-squares fit refines where the tolerance
+  /// is missed and leaves what costs too much distortion.
+  double met_within;
   CompositionOfMaps composition;
   StoredMapType stored;
 };

@@ -32,11 +32,17 @@ constexpr double softest = 0.25, stiffening = 4;
 // …
 constexpr double soft_decrease = 1e-2, last_decrease = 3e-3;
 constexpr int max_iterations = 60;
+// Of the bounds on squeeze: where the barriers are. Nearer ones trap the minimiser on its way.
+constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
+// Of the weight of a place at a cell beyond the bounds, and rounds of it.
+constexpr double loosening = 0.1;
+constexpr int max_loosenings = 3;
 
 /// What one place wants of u.
 struct DataTerm {
   std::vector<ElementPlace> places;  ///< per level; the last is in a finest cell
   Vector3 wanted;                    ///< mesh units
+  double share = 1;                  ///< of the weight
 };
 
 Vector3 interpolated(const std::vector<Points>& values, const ElementPlace& place) {
@@ -51,12 +57,12 @@ Vector3 interpolated(const std::vector<Points>& values, const ElementPlace& plac
 class Objective {
  public:
   Objective(const NestedElements& elements, const Points& sources, const Points& wanted,
-            const DistortionBounds& bounds)
+            const std::vector<double>& shares, const DistortionBounds& bounds)
       : elements_(elements), bounds_(bounds), terms_(static_cast<std::size_t>(sources.cols())) {
     parallel_for(terms_.size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto column = static_cast<Eigen::Index>(i);
-        terms_[i] = {elements.places(sources.col(column)), wanted.col(column)};
+        terms_[i] = {elements.places(sources.col(column)), wanted.col(column), shares[i]};
       }
     });
     for (const ElementLevel& level : elements.levels()) data_diagonal_.emplace_back(level.points.size(), 0.0);
@@ -65,7 +71,7 @@ class Objective {
         for (std::size_t corner = 0; corner < 8; ++corner)
           data_diagonal_[static_cast<std::size_t>(place.level)]
                         [static_cast<std::size_t>(place.corners[corner])] +=
-              place.weights[corner] * place.weights[corner];
+              term.share * place.weights[corner] * place.weights[corner];
   }
 
   void set_bounds(const DistortionBounds& bounds) { bounds_ = bounds; }
@@ -82,10 +88,11 @@ class Objective {
       if (term.places.empty()) continue;
       const ElementPlace& place = term.places.back();
       const Vector3 off = interpolated(values, place) - term.wanted;
-      data += weight_ * off.squaredNorm() / 2;
+      const double weight = weight_ * term.share;
+      data += weight * off.squaredNorm() / 2;
       Points& of_level = gradients[static_cast<std::size_t>(place.level)];
       for (std::size_t corner = 0; corner < 8; ++corner)
-        of_level.col(place.corners[corner]) += weight_ * place.weights[corner] * off;
+        of_level.col(place.corners[corner]) += weight * place.weights[corner] * off;
     }
     gradient = elements_.restricted(gradients);
     return distortion_.energy + data;
@@ -115,6 +122,30 @@ class Objective {
           ((term.places.empty() ? Vector3::Zero() : interpolated(values, term.places.back())) - term.wanted)
               .norm());
     return result;
+  }
+
+  /// The places at a corner of a cell beyond the bounds.
+  std::vector<std::size_t> squeezed(const Points& coefficients, const DistortionBounds& bounds) const {
+    const std::vector<std::vector<std::size_t>> cells =
+        cells_beyond(elements_, elements_.values(coefficients), bounds);
+    std::vector<std::vector<char>> is_squeezed;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const ElementLevel& level = elements_.levels()[k];
+      is_squeezed.emplace_back(level.points.size(), 0);
+      for (const std::size_t number : cells[k])
+        for (const int corner : level.corners[static_cast<std::size_t>(level.finest[number])])
+          is_squeezed[k][static_cast<std::size_t>(corner)] = 1;
+    }
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < terms_.size(); ++i)
+      if (std::any_of(terms_[i].places.begin(), terms_[i].places.end(), [&](const ElementPlace& place) {
+            return std::any_of(place.corners.begin(), place.corners.end(), [&](int corner) {
+              return is_squeezed[static_cast<std::size_t>(place.level)][static_cast<std::size_t>(corner)] !=
+                     0;
+            });
+          }))
+        found.push_back(i);
+    return found;
   }
 
   std::size_t outside() const {
@@ -190,7 +221,9 @@ class Solver {
         wanted_(std::move(wanted)),
         tolerance_(tolerance),
         options_(options),
-        bounds_{1 / options.max_squeeze, options.max_length_squeeze * options.max_length_squeeze + 2},
+        barriers_{1 / (barrier_beyond * options.max_squeeze),
+                  std::pow(length_barrier_beyond * options.max_length_squeeze, 2)},
+        shares_(static_cast<std::size_t>(sources.cols()), 1.0),
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(sources.cols());
@@ -207,6 +240,7 @@ class Solver {
       const std::vector<double> residuals = minimised(level);
       if (level == options_.max_levels || !refine(residuals)) break;
     }
+    for (int round = 0; round < max_loosenings && loosen(); ++round) minimised(options_.max_levels);
     for (const ElementLevel& level : elements_->levels()) {
       summary_.voxel_sizes.push_back(level.voxel_size);
       summary_.nodes.push_back(level.nodes.size());
@@ -221,7 +255,7 @@ class Solver {
  private:
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
-    Objective objective(*elements_, sources_, wanted_, bounds_);
+    Objective objective(*elements_, sources_, wanted_, shares_, barriers_);
     const Energy energy = [&](const Points& x, Points& gradient) {
       progress_.check();
       return objective(x, gradient);
@@ -229,8 +263,8 @@ class Solver {
     const auto inverse_diagonal = [&] { return objective.inverse_diagonal(); };
     Points unused;
     while (!std::isfinite(objective(coefficients_, unused))) {
-      bounds_.max_inverse_squared *= 4;
-      objective.set_bounds(bounds_);
+      barriers_.max_inverse_squared *= 4;
+      objective.set_bounds(barriers_);
     }
     std::size_t iterations = 0;
     const auto run = [&](double soft, double decrease) {
@@ -251,6 +285,18 @@ class Solver {
     summary_.min_determinant = elements_->unknowns() > 0 ? objective.distortion().min_determinant : 1;
     summary_.outside = objective.outside();
     return objective.residuals(coefficients_);
+  }
+
+  /// Where cells are beyond the bounds their places count less. Whether there are any.
+  bool loosen() {
+    const Objective objective(*elements_, sources_, wanted_, shares_, barriers_);
+    const std::vector<std::size_t> squeezed = objective.squeezed(
+        coefficients_, {1 / options_.max_squeeze, std::pow(options_.max_length_squeeze, 2) + 2});
+    for (const std::size_t place : squeezed) {
+      summary_.loosened += shares_[place] == 1;
+      shares_[place] *= loosening;
+    }
+    return !squeezed.empty();
   }
 
   double cell_volume() const {
@@ -282,7 +328,8 @@ class Solver {
   Points wanted_;
   double tolerance_;
   FiniteElementOptions options_;
-  DistortionBounds bounds_;
+  DistortionBounds barriers_;
+  std::vector<double> shares_;  ///< of a place's weight
   const Progress& progress_;
   Lattice coarsest_;
   double weighted_area_ = 0;  ///< of a place
@@ -312,6 +359,7 @@ std::vector<Figure> figures(const FiniteElementSummary& summary) {
           {"iterations", summary.iterations},
           {"distortion", summary.distortion},
           {"min_determinant", summary.min_determinant},
+          {"loosened", summary.loosened},
           {"outside", summary.outside}};
 }
 

@@ -18,11 +18,11 @@ class ExactMapWriter;
 struct FiniteElementOptions {
   double lambda = 0;         ///< effective distance around the source, > 0, mesh units
   double fit_tolerance = 0;  ///< how far a vertex may be missed, > 0, mesh units of the targets
-  /// Largest factor by which a volume shrinks relative to the affine part, anywhere; > 1, no unit.
+  /// Largest factor by which a volume and a length may shrink relative to the affine part, at the nodes of
+  /// cells; > 1, no unit. Where vertices want more they give way.
   double max_squeeze = 50;
-  /// The same of a length, at the nodes of cells; doubled where splitting a cell finds more inside.
   double max_length_squeeze = 10;
-  int max_levels = 4;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
+  int max_levels = 5;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
 };
@@ -35,6 +35,7 @@ struct FiniteElementSummary {
   double distortion = 0;       ///< mean symmetric Dirichlet energy over the cells, 0 for an affine map
   double min_determinant = 0;  ///< at the nodes of cells, relative to the affine part, no unit
   Statistics residuals;        ///< |E(vᵢ) − v'ᵢ|, mesh units of the targets
+  std::size_t loosened = 0;    ///< places that gave way to the bounds
   std::size_t outside = 0;     ///< places too far from the source for any cell
   double seconds = 0;
 };

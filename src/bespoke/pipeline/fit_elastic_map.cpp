@@ -37,6 +37,11 @@ ElasticPairs pairs_for_elastic(const FittedMapping& fitted, const TriangleMesh& 
   return with_anchors(std::move(pairs), anchors, off, inverse(fitted.target_from_source));
 }
 
+/// By how much a vertex may be missed before it is listed, mesh units.
+double met_within(const FitOptions& options) {
+  return elastic_method(options.elastic).met_within * options.fit_tolerance;
+}
+
 /// What can be said only with the whole map at hand.
 void measure_residuals(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                        const FitOptions& options) {
@@ -48,7 +53,7 @@ void measure_residuals(FittedMapping& result, const TriangleMesh& source, const 
       summarize(distances(images(Eigen::all, referenced), result.fitted_vertices(Eigen::all, referenced)));
   if (options.fit_tolerance > 0)
     summary.unmet = unmet_vertices(
-        source, images, result.fitted_vertices, options.fit_tolerance,
+        source, images, result.fitted_vertices, met_within(options),
         result.summary.contact ? result.summary.contact->released : std::vector<ReleasedVertex>{});
   result.anchor_residual = anchor_residuals(result, anchors);
   summary.anchor_residuals = summarize(result.anchor_residual);
@@ -144,7 +149,7 @@ void leave_guides_that_harm(FittedMapping& fitted, const TriangleMesh& source, c
 
 /// Whether no more than one vertex in twenty is missed.
 bool follows_fit(const FittedMapping& fitted, const FitOptions& options) {
-  return fitted.summary.elastic.vertex_residuals.p95 <= options.fit_tolerance;
+  return fitted.summary.elastic.vertex_residuals.p95 <= met_within(options);
 }
 
 /// Whether steps are, or would be, along surfaces in between.

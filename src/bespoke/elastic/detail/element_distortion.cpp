@@ -247,6 +247,24 @@ Distortion add_distortion(const NestedElements& elements, const std::vector<Poin
   return whole;
 }
 
+std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& elements,
+                                                   const std::vector<Points>& values,
+                                                   const DistortionBounds& bounds) {
+  std::vector<std::vector<std::size_t>> beyond(elements.levels().size());
+  CellPack pack;
+  for (std::size_t k = 0; k < elements.levels().size(); ++k) {
+    const ElementLevel& level = elements.levels()[k];
+    for (std::size_t first = 0; first < level.finest.size(); first += lanes) {
+      evaluate(level, values[k], bounds, first, pack);
+      for (std::size_t l = 0; l < lanes && first + l < level.finest.size(); ++l)
+        if (!(pack.min_determinant[l] >= bounds.min_determinant &&
+              pack.max_inverse_squared[l] <= bounds.max_inverse_squared))
+          beyond[k].push_back(first + l);
+    }
+  }
+  return beyond;
+}
+
 std::vector<std::vector<double>> distortion_diagonal(const NestedElements& elements,
                                                      const std::vector<std::vector<double>>& of_finest) {
   const std::vector<ElementLevel>& levels = elements.levels();

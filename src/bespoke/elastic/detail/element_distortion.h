@@ -34,6 +34,12 @@ struct Distortion {
 Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
                           const DistortionBounds& bounds, std::vector<Points>& gradients);
 
+/// The finest cells, per level by their place in ElementLevel::finest, at a corner of which a bound does not
+/// hold.
+std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& elements,
+                                                   const std::vector<Points>& values,
+                                                   const DistortionBounds& bounds);
+
 /// About the diagonal of its Hessian where the finest cells have this stiffness (Distortion): one per point
 /// and level, of hat functions of that level (the preconditioner of Bramble, Pasciak and Xu 1990).
 std::vector<std::vector<double>> distortion_diagonal(const NestedElements& elements,
