@@ -44,6 +44,8 @@ struct ElasticOptions {
   /// csrbf and p-FFD have an affine part by construction and take no other.
   AffinePart affine_part = AffinePart::least_squares;
   bool guided = false;  ///< the multiscale methods meet guides in space too
+  /// Finite elements: largest factor by which a volume may shrink relative to the affine part, > 1, no unit.
+  double max_squeeze = 50;
   /// How many times as large lambda is around the fitted source, > 0: there the layers of a composition act.
   double growth = 1;
 };

@@ -23,6 +23,7 @@ ElasticFit finite_elements(const ElasticInput& input, const ElasticOptions& opti
   elements.fit_tolerance = options.fit_tolerance;
   elements.max_memory = options.max_memory;
   elements.affine_part = options.affine_part;
+  elements.max_squeeze = options.max_squeeze;
   FiniteElementFit fit = fit_finite_elements(input.sources, input.targets, input.source, elements, progress);
   return {std::move(fit.map), std::move(fit.summary)};
 }

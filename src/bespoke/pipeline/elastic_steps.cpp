@@ -126,7 +126,10 @@ StepPlan halved(const StepPlan& plan, std::size_t step) {
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
                                ElasticMethod method, const ElasticOptions& options,
                                const Progress& progress) {
-  StepFitter fitter(source, pairs, method, options, progress);
+  // What steps squeeze in one place multiplies.
+  ElasticOptions of_a_step = options;
+  of_a_step.max_squeeze = std::pow(options.max_squeeze, 1.0 / static_cast<double>(plan.steps()));
+  StepFitter fitter(source, pairs, method, of_a_step, progress);
   for (std::size_t k = 0; k < plan.steps(); ++k) {
     progress.step("elastic", k, plan.steps());
     fitter.fit_to(plan, plan.times[k], plan.times[k + 1]);
