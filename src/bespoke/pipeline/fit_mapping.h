@@ -15,7 +15,7 @@ namespace bespoke {
 
 struct FitOptions {
   SurfaceFitOptions surface_fit;
-  ElasticMethod elastic = ElasticMethod::finite_elements;
+  ElasticMethod elastic = ElasticMethod::diffeomorphic;
   double lambda = 0;                    ///< effective distance, > 0, mesh units
   GuidedMaps guides = GuidedMaps::all;  ///< the multiscale methods; others know none
   double fit_tolerance =

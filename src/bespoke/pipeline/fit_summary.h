@@ -58,7 +58,7 @@ struct CounterpartSummary {
 };
 
 struct ElasticSummary {
-  ElasticMethod method = ElasticMethod::finite_elements;
+  ElasticMethod method = ElasticMethod::diffeomorphic;
   ElasticFindings found;                     ///< what the method says itself (of a chain's first step)
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
