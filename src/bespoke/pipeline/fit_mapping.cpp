@@ -92,7 +92,7 @@ void renumber_lists(FitSummary& summary, const std::vector<int>& numbers) {
       std::for_each(vertices->begin(), vertices->end(), renumber);
   if (summary.contact)
     for (ReleasedVertex& released : summary.contact->released) renumber(released.vertex);
-  for (UnmetVertex& unmet : summary.elastic.unmet) renumber(unmet.vertex);
+  for (UnmetVertex& vertex : summary.elastic.unmet) renumber(vertex.vertex);
 }
 
 /// From the vertices of the joined source to those of the source.

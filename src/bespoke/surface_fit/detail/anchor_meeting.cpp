@@ -13,7 +13,7 @@ namespace {
 
 // Of the largest move. The first is a tenth; the last leaves a millionth of a move.
 constexpr double first_variance = 0.01, growth_of_variance = 4;
-constexpr int max_rounds = 14;
+constexpr int max_doublings = 14;
 
 /// Centres of faces that `met` stretches beyond the factor, and more than the surface was before.
 std::vector<Vector3> overstretched(const TriangleMesh& surface, const Points& met, const Points& coarse,
@@ -71,7 +71,7 @@ AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse
   const Points moves = input.anchor_targets - anchors;
   const double largest = std::sqrt(moves.colwise().squaredNorm().maxCoeff());
   Eigen::VectorXd variances = Eigen::VectorXd::Zero(anchors.cols());
-  for (int round = 0; round < max_rounds; ++round) {
+  for (int round = 0; round < max_doublings; ++round) {
     const std::vector<Vector3> places = overstretched(input.surface, meeting.vertices, coarse, max_stretch);
     if (places.empty() || !raise_around(places, anchors, radius, variances)) break;
     Points targets = anchors + smoothed(anchors, moves, radius, variances);
