@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "bespoke/elastic/detail/element_distortion.h"
+#include "bespoke/elastic/detail/element_objective.h"
 #include "bespoke/elastic/detail/exact_map_bytes.h"
 #include "bespoke/elastic/detail/nested_elements.h"
 #include "bespoke/elastic/detail/preconditioned_bfgs.h"
@@ -37,132 +37,8 @@ constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
 // Of the weight of a place at a cell beyond the bounds, and rounds of it.
 constexpr double loosening = 0.1;
 constexpr int max_loosenings = 3;
-
-/// What one place wants of u.
-struct DataTerm {
-  std::vector<ElementPlace> places;  ///< per level; the last is in a finest cell
-  Vector3 wanted;                    ///< mesh units
-  double share = 1;                  ///< of the weight
-};
-
-Vector3 interpolated(const std::vector<Points>& values, const ElementPlace& place) {
-  const Points& of_level = values[static_cast<std::size_t>(place.level)];
-  Vector3 value = Vector3::Zero();
-  for (std::size_t corner = 0; corner < 8; ++corner)
-    value += place.weights[corner] * of_level.col(place.corners[corner]);
-  return value;
-}
-
-/// Distortion and data of one set of elements as a function of the coefficients.
-class Objective {
- public:
-  Objective(const NestedElements& elements, const Points& sources, const Points& wanted,
-            const std::vector<double>& shares, const DistortionBounds& bounds)
-      : elements_(elements), bounds_(bounds), terms_(static_cast<std::size_t>(sources.cols())) {
-    parallel_for(terms_.size(), 256, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto column = static_cast<Eigen::Index>(i);
-        terms_[i] = {elements.places(sources.col(column)), wanted.col(column), shares[i]};
-      }
-    });
-    for (const ElementLevel& level : elements.levels()) data_diagonal_.emplace_back(level.points.size(), 0.0);
-    for (const DataTerm& term : terms_)
-      for (const ElementPlace& place : term.places)
-        for (std::size_t corner = 0; corner < 8; ++corner)
-          data_diagonal_[static_cast<std::size_t>(place.level)]
-                        [static_cast<std::size_t>(place.corners[corner])] +=
-              term.share * place.weights[corner] * place.weights[corner];
-  }
-
-  void set_bounds(const DistortionBounds& bounds) { bounds_ = bounds; }
-  void set_weight(double weight) { weight_ = weight; }
-
-  double operator()(const Points& coefficients, Points& gradient) {
-    const std::vector<Points> values = elements_.values(coefficients);
-    std::vector<Points> gradients(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) gradients[k].setZero(3, values[k].cols());
-    distortion_ = add_distortion(elements_, values, bounds_, gradients);
-    if (!std::isfinite(distortion_.energy)) return distortion_.energy;
-    double data = 0;
-    for (const DataTerm& term : terms_) {
-      if (term.places.empty()) continue;
-      const ElementPlace& place = term.places.back();
-      const Vector3 off = interpolated(values, place) - term.wanted;
-      const double weight = weight_ * term.share;
-      data += weight * off.squaredNorm() / 2;
-      Points& of_level = gradients[static_cast<std::size_t>(place.level)];
-      for (std::size_t corner = 0; corner < 8; ++corner)
-        of_level.col(place.corners[corner]) += weight * place.weights[corner] * off;
-    }
-    gradient = elements_.restricted(gradients);
-    return distortion_.energy + data;
-  }
-
-  /// At the state of the last call.
-  Eigen::VectorXd inverse_diagonal() const {
-    const std::vector<std::vector<double>> diagonal = distortion_diagonal(elements_, distortion_.stiffness);
-    Eigen::VectorXd inverse(static_cast<Eigen::Index>(elements_.unknowns()));
-    for (std::size_t k = 0; k < elements_.levels().size(); ++k) {
-      const ElementLevel& level = elements_.levels()[k];
-      for (std::size_t n = 0; n < level.nodes.size(); ++n) {
-        const auto point = static_cast<std::size_t>(level.point_of_node[n]);
-        inverse[static_cast<Eigen::Index>(level.first_unknown + n)] =
-            1 / (diagonal[k][point] + weight_ * data_diagonal_[k][point]);
-      }
-    }
-    return inverse;
-  }
-
-  /// Per place, mesh units.
-  std::vector<double> residuals(const Points& coefficients) const {
-    const std::vector<Points> values = elements_.values(coefficients);
-    std::vector<double> result;
-    for (const DataTerm& term : terms_)
-      result.push_back(
-          ((term.places.empty() ? Vector3::Zero() : interpolated(values, term.places.back())) - term.wanted)
-              .norm());
-    return result;
-  }
-
-  /// The places at a corner of a cell beyond the bounds.
-  std::vector<std::size_t> squeezed(const Points& coefficients, const DistortionBounds& bounds) const {
-    const std::vector<std::vector<std::size_t>> cells =
-        cells_beyond(elements_, elements_.values(coefficients), bounds);
-    std::vector<std::vector<char>> is_squeezed;
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const ElementLevel& level = elements_.levels()[k];
-      is_squeezed.emplace_back(level.points.size(), 0);
-      for (const std::size_t number : cells[k])
-        for (const int corner : level.corners[static_cast<std::size_t>(level.finest[number])])
-          is_squeezed[k][static_cast<std::size_t>(corner)] = 1;
-    }
-    std::vector<std::size_t> found;
-    for (std::size_t i = 0; i < terms_.size(); ++i)
-      if (std::any_of(terms_[i].places.begin(), terms_[i].places.end(), [&](const ElementPlace& place) {
-            return std::any_of(place.corners.begin(), place.corners.end(), [&](int corner) {
-              return is_squeezed[static_cast<std::size_t>(place.level)][static_cast<std::size_t>(corner)] !=
-                     0;
-            });
-          }))
-        found.push_back(i);
-    return found;
-  }
-
-  std::size_t outside() const {
-    return static_cast<std::size_t>(std::count_if(terms_.begin(), terms_.end(),
-                                                  [](const DataTerm& term) { return term.places.empty(); }));
-  }
-
-  const Distortion& distortion() const { return distortion_; }  ///< of the last call
-
- private:
-  const NestedElements& elements_;
-  DistortionBounds bounds_;
-  std::vector<DataTerm> terms_;
-  std::vector<std::vector<double>> data_diagonal_;  ///< of the Hessian for weight 1, per point and level
-  double weight_ = 0;
-  Distortion distortion_;
-};
+// Of the barriers, fourfold each.
+constexpr int max_widenings = 20;
 
 /// The nodes within lambda of the surface.
 std::vector<LatticeCoordinates> band_nodes(const TriangleMesh& surface, const Lattice& lattice,
@@ -255,15 +131,18 @@ class Solver {
  private:
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
-    Objective objective(*elements_, sources_, wanted_, shares_, barriers_);
+    ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
     const Energy energy = [&](const Points& x, Points& gradient) {
       progress_.check();
       return objective(x, gradient);
     };
     const auto inverse_diagonal = [&] { return objective.inverse_diagonal(); };
     Points unused;
-    while (!std::isfinite(objective(coefficients_, unused))) {
+    // Inside a cell that was split a length may be beyond its barrier.
+    for (int wider = 0; !std::isfinite(objective(coefficients_, unused)); ++wider) {
+      if (wider == max_widenings) throw SolverError("finite elements: a split cell is turned over");
       barriers_.max_inverse_squared *= 4;
+      barriers_.min_determinant /= 4;
       objective.set_bounds(barriers_);
     }
     std::size_t iterations = 0;
@@ -289,7 +168,7 @@ class Solver {
 
   /// Where cells are beyond the bounds their places count less. Whether there are any.
   bool loosen() {
-    const Objective objective(*elements_, sources_, wanted_, shares_, barriers_);
+    const ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
     const std::vector<std::size_t> squeezed = objective.squeezed(
         coefficients_, {1 / options_.max_squeeze, std::pow(options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
@@ -297,6 +176,17 @@ class Solver {
       shares_[place] *= loosening;
     }
     return !squeezed.empty();
+  }
+
+  /// Before `added` nodes, repeated ones included, come to those that there are.
+  void require_memory(std::size_t added) const {
+    constexpr std::size_t bytes_of_a_node =
+        1500;  // vectors of the minimiser, and gradients of the cells around it
+    const std::size_t bytes = bytes_of_a_node * (elements_->unknowns() + added);
+    if (bytes > options_.max_memory)
+      throw MemoryLimitError("finite elements: another level takes about " + std::to_string(bytes >> 20) +
+                             " MiB, more than the limit of " + std::to_string(options_.max_memory >> 20) +
+                             " MiB; a larger --fit-tolerance needs fewer");
   }
 
   double cell_volume() const {
@@ -318,6 +208,7 @@ class Solver {
         add_nodes_around(finer, x, nodes.back());
     }
     if (nodes.back().empty()) return false;
+    require_memory(nodes.back().size());
     auto refined = std::make_unique<NestedElements>(coarsest_, std::move(nodes));
     coefficients_ = transferred(*elements_, coefficients_, *refined);
     elements_ = std::move(refined);

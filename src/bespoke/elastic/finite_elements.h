@@ -61,7 +61,7 @@ struct FiniteElementFit {
 /// Minimised by limited-memory BFGS from the identity, at first with soft data; no iterate turns a cell over,
 /// which its Bézier coefficients prove. So the stored map is the map, and its certificate the minimiser's
 /// invariant. Throws InvalidInput (sizes, non-finite values, affine part with det ≤ 0, values out of range),
-/// MemoryLimitError, Interrupted.
+/// SolverError, MemoryLimitError, Interrupted.
 FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,
                                      const FiniteElementOptions& options, const Progress& progress = {});
 
