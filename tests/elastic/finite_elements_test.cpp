@@ -39,20 +39,20 @@ double min_relative_determinant(const BakedMap& map) {
 }
 
 TEST(FitFiniteElements, AnAffineMapIsItsAffinePart) {
-  const TriangleMesh ball = shapes::icosphere(3);
+  const TriangleMesh sphere = shapes::icosphere(3);
   Matrix3 linear;
   linear << 1.1, 0.2, 0, 0, 0.9, 0.1, 0.05, 0, 1.3;
-  const Points targets = (linear * ball.vertices).colwise() + Vector3(1, 2, 3);
-  const FiniteElementFit fit = fit_finite_elements(ball.vertices, targets, ball, options_for(0.3));
+  const Points targets = (linear * sphere.vertices).colwise() + Vector3(1, 2, 3);
+  const FiniteElementFit fit = fit_finite_elements(sphere.vertices, targets, sphere, options_for(0.3));
   const Points x = 2 * test::random_points(200, 1);
   EXPECT_LT(fit.map->displacement(x).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_LT(fit.summary.residuals.max, 1e-9);
 }
 
 TEST(FitFiniteElements, MeetsVerticesAndIsAffineFarFromThem) {
-  const TriangleMesh ball = shapes::icosphere(4);
+  const TriangleMesh sphere = shapes::icosphere(4);
   const FiniteElementOptions options = options_for(0.3);
-  const FiniteElementFit fit = fit_finite_elements(ball.vertices, bent(ball.vertices), ball, options);
+  const FiniteElementFit fit = fit_finite_elements(sphere.vertices, bent(sphere.vertices), sphere, options);
   EXPECT_LT(fit.summary.residuals.p99, 5 * options.fit_tolerance);
   EXPECT_GT(min_relative_determinant(*fit.map), 0.2);
   // Zero beyond λ and one coarse cell.
@@ -94,21 +94,21 @@ TEST(FitFiniteElements, TheBoundOnSqueezeComesBeforeTheVertices) {
 }
 
 TEST(FitFiniteElements, ATargetTwiceAsLargeHasTheSameMapTwiceAsLarge) {
-  const TriangleMesh ball = shapes::icosphere(3);
-  const Points targets = bent(ball.vertices);
+  const TriangleMesh sphere = shapes::icosphere(3);
+  const Points targets = bent(sphere.vertices);
   FiniteElementOptions options = options_for(0.3);
-  const FiniteElementFit one = fit_finite_elements(ball.vertices, targets, ball, options);
+  const FiniteElementFit one = fit_finite_elements(sphere.vertices, targets, sphere, options);
   options.fit_tolerance *= 2;
-  const FiniteElementFit two = fit_finite_elements(ball.vertices, 2 * targets, ball, options);
+  const FiniteElementFit two = fit_finite_elements(sphere.vertices, 2 * targets, sphere, options);
   const Points x = 1.2 * test::random_points(100, 3);
   EXPECT_LT(((*two.map)(x)-2 * (*one.map)(x)).cwiseAbs().maxCoeff(), options.fit_tolerance);
 }
 
 TEST(FitFiniteElements, HasTheSameBitsWithEveryInstructionSet) {
-  const TriangleMesh ball = shapes::icosphere(2);
-  const Points targets = bent(ball.vertices);
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const Points targets = bent(sphere.vertices);
   test::expect_same_bits_with_every_instruction_set([&] {
-    const FiniteElementFit fit = fit_finite_elements(ball.vertices, targets, ball, options_for(0.4));
+    const FiniteElementFit fit = fit_finite_elements(sphere.vertices, targets, sphere, options_for(0.4));
     std::vector<double> values;
     for (const PyramidLevel& level : fit.map->pyramid().levels)
       values.insert(values.end(), level.values.begin(), level.values.end());
@@ -117,18 +117,18 @@ TEST(FitFiniteElements, HasTheSameBitsWithEveryInstructionSet) {
 }
 
 TEST(FitFiniteElements, RefusesWhatItCannotFit) {
-  const TriangleMesh ball = shapes::icosphere(1);
+  const TriangleMesh sphere = shapes::icosphere(1);
   const auto refusal = [&](const Points& targets, const FiniteElementOptions& options) {
     return test::error_message<InvalidInput>(
-        [&] { fit_finite_elements(ball.vertices, targets, ball, options); });
+        [&] { fit_finite_elements(sphere.vertices, targets, sphere, options); });
   };
   EXPECT_THAT(refusal(Points::Zero(3, 2), options_for(0.3)), HasSubstr("2 targets"));
-  EXPECT_THAT(refusal(ball.vertices * std::nan(""), options_for(0.3)), HasSubstr("not finite"));
-  EXPECT_THAT(refusal(ball.vertices, options_for(0)), HasSubstr("effective distance"));
-  EXPECT_THAT(refusal(-ball.vertices, options_for(0.3)), HasSubstr("mirror image"));
+  EXPECT_THAT(refusal(sphere.vertices * std::nan(""), options_for(0.3)), HasSubstr("not finite"));
+  EXPECT_THAT(refusal(sphere.vertices, options_for(0)), HasSubstr("effective distance"));
+  EXPECT_THAT(refusal(-sphere.vertices, options_for(0.3)), HasSubstr("mirror image"));
   FiniteElementOptions squeezed = options_for(0.3);
   squeezed.max_squeeze = 1;
-  EXPECT_THAT(refusal(ball.vertices, squeezed), HasSubstr("squeeze"));
+  EXPECT_THAT(refusal(sphere.vertices, squeezed), HasSubstr("squeeze"));
 }
 
 }  // namespace
