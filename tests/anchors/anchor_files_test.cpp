@@ -184,7 +184,7 @@ TEST_F(AnchorFiles, AreReadInAllDialectsOfTexts) {
   EXPECT_EQ(anchor_format_of(paths({"plain.json"})[0]), AnchorFormat::json);
   const std::string wide = test::utf16("Version 1.0\n1\ntip 1 2 3\n", true, true);
   EXPECT_THAT(error_message<FormatError>([&] { read_anchor_files(write("a.pts", wide, "b.pts", wide)); }),
-              HasSubstr("a.pts: is UTF-16; save as UTF-8"));
+              HasSubstr(".pts: is UTF-16; save as UTF-8"));
 }
 
 TEST_F(AnchorFiles, ACommaInANameIsKept) {
