@@ -24,6 +24,7 @@ ElasticFit finite_elements(const ElasticInput& input, const ElasticOptions& opti
   elements.max_memory = options.max_memory;
   elements.affine_part = options.affine_part;
   elements.max_squeeze = options.max_squeeze;
+  if (options.guided) elements.guides = space_guides(input.source, input.fitted, options.lambda);
   FiniteElementFit fit = fit_finite_elements(input.sources, input.targets, input.source, elements, progress);
   return {std::move(fit.map), std::move(fit.summary)};
 }
@@ -83,7 +84,7 @@ constinit const std::array<ElasticMethodRow, 6> elastic_methods{
       finite_elements,
       true,
       true,
-      false,
+      true,
       10,
       {},
       stored<BakedMap, read_baked>(5)},

@@ -28,6 +28,8 @@ constexpr double refined_reach = 2;
 // Of the mean size of the sources' displacement: how soft data are at first; their stiffness then grows
 // fourfold.
 constexpr double softest = 0.25, stiffening = 4;
+// Of a vertex's weight: that of a guide.
+constexpr double guide_share = 0.05;
 // Of the energy, per iteration: while data are soft, and on the finest level; half of that on the one before,
 // …
 constexpr double soft_decrease = 1e-2, last_decrease = 3e-3;
@@ -91,18 +93,21 @@ void require_usable(const Points& sources, const Points& targets, const FiniteEl
 /// Solves on one level, then adds finer ones where vertices are missed.
 class Solver {
  public:
-  Solver(const Points& sources, Points wanted, const TriangleMesh& source, double tolerance,
+  /// The first `vertices` of the sources are met, the others are guides.
+  Solver(Points sources, Points wanted, std::size_t vertices, const TriangleMesh& source, double tolerance,
          const FiniteElementOptions& options, const Progress& progress)
-      : sources_(sources),
+      : sources_(std::move(sources)),
         wanted_(std::move(wanted)),
+        vertices_(vertices),
         tolerance_(tolerance),
         options_(options),
         barriers_{1 / (barrier_beyond * options.max_squeeze),
                   std::pow(length_barrier_beyond * options.max_length_squeeze, 2)},
-        shares_(static_cast<std::size_t>(sources.cols()), 1.0),
+        shares_(static_cast<std::size_t>(sources_.cols()), guide_share),
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
-    weighted_area_ = vertex_areas(source).sum() / static_cast<double>(sources.cols());
+    std::fill_n(shares_.begin(), vertices, 1.0);
+    weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
     elements_ = std::make_unique<NestedElements>(
         coarsest_,
         std::vector<std::vector<LatticeCoordinates>>{band_nodes(source, coarsest_, options.lambda)});
@@ -172,7 +177,7 @@ class Solver {
     const std::vector<std::size_t> squeezed = objective.squeezed(
         coefficients_, {1 / options_.max_squeeze, std::pow(options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
-      summary_.loosened += shares_[place] == 1;
+      summary_.loosened += place < vertices_ && shares_[place] == 1;
       shares_[place] *= loosening;
     }
     return !squeezed.empty();
@@ -202,7 +207,7 @@ class Solver {
     for (const ElementLevel& level : elements_->levels()) nodes.push_back(level.nodes);
     nodes.emplace_back();
     const Lattice finer{coarsest_.origin, elements_->levels().back().voxel_size / 2};
-    for (std::size_t i = 0; i < residuals.size(); ++i) {
+    for (std::size_t i = 0; i < vertices_; ++i) {
       const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
       if (residuals[i] > refined_beyond * tolerance_ && !elements_->places(x).empty())
         add_nodes_around(finer, x, nodes.back());
@@ -215,8 +220,9 @@ class Solver {
     return true;
   }
 
-  const Points& sources_;
+  Points sources_;
   Points wanted_;
+  std::size_t vertices_;
   double tolerance_;
   FiniteElementOptions options_;
   DistortionBounds barriers_;
@@ -260,8 +266,12 @@ FiniteElementFit fit_finite_elements(const Points& sources, const Points& target
   const Stopwatch watch;
   const AffineMap affine = upright_affine(sources, targets, options.affine_part);
   const double scale = std::cbrt(affine.linear.determinant());
-  Points wanted = affine.linear.inverse() * (targets.colwise() - affine.offset) - sources;
-  Solver solver(sources, std::move(wanted), source, options.fit_tolerance / scale, options, progress);
+  Points places(3, sources.cols() + options.guides.sources.cols()), images(3, places.cols());
+  places << sources, options.guides.sources;
+  images << targets, options.guides.targets;
+  Points wanted = affine.linear.inverse() * (images.colwise() - affine.offset) - places;
+  Solver solver(std::move(places), std::move(wanted), static_cast<std::size_t>(sources.cols()), source,
+                options.fit_tolerance / scale, options, progress);
   solver.solve();
 
   Pyramid pyramid = pyramid_of(solver.elements(), solver.coefficients(), affine.linear);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bespoke/elastic/elastic_fit.h"
+#include "bespoke/elastic/space_guides.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/progress.h"
 #include "bespoke/statistics.h"
@@ -25,6 +26,9 @@ struct FiniteElementOptions {
   int max_levels = 5;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
+  /// Followed softly, so that space turns with the surface beneath it. They change neither the affine part
+  /// nor what the summary says, and halve no cell.
+  SpaceGuides guides = {};
 };
 
 struct FiniteElementSummary {

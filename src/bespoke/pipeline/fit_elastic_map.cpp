@@ -142,7 +142,7 @@ bool is_guided(const FittedMapping& fitted, const FitOptions& options) {
 void leave_guides_that_harm(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
                             const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  if (!(missed(fitted) > options.fit_tolerance)) return;
+  if (!(missed(fitted) > met_within(options))) return;
   std::optional<FittedMapping> unguided = refitted_without_guides(fitted, source, anchors, options, progress);
   if (unguided && missed(*unguided) < missed(fitted)) fitted = std::move(*unguided);
 }
