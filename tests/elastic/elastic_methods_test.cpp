@@ -12,11 +12,12 @@
 namespace bespoke {
 namespace {
 
-const TriangleMesh ball = shapes::icosphere(2);
-const Points fitted_ball = 1.1 * ball.vertices + 0.02 * test::random_points(ball.vertices.cols(), 1);
+const TriangleMesh unit_ball = shapes::icosphere(2);
+const Points fitted_ball =
+    1.1 * unit_ball.vertices + 0.02 * test::random_points(unit_ball.vertices.cols(), 1);
 
 ElasticFit fit_by(const ElasticMethodRow& row) {
-  return row.fit({ball, fitted_ball, ball.vertices, fitted_ball}, {0.5, 1e-3}, {});
+  return row.fit({unit_ball, fitted_ball, unit_ball.vertices, fitted_ball}, {0.5, 1e-3}, {});
 }
 
 TEST(ElasticMethods, HaveOneRowEachWithANameOfItsOwn) {
@@ -44,7 +45,7 @@ TEST(ElasticMethods, FitPrintAndAreKept) {
   const Points x = 1.2 * test::random_points(100, 2);
   for (const ElasticMethodRow& row : elastic_methods) {
     const ElasticFit fit = fit_by(row);
-    EXPECT_LT(((*fit.map)(ball.vertices) - fitted_ball).norm() / fitted_ball.norm(), 0.05) << row.name;
+    EXPECT_LT(((*fit.map)(unit_ball.vertices) - fitted_ball).norm() / fitted_ball.norm(), 0.05) << row.name;
     const std::string line = std::visit([](const auto& found) { return to_string(found); }, fit.found);
     EXPECT_FALSE(line.empty()) << row.name;
     EXPECT_EQ(line.find('\n'), std::string::npos) << row.name;
@@ -54,12 +55,12 @@ TEST(ElasticMethods, FitPrintAndAreKept) {
 }
 
 TEST(ElasticMethods, ThatMeetPointsMeetOnesOffTheSurface) {
-  Points sources(3, ball.vertices.cols() + 1), targets(3, fitted_ball.cols() + 1);
-  sources << ball.vertices, Vector3(0, 0, 1.3);
+  Points sources(3, unit_ball.vertices.cols() + 1), targets(3, fitted_ball.cols() + 1);
+  sources << unit_ball.vertices, Vector3(0, 0, 1.3);
   targets << fitted_ball, Vector3(0.03, 0.02, 1.45);
   for (const ElasticMethodRow& row : elastic_methods) {
     if (!row.meets_points) continue;
-    const ElasticFit fit = row.fit({ball, fitted_ball, sources, targets}, {0.5, 1e-3}, {});
+    const ElasticFit fit = row.fit({unit_ball, fitted_ball, sources, targets}, {0.5, 1e-3}, {});
     EXPECT_LE(((*fit.map)(sources)-targets).colwise().norm().maxCoeff(), row.met_within * 1e-3) << row.name;
   }
 }

@@ -41,9 +41,10 @@ TEST(NestedElements, CornersOfSplitCellsAreNodes) {
     const ElementLevel& level = elements.levels()[k];
     std::vector<char> is_node(level.points.size(), 0);
     for (const int point : level.point_of_node) is_node[static_cast<std::size_t>(point)] = 1;
-    for (std::size_t c = 0; c < level.cells.size(); ++c)
-      if (level.first_part[c] != no_leaf)
-        for (const int corner : level.corners[c]) EXPECT_TRUE(is_node[static_cast<std::size_t>(corner)]);
+    for (std::size_t c = 0; c < level.cells.size(); ++c) {
+      if (level.first_part[c] == no_leaf) continue;
+      for (const int corner : level.corners[c]) EXPECT_TRUE(is_node[static_cast<std::size_t>(corner)]);
+    }
   }
 }
 

@@ -38,7 +38,7 @@ const Sample& shoe() {
   return sample;
 }
 
-TriangleMesh mirror_image(TriangleMesh mesh) {
+TriangleMesh mirrored_sample(TriangleMesh mesh) {
   mesh.vertices.row(0) *= -1;
   mesh.faces.row(0).swap(mesh.faces.row(1));
   return mesh;
@@ -120,7 +120,8 @@ TEST(FitUnanchored, KeepsAMouthThatTheTargetLacksInsideAndReachesAllOfATargetWit
 }
 
 TEST(FitUnanchored, RefusesAMirroredHand) {
-  EXPECT_THROW(fit_unanchored(glove().source, mirror_image(glove().targets.front().mesh), {}), SolverError);
+  EXPECT_THROW(fit_unanchored(glove().source, mirrored_sample(glove().targets.front().mesh), {}),
+               SolverError);
 }
 
 TEST(FitUnanchored, RefusesAHandOnAFootAndSaysWhatToDo) {

@@ -7,9 +7,9 @@
 namespace bespoke {
 namespace {
 
-TriangleMesh ball(int level, const Vector3& centre, const Vector3& radii) {
+TriangleMesh ball(int level, const Vector3& centre, const Vector3& half_axes) {
   TriangleMesh mesh = shapes::icosphere(level);
-  mesh.vertices = (radii.asDiagonal() * mesh.vertices).colwise() + centre;
+  mesh.vertices = (half_axes.asDiagonal() * mesh.vertices).colwise() + centre;
   return mesh;
 }
 
