@@ -21,7 +21,8 @@ using ::testing::HasSubstr;
 using ::testing::Pointwise;
 
 constexpr int int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, real = 5126;
-constexpr double coarse = 9, fine = 1.1;  // chord errors without a split of four units, and with one
+constexpr double unsplit_error = 9,
+                 split_error = 1.1;  // chord errors without a split of four units, and with one
 
 using Octets = std::vector<std::uint8_t>;
 using Words = std::vector<std::uint16_t>;
@@ -29,7 +30,7 @@ using Floats = std::vector<float>;
 
 class SplitGltf : public test::SplitFiles {
  protected:
-  GlbContent split_scene(GltfScene& scene, double length = fine) {
+  GlbContent split_scene(GltfScene& scene, double length = split_error) {
     return GlbContent(split("a.glb", scene.glb(), length));
   }
 
@@ -215,7 +216,7 @@ TEST_F(SplitGltf, KeepsAllElse) {
        {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
   const std::string content = scene.glb();
   const GlbContent before(content);
-  const GlbContent after(split("a.glb", content, fine));
+  const GlbContent after(split("a.glb", content, split_error));
   ASSERT_GT(refined_.splits.vertices.size(), 0u);
   std::size_t bytes = 0;
   for (const json& view : after.root["bufferViews"]) bytes += view["byteLength"].get<std::size_t>() + 3;
@@ -274,7 +275,7 @@ TEST_F(SplitGltf, KeepsCharacters) {
   const std::string marked = "\"attributes\"", odd = "\"extras\" : {\"price\":1.50e0 , \"size\": 2.0},\t";
   text.insert(text.find(marked), odd);
   text.insert(text.find("\"asset\""), odd);
-  const std::string out = split("a.gltf", text, fine);
+  const std::string out = split("a.gltf", text, split_error);
   EXPECT_THAT(out, HasSubstr(odd + "\"asset\""));
   EXPECT_THAT(out, HasSubstr(odd + marked));
   EXPECT_THAT(out, HasSubstr("\"indices\":"));
@@ -284,7 +285,7 @@ TEST_F(SplitGltf, KeepsCharacters) {
 TEST_F(SplitGltf, LeavesAFileThatStaysStraight) {
   GltfScene scene = test::morphing_triangle();
   const std::string content = scene.glb();
-  EXPECT_EQ(split("a.glb", content, coarse), content);
+  EXPECT_EQ(split("a.glb", content, unsplit_error), content);
 }
 
 // Vertices that two primitives share are split once; points stay, and so do triangles that no split meets.
@@ -402,7 +403,7 @@ TEST_F(SplitGltf, PutsWhatIsNewBesideBuffersOfTheirOwn) {
   GltfScene scene;
   scene = scene_of(scene, {{{"attributes", {{"POSITION", positions_of_triangle(scene)}}}}});
   file("a.bin", scene.data);
-  const json out = json::parse(split("a.gltf", scene.gltf("a.bin"), fine));
+  const json out = json::parse(split("a.gltf", scene.gltf("a.bin"), split_error));
   ASSERT_EQ(out["buffers"].size(), 2u);
   EXPECT_EQ(out["buffers"][0]["byteLength"], scene.data.size());
   EXPECT_THAT(out["buffers"][1]["uri"].get<std::string>(), ::testing::StartsWith("data:"));
