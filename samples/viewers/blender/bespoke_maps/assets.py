@@ -67,7 +67,7 @@ def add_asset(context, path, placed_like):
     asset.bespoke.steps = max(1, len(info.get("steps", ())))
     proof = info["certificate"]
     asset.bespoke.verdict = (
-        f"a bijection, det ≥ {proof['least_determinant']:.3g}"
+        f"a bijection, det ≥ {proof['min_determinant']:.3g}"
         if proof["bijection"]
         else f"{proof['folded']} folded and {proof['undecided']} undecided cells"
     )
