@@ -52,7 +52,7 @@ TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
     EXPECT_FALSE(expected.summary.target_flipped) << entry.name;
     EXPECT_TRUE(fit.summary.target_flipped) << entry.name;
     EXPECT_EQ(fit.vertices, expected.vertices) << entry.name;
-    EXPECT_NE(to_string(fit.summary).find("turned over"), std::string::npos);
+    EXPECT_NE(to_string(fit.summary).find("faces flipped"), std::string::npos);
     options.repair_models = false;
     EXPECT_FALSE((Scene{shapes::icosphere(3), inside_out}.fit(options).summary.target_flipped));
   }

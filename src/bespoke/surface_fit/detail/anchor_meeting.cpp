@@ -31,6 +31,21 @@ std::vector<Vector3> overstretched(const TriangleMesh& surface, const Points& me
   return centres;
 }
 
+/// Anchors near others whose moves differ by more than a layer's gradient allows: these hold all others back,
+/// since a layer is scaled as a whole.
+std::vector<Vector3> contradicting(const Points& anchors, const Points& moves, double radius,
+                                   double max_gradient) {
+  std::vector<Vector3> places;
+  for (Eigen::Index j = 0; j < anchors.cols(); ++j)
+    for (Eigen::Index i = 0; i < anchors.cols(); ++i) {
+      const double apart = (anchors.col(i) - anchors.col(j)).norm();
+      if (apart > radius || !((moves.col(i) - moves.col(j)).norm() > max_gradient * apart)) continue;
+      places.push_back(anchors.col(j));
+      break;
+    }
+  return places;
+}
+
 /// Raises the variances of the anchors within a radius of the places; whether there was one.
 bool raise_around(const std::vector<Vector3>& places, const Points& anchors, double radius,
                   Eigen::VectorXd& variances) {
@@ -66,23 +81,26 @@ AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse
                                   const DetailSettings& settings) {
   const Points& anchors = input.anchor_sources;
   const double radius = settings.anchor_radius * input.diagonal;
-  AnchorMeeting meeting{meet_anchors(input, settings).vertices, Eigen::VectorXd::Zero(anchors.cols())};
-  if (anchors.cols() == 0) return meeting;
-  const Points moves = input.anchor_targets - anchors;
-  const double largest = std::sqrt(moves.colwise().squaredNorm().maxCoeff());
+  DetailFit fit = meet_anchors(input, settings);
   Eigen::VectorXd variances = Eigen::VectorXd::Zero(anchors.cols());
+  if (anchors.cols() == 0) return {fit.vertices, variances};
+  const Points moves = input.anchor_targets - anchors;
+  Points targets = input.anchor_targets;
   for (int round = 0; round < max_doublings; ++round) {
-    const std::vector<Vector3> places = overstretched(input.surface, meeting.vertices, coarse, max_stretch);
+    std::vector<Vector3> places = overstretched(input.surface, fit.vertices, coarse, max_stretch);
+    const double missed = (targets - fit.anchor_sources).colwise().norm().maxCoeff();
+    if (places.empty() && missed > settings.tolerance * input.diagonal)
+      places = contradicting(anchors, targets - anchors, radius, settings.max_gradient);
     if (places.empty() || !raise_around(places, anchors, radius, variances)) break;
-    Points targets = anchors + smoothed(anchors, moves, radius, variances);
+    targets = anchors + smoothed(anchors, moves, radius, variances);
     for (Eigen::Index k = 0; k < anchors.cols(); ++k)
       if (variances[k] == 0) targets.col(k) = input.anchor_targets.col(k);
     const DetailInput relaxed{input.surface,  input.target, anchors,      targets,
                               input.diagonal, input.hidden, input.patches};
-    meeting.vertices = meet_anchors(relaxed, settings).vertices;
-    meeting.anchor_sigmas = largest * variances.cwiseSqrt();
+    fit = meet_anchors(relaxed, settings);
   }
-  return meeting;
+  const double largest = moves.colwise().norm().maxCoeff();
+  return {fit.vertices, largest * variances.cwiseSqrt()};
 }
 
 }  // namespace bespoke
