@@ -111,6 +111,32 @@ TEST(AnchorStart, TurnsAboutALineByTheSurfaces) {
   EXPECT_LT((start.target_from_source * source.vertices - placed).colwise().norm().maxCoeff(), 0.1);
 }
 
+/// Bent about the y axis by an angle that grows along z.
+Points bent_along_z(const Points& x, double angle_per_length) {
+  Points y = x;
+  for (auto&& place : y.colwise())
+    place = Eigen::AngleAxisd(angle_per_length * place.z(), Vector3::UnitY()) * Vector3(place);
+  return y;
+}
+
+// A bend leaves more than a thin body is wide; anchors all over it are interpolated nevertheless.
+TEST(AnchorStart, TakesAnAffineMapFromAnchorsAllOverABentBody) {
+  TriangleMesh source = shapes::icosphere(3);
+  source.vertices = Vector3(0.3, 1, 3).asDiagonal() * source.vertices;
+  const TriangleMesh target{bent_along_z(source.vertices, 0.4), source.faces};
+  Anchors everywhere, on_one_side;
+  for (Eigen::Index k = 0; k < source.vertices.cols(); k += 5) {
+    const AnchorPair pair{"", source.vertices.col(k), target.vertices.col(k)};
+    everywhere.pairs.push_back(pair);
+    if (pair.a.x() > 0.25) on_one_side.pairs.push_back(pair);
+  }
+  const AnchorStart start = start_by_anchors(everywhere, spline_weights(everywhere), source, target);
+  EXPECT_FALSE(start.alignment.determines_affine_map());
+  EXPECT_TRUE(start.determines_affine_map);
+  EXPECT_FALSE(
+      start_by_anchors(on_one_side, spline_weights(on_one_side), source, target).determines_affine_map);
+}
+
 class FitSampleWithFlatAnchors : public ::testing::TestWithParam<double> {};
 
 TEST_P(FitSampleWithFlatAnchors, LaysTheSourceOntoTheTarget) {

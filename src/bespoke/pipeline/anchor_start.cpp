@@ -47,6 +47,14 @@ Eigen::VectorXd tolerances(const Points& targets, const Eigen::VectorXd& weights
          resolution * size;
 }
 
+/// Whether the anchors spread along each of their directions at least half as widely as the vertices.
+bool spread_like(const Points& vertices, const RegularisedAlignment& alignment) {
+  constexpr double share = 0.5;  // as for a uniform spread over half of the source
+  const Points arms = alignment.directions.transpose() * (vertices.colwise() - vertices.rowwise().mean());
+  const Vector3 widths = arms.rowwise().norm() / std::sqrt(double(vertices.cols()));
+  return (alignment.widths.array() >= share * widths.array()).all();
+}
+
 // ---- Mirror images
 
 /// Both ways to take the pairs: as they are, and with the source reflected before.
@@ -168,6 +176,8 @@ AnchorStart start_by_anchors(const Anchors& anchors, const Eigen::VectorXd& weig
   const Eigen::VectorXd within = tolerances(targets, weights, diagonal(target.vertices));
   const Eigen::VectorXd finite = within.cwiseAbs2().cwiseInverse();
   start.alignment = align_regularised(sources, targets, finite);
+  start.determines_affine_map =
+      start.alignment.determines_affine_map() || spread_like(source.vertices, start.alignment);
   const SimilarityDistance distance(source, target);
   if (start.alignment.determines_rotation()) {
     require_unmirrored_pairs(both_ways(start.alignment, sources, targets, finite, distance), anchors, within);

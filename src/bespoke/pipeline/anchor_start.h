@@ -32,6 +32,9 @@ struct AnchorStart {
   RegularisedAlignment alignment;
   RigidTransform target_from_source;  ///< Γ
   bool turned_by_surfaces = false;    ///< about the anchors' line, along which alone they spread
+  /// Their spread exceeds the misfit, or is that of the source: then nothing is extrapolated, however a pose
+  /// bends.
+  bool determines_affine_map = false;
 };
 
 /// weights: as spline_weights, one a pair. Near a line anchors do not determine the turn about it: of 36

@@ -61,7 +61,7 @@ Points warp_coarsely(const TriangleMesh& source, Pairs pairs, Eigen::Index count
                      CoarseSummary& summary) {
   const Stopwatch watch;
   const RegularisedAlignment& alignment = start.alignment;
-  summary.regularised = pairs.sources.cols() > 3 && !alignment.determines_affine_map();
+  summary.regularised = pairs.sources.cols() > 3 && !start.determines_affine_map;
   summary.turned_by_surfaces = start.turned_by_surfaces;
   summary.anchor_widths = alignment.widths;
   if (summary.regularised) {
