@@ -145,7 +145,7 @@ class Solver {
     Points unused;
     // Inside a cell that was split a length may be beyond its barrier.
     for (int wider = 0; !std::isfinite(objective(coefficients_, unused)); ++wider) {
-      if (wider == max_widenings) throw SolverError("finite elements: a split cell is turned over");
+      if (wider == max_widenings) throw SolverError("finite elements: a split cell is flipped");
       barriers_.max_inverse_squared *= 4;
       barriers_.min_determinant /= 4;
       objective.set_bounds(barriers_);
