@@ -71,6 +71,20 @@ def methods(recorded):
     return table(["methods, `d00` to `d07`", "average of the mean errors / of the p95", "flipped faces, sum"], rows)
 
 
+def public_table(rows):
+    """Rows of public_pairs.py; a fit that failed says why."""
+    def cells(row):
+        cpu = f"{row['cpu_seconds']:.0f} s"
+        if "failure" in row:
+            return [row["pair"], row["failure"], "", "", cpu, "", ""]
+        flipped = "not known" if row["flipped"] is None else str(row["flipped"])
+        return [row["pair"], errors(row), f"{row['max']:.2f}", flipped, cpu, f"{row['megabytes']:.1f} MB",
+                "yes" if row["proved"] else "no"]
+
+    headings = ["pair", "mean / p95, %", "max, %", "flipped faces", "fit, CPU", "file", "proved"]
+    return table(headings, [cells(row) for row in rows])
+
+
 TABLES = {"results": results, "pairs": pairs, "averages": averages, "without-anchors": without_anchors, "methods": methods}
 
 
