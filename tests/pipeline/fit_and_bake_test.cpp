@@ -38,7 +38,8 @@ FitOptions fit_options(ElasticMethod method) {
 }
 
 FittedMapping fit(const BodyPair& pair, ElasticMethod method) {
-  return fit_mapping(pair.source, pair.target, pair.anchors, fit_options(method));
+  return with_loose_parts(fit_mapping(pair.source, pair.target, pair.anchors, fit_options(method)),
+                          pair.source);
 }
 
 /// One for each method; the surface is fitted once.
