@@ -85,7 +85,12 @@ def public_table(rows):
     return table(headings, [cells(row) for row in rows])
 
 
-TABLES = {"results": results, "pairs": pairs, "averages": averages, "without-anchors": without_anchors, "methods": methods}
+def public(recorded):
+    return public_table(recorded["public"])
+
+
+TABLES = {"public": public, "results": results, "pairs": pairs, "averages": averages,
+          "without-anchors": without_anchors, "methods": methods}
 
 
 def main():
