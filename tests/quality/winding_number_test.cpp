@@ -66,6 +66,10 @@ TEST(WindingNumber, OfNestedSpheresCountsThem) {
     EXPECT_NEAR(both(1.2 * direction), 0, approximation);
     EXPECT_NEAR(cavity(0.3 * direction), 0, approximation);
     EXPECT_NEAR(cavity(0.7 * direction), 1, approximation);
+    for (const double radius : {0.3, 0.49, 0.52, 0.7, 0.98, 1.02, 1.2}) {
+      EXPECT_EQ(both.whole(radius * direction), radius < 0.5 ? 2 : radius < 1 ? 1 : 0) << radius;
+      EXPECT_EQ(cavity.whole(radius * direction), 0.5 < radius && radius < 1 ? 1 : 0) << radius;
+    }
   }
 }
 

@@ -65,9 +65,7 @@ struct SignedDistance::Surface {
 
   /// behind: of the closest point, by the normal there.
   bool is_inside(const Vector3& x, bool behind) const {
-    if (!closed && behind) return true;
-    const double number = winding(x);
-    return (closed ? std::abs(number) : number) > 0.5;
+    return closed ? winding.whole(x) != 0 : behind || winding(x) > 0.5;
   }
 
   // The weight of an edge's point is exactly zero for the opposite corner, and so on: see ClosestPointTree.

@@ -21,8 +21,12 @@ class WindingNumber {
 
   /// At a finite point, mesh units.
   double operator()(const Vector3& x) const;
+  /// Of a closed surface, whose number is whole: rounded from a sum with an error below 0.1, in less time.
+  int whole(const Vector3& x) const;
 
  private:
+  double number(const Vector3& x, double radii) const;
+
   struct Tree;
   std::unique_ptr<const Tree> tree_;
 };
