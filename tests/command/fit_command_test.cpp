@@ -30,7 +30,7 @@ TEST_F(FitCommand, MapsTheSourceOntoTheTarget) {
   const ProgramResult fit = pair_.fit("map.vdb");
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   for (const char* line : {"registered", "surfaces", "anchors", "error", "written", "next"})
-    EXPECT_THAT(fit.out, HasSubstr("\n" + std::string(line) + " ")) << line;
+    EXPECT_THAT("\n" + fit.out, HasSubstr("\n" + std::string(line) + " ")) << line;
   EXPECT_LE(std::count(fit.out.begin(), fit.out.end(), '\n'), 10);
   const ProgramResult apply =
       bespoke({"apply", pair_.file("map.vdb"), pair_.file("source.obj"), "-o", pair_.file("moved.obj")});

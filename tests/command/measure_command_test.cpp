@@ -58,7 +58,7 @@ TEST(MeasureCommand, WarnsOfProductsThatPenetrateTheTargetAlone) {
   EXPECT_EQ(measure(pair, {"--product", pair.file("fitted.obj")}).err, "");
 }
 
-TEST(ApplyCommand, WarnsOfProductsThatPenetrateTheTargetWhereBothModelsAreKnown) {
+TEST(ProductAfterApply, WarnsOfProductsThatPenetrateTheTargetWhereBothModelsAreKnown) {
   const ExamplePair pair;
   write_penetrating(pair);
   std::vector<std::string> apply{
