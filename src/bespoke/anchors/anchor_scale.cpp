@@ -54,13 +54,23 @@ class ScaledAnchors {
   double span_, model_span_;
 };
 
+/// The ratio of two units in use that the factor is within its accuracy, else the factor. Anchors lie on a
+/// smooth surface, not on the model's faces, so that the factor errs by their distance.
+double as_unit_ratio(double factor) {
+  for (const double ratio : {2.54, 10.0, 12.0, 25.4, 30.48, 39.37, 100.0, 304.8, 3.2808, 1000.0})
+    for (const double candidate : {ratio, 1 / ratio})
+      if (std::abs(std::log(factor / candidate)) < std::log(grid_step)) return candidate;
+  return factor;
+}
+
 void require_at_scale(const TriangleMesh& model, const Points& anchors, const std::string& role,
                       const std::string& side) {
-  const std::optional<double> factor = anchor_scale(model, anchors);
-  if (!factor) return;
+  const std::optional<double> measured = anchor_scale(model, anchors);
+  if (!measured) return;
+  const double factor = as_unit_ratio(*measured);
   throw InvalidInput("the anchors do not lie on the " + role + ", but would if their \"" + side +
-                     "\" were multiplied by " + format_number(*factor, 3) + ", or the " + role + " by " +
-                     format_number(1 / *factor, 3) +
+                     "\" were multiplied by " + format_number(factor, 3) + ", or the " + role + " by " +
+                     format_number(1 / factor, 3) +
                      ": bring both to one unit, or say that they are meant so (--any-anchors)");
 }
 
