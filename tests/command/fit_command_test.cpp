@@ -502,12 +502,15 @@ TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {
   twin["a"][0] = twin["a"][0].get<double>() + 0.1;
   twin["b"][1] = twin["b"][1].get<double>() + 0.5;
   anchors["pairs"].push_back(twin);
+  for (const std::size_t pair : {std::size_t(0), anchors["pairs"].size() - 1})
+    anchors["pairs"][pair]["sigma"] = 0;  // exact by the file, not by an estimate
   write_text(pair_.file("anchors.json"), anchors.dump());
   const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
   ProgramResult fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("and \"twin\" ("));
   EXPECT_THAT(fit.err, HasSubstr("contradict each other; give those that are not exact a sigma"));
+  anchors["pairs"].back().erase("sigma");
   anchors["pairs"].back()["weight"] = 1;
   write_text(pair_.file("anchors.json"), anchors.dump());
   fit = pair_.fit("map.vdb", quick);
