@@ -53,7 +53,7 @@ TEST_F(BadModels, Obj) {
       {"a.obj", corners + "f 1 2\n", "a.obj:6: a face of 2 corners"},
       {"a.obj", corners + "f 1 2 2\n", "a.obj:6: a face names vertex 2 twice"},
       {"a.obj", corners + "f 1 2 x\n", "a.obj:6: a face has the corner 'x'"},
-      {"a.obj", corners + "f 1 2 3/\n", "a.obj:6: a face has the corner '3/'"},
+      {"a.obj", corners + "f 1 2 3///\n", "a.obj:6: a face has the corner '3///'"},
       {"a.obj", corners + "f 1/1 2/1 3\n", "a.obj:6: the corners of a face differ in form"},
       {"a.obj", corners, "has no faces"},
       {"a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n", "all vertices lie at one point"},

@@ -48,7 +48,8 @@ class CloudTarget : public FitCommand {
 
 TEST_F(CloudTarget, GivesTheMapOfTheMeshWithinItsSpacing) {
   ASSERT_EQ(fit("target.obj", "mesh.vdb").exit_code, 0);
-  const ProgramResult result = fit("target.ply", "cloud.vdb", {"--report", pair_.file("report.json")});
+  const ProgramResult result =
+      fit("target.ply", "cloud.vdb", {"--verbose", "--report", pair_.file("report.json")});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("cloud        cloud of 10242 points"));
   const json stage = read_json("report.json")["stages"][0];

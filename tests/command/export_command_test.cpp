@@ -181,7 +181,7 @@ TEST_F(ExportCommand, RefusesWithoutLeavingAnything) {
     EXPECT_THAT(result.err, HasSubstr(words));
     EXPECT_EQ(pair_.files(), before);
   };
-  refused({"--grid", "3%", "-o", pair_.file("map.nii")}, 2, ".vti, .nrrd");
+  refused({"--grid", "3%", "-o", pair_.file("map.nii")}, 1, ".vti, .nrrd");
   refused({"--grid", "0.001%", "-o", pair_.file("map.vti")}, 4, "fit");
   refused({"--grid", "-3", "-o", pair_.file("map.vti")}, 1, "--grid");
   refused({"-o", pair_.file("map.vti")}, 1, "--grid");

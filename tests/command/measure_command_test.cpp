@@ -25,9 +25,10 @@ TEST(MeasureCommand, PutsNumbersOnAMap) {
   const ProgramResult text = measure(pair, {"--product", pair.file("product.obj")});
   EXPECT_EQ(text.exit_code, 0) << text.err;
   EXPECT_EQ(text.err, "");
-  for (const char* part : {"mesh units (cm)", "anchor residuals", "source to target", "target to source",
-                           "Hausdorff", "conformal", "least det", "product.obj: 729 vertices",
-                           "clearance kept within", "inside the body", "self-intersecting"})
+  for (const char* part :
+       {"mesh units (cm)", "anchor residuals", "mapped source to target", "target to mapped source",
+        "Hausdorff", "conformal", "least det", "product.obj: 729 vertices", "clearance kept within",
+        "inside the body", "self-intersecting"})
     EXPECT_THAT(text.out, HasSubstr(part));
 }
 

@@ -98,14 +98,14 @@ def test_splits_edges_and_keeps_what_the_file_says(pair, around, tmp_path):
     product, output = tmp_path / "product.obj", tmp_path / "split.obj"
     corners = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in around[:3].tolist())
     product.write_text(corners + "g sleeve\nusemtl wool\nf 1 2 3\n")
-    report = pair.map.apply(product, output, refine="0.01%").json["products"][0]
+    report = pair.map.apply(product, output, refine="0.01%", unit="map").json["products"][0]
     lines = output.read_text().splitlines()
     splits = report["chord_error"]["splits"]
     assert splits > 0
     assert sum(line.startswith("v ") for line in lines) == 3 + splits
     assert lines[3:5] == ["g sleeve", "usemtl wool"]
     assert report["chord_error"]["length"] <= 1e-4 * np.linalg.norm(np.ptp(pair.source.vertices, axis=0))
-    report = pair.map.apply(product, output, refine="0.01%", rigid=["sleeve"]).json["products"][0]
+    report = pair.map.apply(product, output, refine="0.01%", rigid=["sleeve"], unit="map").json["products"][0]
     assert report["chord_error"]["splits"] == 0  # what keeps its shape stays straight
 
 

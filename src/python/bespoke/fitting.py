@@ -68,6 +68,8 @@ def fit(
     Raises TypeError for models and anchors of other types, InvalidInput, SolverError (also when models cannot be
     aligned with certainty), MemoryLimitError.
     """
+    source_arrays, target_arrays = _source_arrays(source), _arrays(target, "target")
+    fitted_arrays = None if fitted is None else _arrays(fitted, "fitted")
     options = {
         "surface_fit": surface_fit,
         "boundaries": boundaries,
@@ -97,11 +99,11 @@ def fit(
         "max_memory": max_memory,
     }
     engine, vertices, confidence, report = _engine.fit(
-        _source_arrays(source),
-        _arrays(target, "target"),
+        source_arrays,
+        target_arrays,
         target.cloud,
         _text(anchors),
-        None if fitted is None else _arrays(fitted, "fitted"),
+        fitted_arrays,
         add_corners,
         options,
         progress,
