@@ -11,7 +11,7 @@ enum class InstructionSet { baseline, avx2, avx512 };
 /// What this machine can run, in the order above; `baseline` always.
 std::vector<InstructionSet> supported_instruction_sets();
 
-/// What hot loops run with: the most that this machine supports, unless told otherwise.
+/// What hot loops run with: the most that this machine supports, unless restricted.
 InstructionSet instruction_set();
 
 /// From now on, in all threads. For tests and measurements: results do not depend on it. Throws InvalidInput

@@ -25,13 +25,10 @@ struct Settings {
   std::size_t finalists = 4;         // alignments deformed
   std::size_t mirror_finalists = 3;  // alignments of the mirror image deformed
   double same_place = 0.1;           // mean distance between deformed patches, of the target's radius
-  // Right alignments of twelve pairs have misfits of 0.029 to 0.056, wrong ones of 0.059 to 0.106.
-  double worst_misfit = 0.057;
-  // Right alignments of hands, heads and bodies have 0.24 and more. A right foot fits a left one only 0.13 to
-  // 0.16 worse than its own side: too little to tell them by.
-  double min_confidence = 0.2;
-  double symmetric = 0.02;      // asymmetry of a person who stands straight, of the radius
-  double boundary_share = 0.9;  // of the boundary's patches that must find a boundary
+  double worst_misfit = 0.057;       // of a correct alignment (tests/accuracy/tuning.md)
+  double min_confidence = 0.2;       // a right foot fits a left one almost as well: that stays below
+  double symmetric = 0.02;           // asymmetry of a person who stands straight, of the radius
+  double boundary_share = 0.9;       // of the boundary's patches that must find a boundary
 };
 constexpr Settings settings;
 

@@ -18,12 +18,11 @@ enum class AlignmentVerdict {
               ///< symmetric
 };
 
-/// How a source was aligned with a target, and how sure that is.
+/// How a source was aligned with a target, and with which confidence.
 struct AlignmentSummary {
   AlignmentVerdict verdict = AlignmentVerdict::poor;
-  /// √(residual × bending) / share matched after a coarse deformation, no unit; lower is better. 0.03 to
-  /// 0.055 between bodies, heads, hands and feet of different people, 0.06 to 0.1 where the alignment is
-  /// wrong.
+  /// √(residual × bending) / share matched after a coarse deformation, no unit; lower is better, and above
+  /// 0.06 an alignment is usually wrong (tests/accuracy/tuning.md).
   double misfit = 0;
   std::optional<double> next_misfit;  ///< of the best alignment elsewhere; none when all lead to one place
   std::optional<double>

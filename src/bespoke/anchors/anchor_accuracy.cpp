@@ -20,8 +20,8 @@ constexpr double median_of_normal = 0.6745;  // of |x|, in standard deviations
 // heads, hands, a foot) come to a σ of 8 to 16 %.
 constexpr double of_chance = 0.08;
 
-/// How far each unrated pair of the surface lies off the target beyond what it lies off the source, were that
-/// `size_scale` times as large.
+/// How much farther each pair of the surface without a given σ lies off the target than off the source, were
+/// that `size_scale` times as large.
 std::vector<OutlierAnchor> offsets(const Anchors& anchors, const TriangleMesh& source,
                                    const TriangleMesh& target, double size_scale) {
   const double reach = near_surface * diagonal(source.vertices);
@@ -38,7 +38,8 @@ std::vector<OutlierAnchor> offsets(const Anchors& anchors, const TriangleMesh& s
   return all;
 }
 
-/// The standard deviation of normal errors with these absolute values, robust against a few that are not.
+/// The standard deviation of normal errors with these absolute values, robust against a few outliers: trimmed
+/// by the median absolute deviation (Hampel 1974).
 double robust_deviation(const std::vector<OutlierAnchor>& offsets) {
   std::vector<double> distances;
   for (const OutlierAnchor& offset : offsets) distances.push_back(offset.distance);

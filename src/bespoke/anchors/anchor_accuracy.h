@@ -52,19 +52,17 @@ struct EstimatedAnchors {
   AnchorAccuracy accuracy;
 };
 
-/// Of the source's diagonal, as large as the target is: a σ below it cannot be told from remeshing.
+/// Of the source's diagonal, as large as the target is: a σ below it is within the noise of remeshing.
 inline constexpr double anchor_resolution = 1e-3;
 
 /// Of the source's diagonal: anchors within it belong to the surface, farther ones are points of space.
 inline constexpr double near_surface = 0.02;
 
-/// Estimates σ of the pairs near the source's surface; points of space stay exact. If q is on the source, q'
-/// should be on the target: however the surface fit, freed of the anchors, slides along the target, it moves
-/// q' by this distance at least. An inaccurate pair is off in all three directions alike, so the root mean
-/// square of the distances, those beyond three standard deviations left out, is σ. Below 0.1 % of the
-/// diagonal it cannot be told from the tessellation, and the pairs count as exact. A pair left out has its
-/// own distance as σ; beyond four times the others' it is listed as an outlier. Swapped pairs
-/// (swapped_anchors.h) that gave no accuracy are dropped. Throws InvalidInput for unusable meshes.
+/// Estimates σ of the pairs near the source's surface, mesh units: the root mean square of how far a fit
+/// freed of the anchors moves their sources from their targets, at least, without those beyond 3 σ. Points of
+/// space are exact, and all pairs where σ is below 0.1 % of the diagonal (tessellation). A pair left out has
+/// its own distance as σ; beyond four times the others' it is an outlier. Swapped pairs (swapped_anchors.h)
+/// without a given accuracy are dropped. Throws InvalidInput for unusable meshes.
 EstimatedAnchors estimate_anchor_sigmas(const Anchors& anchors, const TriangleMesh& source,
                                         const TriangleMesh& target);
 

@@ -59,14 +59,11 @@ struct Anchors {
   std::vector<AnchorPatch> patches = {};
 };
 
-/// Reads JSON {"units": …, "pairs": [{"name", "a": [x,y,z], "b": [x,y,z], "weight"? or
-/// "sigma"?}], "curves": [{"name", "a": [[x,y,z], …], "b": [[x,y,z], …], "closed"?, "fixed"?: [[i,j], …]}],
-/// "patches": [{"name", "a": SIDE, "b": SIDE, "exclude"?}]} with a SIDE {"border": [[x,y,z], …]} or
-/// {"faces": [i, …]} (any of the lists may be missing) or, by the ending .csv, rows
-/// name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header row, which may also name sigma alone or
-/// first. Throws FileError, or FormatError naming the file and the line or the pair and what is wrong (not
-/// finite in single precision, weight ≤ 0, sigma < 0, both of them, missing key, two pairs or two patches of
-/// one name, a patch with one side that excludes nothing).
+/// Reads JSON {"units"?, "pairs"?, "curves"?, "patches"?} or, by the ending .csv, rows
+/// name,ax,ay,az,bx,by,bz[,weight[,sigma]] with an optional header row (samples/cookbook/anchors.md). Throws
+/// FileError, or FormatError naming the file, the line or the pair, and what is wrong: a number not finite in
+/// single precision, weight ≤ 0, sigma < 0, both of them, a missing key, two pairs or two patches of one
+/// name, a patch with one side that excludes nothing.
 Anchors read_anchors(const std::filesystem::path& path);
 
 /// The same of a text in JSON, which messages call `name`. anchors_json (anchor_files.h) writes such texts.

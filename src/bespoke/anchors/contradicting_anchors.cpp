@@ -12,9 +12,8 @@
 namespace bespoke {
 namespace {
 
-// The turn of a limb is that of the few anchors nearest: weights fall with this power of the distance. With 4
-// a fist's little finger still contradicts itself. Of 312 contradictions by noise of 2 % on 31 pairs of
-// models 4 leaves 281 and 6 leaves 271; both leave all 127 by anchors exchanged for a neighbour.
+// Weights fall with this power of the distance: the rotation of a limb is that of the few nearest anchors
+// (tests/accuracy/tuning.md).
 constexpr double power = 6;
 constexpr double min_distance = 0.01;  // of the farthest anchor's: nearer ones weigh no more
 constexpr std::size_t min_others = 4;  // fewer tell no turn

@@ -15,13 +15,11 @@ struct ContradictingAnchors {
   double target_difference = 0;  ///< how much more or less their targets are apart, as vectors, mesh units
 };
 
-/// Pairs of exact anchors within 5 % of the targets' diagonal whose targets differ from what the one
-/// similarity of all pairs makes of their sources by more than their distance, and also from what the
-/// similarity of the pairs around them does: a hand may have flipped. Between anchors farther apart a
-/// joint may bend; between these the map would have to stretch space twofold or fold it. Differences up to
-/// the root mean square of those of two places accurate to 0.1 % of the targets' diagonal, as remeshing
-/// leaves them, say nothing. sigmas: as a fit took the pairs, one each, mesh units; empty where it is not
-/// known. By decreasing ratio. None among fewer than 4 pairs.
+/// Pairs of exact anchors within 5 % of the targets' diagonal whose difference, on the target, is off by more
+/// than their distance, both from the similarity of all pairs and from that of the pairs around them: the map
+/// would have to stretch twofold or fold. Places are taken as accurate to 0.1 % of the diagonal (remeshing).
+/// sigmas: one a pair, mesh units, as a fit took them; empty where not known. By decreasing ratio; none among
+/// fewer than 4 pairs.
 std::vector<ContradictingAnchors> contradicting_anchors(const Anchors& anchors,
                                                         const std::vector<double>& sigmas = {});
 

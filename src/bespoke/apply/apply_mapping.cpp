@@ -25,7 +25,7 @@ void require_finite(const Points& x, const std::vector<double>& times) {
       throw InvalidInput("time " + std::to_string(i) + " is not finite: " + std::to_string(times[i]));
 }
 
-/// Whether elastic_argument answers x itself.
+/// Whether elastic_argument returns x itself.
 bool is_asked_at_rest(double t, const MotionOptions& motion) {
   return motion.order != MappingOrder::moving_point || t == 0 || t == 1;
 }

@@ -20,13 +20,11 @@ struct ApplyPointsOptions {
   Progress progress;
 };
 
-/// Writes Ψ(t) of each product's points, as apply_mapping computes it, to where the caller wants it; nothing
-/// is held besides a few thousand points a thread. All products are one stream of points, so that many small
-/// ones cost no more than one large one. `elastic` may be shared by any number of threads that do this at a
-/// time: every point's bits are the same. The seconds of the summary are those of the whole call. Throws
-/// InvalidInput, with what was written so far left as it is, where the sizes of a product differ or are no
-/// multiple of three, and for a point that is not finite, naming product and point; Interrupted when the
-/// caller requests a stop.
+/// Writes Ψ(t) of each product's points, as apply_mapping computes it, to where the caller wants it, a few
+/// thousand points a thread at a time. All products are one stream, so many small ones cost no more than one
+/// large one. Thread-safe over a shared `elastic`, with the same bytes. Throws InvalidInput for sizes that
+/// differ or are no multiple of three and for a point that is not finite, naming product and point, and
+/// Interrupted; what was written so far remains.
 ApplySummary apply_points(const ElasticMap& elastic, const RigidTransform& target_from_source,
                           std::span<const PointSpans> products, const ApplyPointsOptions& options = {});
 

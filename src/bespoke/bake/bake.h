@@ -88,18 +88,11 @@ struct Bake {
   BakeSummary summary;
 };
 
-/// Samples u of the map over its support as a nested pyramid that is fine only where the map needs it, or on
-/// one lattice (src/bespoke/README.md, "Bake"). Cells of the nested pyramid that fold are refined, then
-/// repaired; where not all can be, none is. Those of one lattice stay. What is left is in the summary.
-/// A BakedMap is stored as it is, unless a voxel size is given. Reproduces affine maps exactly (no leaf at
-/// all). Values are rounded to a 32nd of the tolerance or less, so that files compress.
-///
-/// A bake ends. Where u jumps or is steeper than ‖∇u‖ = 2 or so, the tolerance may be missed: voxels stop at
-/// half of it (PyramidBuilder), and the summary says so. Where the whole would take more than max_memory it
-/// throws MemoryLimitError early (from a sample of the map, unless max_leaves bounds it), naming a tolerance
-/// or voxel size that would fit.
-/// Throws InvalidInput for values out of range, and for a map that is not finite or exceeds what half
-/// precision holds.
+/// Samples u of the map over its support as a nested pyramid, or on one lattice (src/bespoke/README.md,
+/// "Bake"); affine maps exactly. Folded cells of a pyramid are refined, then repaired, all or none; the
+/// summary counts the rest. Where ‖∇u‖ > 2 or u jumps, voxels stop at half the tolerance, which may then be
+/// missed. A BakedMap is stored as it is, unless a voxel size is given. Throws MemoryLimitError, naming what
+/// would fit; InvalidInput for values out of range, also of half precision.
 Bake bake(const ElasticMap& map, const BakeOptions& options, const Progress& progress = {});
 
 }  // namespace bespoke

@@ -25,16 +25,11 @@ bool is_packed(const JobGraph& graph, std::size_t job);
 /// working directory, for its path from there is its name; a job that reads or writes the archive itself.
 std::vector<ManifestFault> packing_faults(const JobGraph& graph, const std::filesystem::path& archive);
 
-/// Outputs of finished jobs, with the records of what these were made of, in one tar file:
-///
+/// Outputs of finished jobs and the records of what these were made of, in one tar file:
 ///     mark │ record │ output │ output │ record │ output │ … │ files of records │ end
-///
-/// Mark and records are comments to other programs. Each job is appended as a whole, in the order in which
-/// jobs finish, so whoever kills the writer cuts one at most; what is torn is cut off by the next writer. An
-/// archive that was not finished is read whole once, and outputs that are not those of their records (as a
-/// power failure may leave them, for jobs are not flushed to the disk one by one) do not count. Of two
-/// outputs of one name the later is true, as for `tar -x`. Unpacked in the working directory, outputs and
-/// files of records are what `JobRecords` finds up to date. Thread-safe.
+/// Other programs take mark and records for comments. Each job is appended as a whole; the next writer cuts
+/// off what a killed one left torn and, in an archive without its end, drops outputs that do not match their
+/// records. The later of two outputs of one name counts, as for `tar -x`. Thread-safe.
 class PackedJobs {
  public:
   enum class Access { read, write };

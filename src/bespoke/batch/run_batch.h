@@ -42,19 +42,17 @@ struct BatchOptions {
   PackedJobs* pack = nullptr;
 };
 
-/// What is told while a batch runs; never two at a time. May be empty.
+/// Notifications while a batch runs, never two at a time. May be empty.
 struct BatchEvents {
   std::function<void(std::size_t job)> started;
   std::function<void(std::size_t job, const JobResult& result)> ended;  ///< also of jobs up to date
   std::function<void(const std::filesystem::path& map)> close_map;      ///< no job needs it any more
 };
 
-/// Runs jobs of a graph without faults: each once those that it needs are done, unless its record says that
-/// it is up to date, and as soon as its forecast memory fits. Many jobs run side by side on one thread each;
-/// one that is more than its share of the work that is left takes more. Jobs that lead to the most work start
-/// first, those of one map together. What a job writes does not depend on any of this. Directories of outputs
-/// are made. Returns one result a job; a job that throws is a result. Throws FileError when the archive
-/// cannot be finished.
+/// Runs jobs of a graph without faults, each once those that it needs are done and its forecast memory fits,
+/// unless its record is up to date. Mostly one thread a job; jobs that lead to the most work start first,
+/// those of one map together. Outputs do not depend on any of this; their directories are made. Returns one
+/// result a job; a job that throws is a result. Throws FileError when the archive cannot be finished.
 std::vector<JobResult> run_batch(const JobGraph& graph, const std::vector<JobForecast>& forecasts,
                                  const BatchOptions& options, const BatchEvents& events = {});
 

@@ -28,13 +28,11 @@ struct PointCloudSurface {
   PointCloudSummary summary;
 };
 
-/// An open surface through a cloud: moving least squares (detail/moving_surface.h) of about 20 neighbours, on
-/// a lattice of the cloud's spacing near the points. It ends one to two spacings beyond the outermost points,
-/// so that holes wider than six spacings stay open. On a surface of curvature κ it lies within 0.15 κ h² of
-/// exact points, h = 2.5 spacings, at its boundary twice that (0.002 on a sphere); independent noise of them
-/// is reduced to less than half. The same points in another order give the same bytes (where two lie at one
-/// place and differ in their normals, up to rounding). Throws InvalidInput, naming `what`, for clouds that
-/// are not valid, and where more than 5 % of the normals face against their neighbours.
+/// An open surface through a cloud by moving least squares (detail/moving_surface.h) of about 20 neighbours.
+/// It ends one to two spacings beyond the outermost points; holes wider than six spacings stay open. With h =
+/// 2.5 spacings and curvature κ it lies within 0.15 κ h² of exact points, twice that at boundaries;
+/// independent noise falls below half. The order of the points changes nothing (beyond rounding). Throws
+/// InvalidInput, naming `what`, for invalid clouds and over 5 % of contradicting normals.
 PointCloudSurface point_cloud_surface(const OrientedPoints& cloud, const std::string& what);
 
 /// One line, for instance "cloud of 100000 points, 4.2 apart → 98211 vertices, 195604 faces; points p50 0.1

@@ -69,8 +69,8 @@ class Estimator {
     estimate.centers = static_cast<std::size_t>(sources_.cols());
     estimate.median_spacing = median_spacing_;
     estimate.entries_per_row = entries_per_row(lambda);
-    // Measured on bodies, heads and spheres: 78 to 109 for λ of 1 to 3 % of the diagonal. On a surface the
-    // entries of a row grow like (λ/h)², so all of it like (λ/h)⁷.
+    // Measured (tests/accuracy/tuning.md). On a surface the entries of a row grow like (λ/h)², so all of it
+    // like (λ/h)⁷.
     constexpr double calibration = 100;
     estimate.condition =
         calibration * estimate.entries_per_row * std::pow(std::max(lambda / median_spacing_, 1.0), 5);

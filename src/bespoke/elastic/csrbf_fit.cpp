@@ -106,7 +106,7 @@ struct Solution {
   Eigen::MatrixXd affine;        // 4×3, in the orthonormal basis
 };
 
-/// [Φ Q; Qᵀ 0] [c; a] = [f; g] by the Schur complement Qᵀ Φ⁻¹ Q.
+/// Eq. 16 with its affine tail: [Φ Q; Qᵀ 0] [c; a] = [f; g] by the Schur complement Qᵀ Φ⁻¹ Q.
 class TailedSystem {
  public:
   TailedSystem(const RadiusGraph& graph, const std::vector<double>& values, const FrontCholesky& factor,

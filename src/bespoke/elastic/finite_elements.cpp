@@ -90,7 +90,8 @@ void require_usable(const Points& sources, const Points& targets, const FiniteEl
   if (options.max_levels < 1) throw InvalidInput("finite elements: there must be one level at least");
 }
 
-/// Solves on one level, then adds finer ones where vertices are missed.
+/// Least symmetric Dirichlet energy (Smith, Schaefer 2015) on one level, then on finer ones where vertices
+/// are missed.
 class Solver {
  public:
   /// The first `vertices` of the sources are met, the others are guides.
@@ -201,7 +202,7 @@ class Solver {
     return volume;
   }
 
-  /// Whether any vertex asks for it.
+  /// Returns whether any vertex required it.
   bool refine(const std::vector<double>& residuals) {
     std::vector<std::vector<LatticeCoordinates>> nodes;
     for (const ElementLevel& level : elements_->levels()) nodes.push_back(level.nodes);

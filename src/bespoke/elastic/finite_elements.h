@@ -20,7 +20,7 @@ struct FiniteElementOptions {
   double lambda = 0;         ///< effective distance around the source, > 0, mesh units
   double fit_tolerance = 0;  ///< how far a vertex may be missed, > 0, mesh units of the targets
   /// Largest factor by which a volume and a length may shrink relative to the affine part, at the nodes of
-  /// cells; > 1, no unit. Where vertices want more they give way.
+  /// cells; > 1, no unit. Vertices that need more are missed.
   double max_squeeze = 50;
   double max_length_squeeze = 10;
   int max_levels = 5;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
@@ -53,19 +53,11 @@ struct FiniteElementFit {
   FiniteElementSummary summary;
 };
 
-/// The map E = affine ∘ (id + u) of least distortion that takes sources to targets (3×n each, mesh units),
-///
-///     ∫ ψ(F) dx + Σ_i w/2 · |u(vᵢ) − uᵢ|²,   F = I + ∇u,
-///     ψ(F) = |F|²/2 + |F⁻¹|²/2 − 3 + barriers,
-///
-/// with the symmetric Dirichlet energy (Smith and Schaefer 2015) and barriers at the bounds of
-/// FiniteElementOptions (element_distortion.h). u is trilinear on nested cells around `source`, exactly zero
-/// beyond λ and one coarse cell, and cells are halved where a vertex is missed. w = (mean area of a
-/// vertex)/(compliance), a quarter of the fit tolerance: a vertex gives way by that much under unit stress.
-/// Minimised by limited-memory BFGS from the identity, at first with soft data; no iterate turns a cell over,
-/// which its Bézier coefficients prove. So the stored map is the map, and its certificate the minimiser's
-/// invariant. Throws InvalidInput (sizes, non-finite values, affine part with det ≤ 0, values out of range),
-/// SolverError, MemoryLimitError, Interrupted.
+/// E = affine ∘ (id + u), sources to targets (3×n, mesh units), with least ∫ ψ(I + ∇u) dx + Σ_i w/2 |u(vᵢ) −
+/// uᵢ|², ψ the symmetric Dirichlet energy (Smith, Schaefer 2015) and barriers (element_distortion.h), by
+/// limited-memory BFGS. u is trilinear on nested cells around `source`, zero beyond λ and one coarse cell. w
+/// = (mean area of a vertex) / (a quarter of the fit tolerance). No iterate flips a cell. Throws InvalidInput
+/// (sizes, values, affine part with det ≤ 0), SolverError, MemoryLimitError, Interrupted.
 FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,
                                      const FiniteElementOptions& options, const Progress& progress = {});
 

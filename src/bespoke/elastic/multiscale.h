@@ -82,11 +82,10 @@ struct MultiscaleFit {
 /// less than two layers.
 std::array<MultiscaleFit, 2> halves(const MultiscaleMap& map, const MultiscaleSummary& summary);
 
-/// E(sources) ≈ targets, 3×n each, mesh units. The affine part is the least-squares affine map (or
-/// similarity) of the pairs, the identity along directions in which the sources have no extent. Centres of a
-/// layer are thinned to λ_k/4; λ_k is halved while a residual exceeds the tolerance. A composed scale takes
-/// several layers where residuals are clipped to 0.3 λ_k or a layer is damped to keep ‖∇u_k‖ ≤ 0.9. What
-/// cannot be met (the data folds there) stays in the residuals. Throws InvalidInput (sizes, non-finite
+/// E(sources) ≈ targets, 3×n each, mesh units, after the least-squares affine map or similarity (the identity
+/// along directions without extent). Centres are λ_k/4 apart; λ_k is halved while a residual exceeds the
+/// tolerance. A composed scale takes several layers where residuals are clipped to 0.3 λ_k, or a layer is
+/// damped to ‖∇u_k‖ ≤ 0.9; contradicting data stays in the residuals. Throws InvalidInput (sizes, non-finite
 /// values, affine part with det ≤ 0, values out of range), SolverError.
 MultiscaleFit fit_multiscale(const Points& sources, const Points& targets, const MultiscaleOptions& options,
                              const Progress& progress = {});

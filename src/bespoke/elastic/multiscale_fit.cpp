@@ -54,7 +54,7 @@ void require_usable(const Points& sources, const Points& targets, const Multisca
 }
 
 /// Damps the layer's coefficients around places where its gradient may exceed the bound, then scales what is
-/// left. Answers the bound that holds now, and whether the layer met it untouched.
+/// left. Returns the bound that holds now, and whether the layer met it untouched.
 struct LimitedLayer {
   double bound = 0;
   bool untouched = true;

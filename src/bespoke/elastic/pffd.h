@@ -22,13 +22,10 @@ std::string to_string(const PffdSummary& summary);
 std::vector<Figure> figures(const PffdSummary& summary);
 
 /// The paper's p-FFD as printed (IV.E, Eq. 18): E(x) is the mean of the affine maps of the faces whose centre
-/// is nearer to x than 1.5 times the nearest centre, with weights 1/(1e-8 + d³), d the distance of the
-/// centre from x and the constant in mesh units³. A face's map carries its frame (corner, two edges, normal
-/// scaled by the square root of the area ratio) onto the fitted face's.
-///
-/// Farther than λ from the source, where the paper has no product, E is the least-squares affine map of the
-/// vertices. E jumps there and wherever a face enters or leaves the mean; its gradient is that between jumps.
-/// SmoothPffdMap is the form without jumps.
+/// is within 1.5 times the nearest centre's distance, with weights 1/(1e-8 + d³), d in mesh units. A face's
+/// map carries its frame (corner, two edges, normal scaled by the root of the area ratio) onto the fitted
+/// face's. Beyond λ E is the least-squares affine map of the vertices. E jumps there and where faces enter or
+/// leave the mean; its gradient is that between jumps. SmoothPffdMap is the form without jumps.
 class PffdMap : public ElasticMap {
  public:
   /// source: reference; fitted: 3×n, its vertices on the target (source frame); lambda > 0, mesh units.

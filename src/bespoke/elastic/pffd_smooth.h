@@ -10,13 +10,10 @@ namespace bespoke {
 class ExactMapReader;
 class ExactMapWriter;
 
-/// p-FFD (IV.E) with weights that make it a continuous function of position: every source face carries the
-/// affine map of its frame (corner, two edges, normal scaled by the square root of the area ratio) onto the
-/// fitted face, and E(x) blends the faces near x with weights area · (1 − s)³ / s², s = (distance / λ)², that
-/// grow without bound on the face and fall to zero at distance λ; the least-squares affine map of the
-/// vertices takes part with a constant weight, so that E joins it continuously at λ. On the source surface E
-/// is the piecewise linear map onto the fitted one, exactly; there the gradient is the mean of the touching
-/// faces'.
+/// p-FFD (IV.E) as a continuous function: E(x) blends the affine maps of the faces near x (frames as PffdMap)
+/// with weights area · (1 − s)³ / s², s = (distance / λ)², and the least-squares affine map of the vertices
+/// with a constant weight, which E joins continuously at λ. On the source surface E is exactly the piecewise
+/// linear map onto the fitted one; the gradient there is the mean of the touching faces'.
 class SmoothPffdMap : public ElasticMap {
  public:
   /// source: reference; fitted: 3×n, its vertices on the target (source frame); lambda > 0, mesh units.

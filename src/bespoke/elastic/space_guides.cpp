@@ -18,8 +18,7 @@ namespace {
 // on the surface.
 constexpr double offset_share = 0.4;
 constexpr double min_clearance = 0.9;  // offsets: nearer to a surface is nearer to another part
-// By which guides may part or come together: 3 leaves folds to repair on an adult and a toddler, 1.5 drops
-// three times as many for the same products.
+// Factor by which guides may part or approach each other (tests/accuracy/tuning.md).
 constexpr double max_strain = 2;
 
 struct Guide {

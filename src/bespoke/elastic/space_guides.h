@@ -13,13 +13,11 @@ struct SpaceGuides {
   double offset = 0;  ///< from the surface, mesh units
 };
 
-/// Guides at 0.4 λ from the source, about half of that apart: at v + d n for a vertex v and the mean normal n
-/// of the vertices within d, or one edge, that face as v does, taken to v' + s d R n, with R the
-/// least-squares rotation of these vertices and s² the factor of the whole area, which no pose changes. None
-/// where another part of the source, or of the fitted source, is nearer than v: space between fingers goes as
-/// these require. Nor where two guides less than d apart, before or (measured by s) after, come to lie more
-/// than twice as far apart or as near: space between an arm and a hip that approach each other. fitted: 3×n;
-/// lambda > 0, mesh units. Throws InvalidInput for another number of vertices and meshes that are not valid.
+/// Guides at v + d n, d = 0.4 λ, about d/2 apart, taken to v' + s d R n: n the mean normal of the vertices
+/// within d that face as v does, R their least-squares rotation, s² the factor of the whole area. None where
+/// another part of the source or of the fitted source is nearer than v, nor where two guides less than d
+/// apart would change their distance more than twofold. fitted: 3×n; lambda > 0, mesh units. Throws
+/// InvalidInput for another number of vertices and for invalid meshes.
 SpaceGuides space_guides(const TriangleMesh& source, const Points& fitted, double lambda);
 
 }  // namespace bespoke

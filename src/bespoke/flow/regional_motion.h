@@ -12,8 +12,8 @@ struct RegionalMotion {
 };
 
 /// By the gradients of the faces alone: area-weighted means over balls of 5 % of the source's bounding-box
-/// diagonal tell limbs that turn from faces that a fit has tilted. Rotations lie in [0, π] (SurfacePath knows
-/// how a larger one came about). fitted: 3×n, the whole's rigid motion removed, mesh units.
+/// diagonal separate limbs that turn from faces that a fit has tilted. Rotations lie in [0, π] (SurfacePath
+/// resolves larger ones). fitted: 3×n, the whole's rigid motion removed, mesh units.
 RegionalMotion regional_motion(const TriangleMesh& source, const Points& fitted);
 
 /// Into how many steps a motion is divided so that each is small enough for one elastic map: 1 up to 60° and

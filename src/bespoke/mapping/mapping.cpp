@@ -40,15 +40,18 @@ Points move_points(const Points& x, const Points& elastic_image, const RigidTran
 
   const Vector3 translation = t * target_from_source.translation;
   switch (options.order) {
+    // Eq. 1.
     case MappingOrder::elastic_first: {
       const Matrix3 rotation = rotation_at(target_from_source.rotation, options.path, t);
       return (rotation * ((1 - t) * x + t * elastic_image)).colwise() + translation;
     }
+    // Fig. 4.
     case MappingOrder::rigid_first: {
       const Matrix3 rotation = rotation_at(target_from_source.rotation, options.path, t);
       const Matrix3 elastic_rotation = t * target_from_source.rotation;
       return (rotation * x + elastic_rotation * (elastic_image - x)).colwise() + translation;
     }
+    // Eq. 19.
     case MappingOrder::moving_point:
       return (1 - t) * rigidly_moved(x, target_from_source, t, options.path) +
              t * (target_from_source * elastic_image);

@@ -110,7 +110,7 @@ class Builder {
     return parts;
   }
 
-  // By the surface-area heuristic over bins of the centres along their longest axis.
+  // By the surface-area heuristic over bins of the centres along their longest axis (Wald 2007).
   int split(const Range& range) {
     const std::span<Item> all = items(range);
     Box centers;

@@ -62,11 +62,11 @@ std::vector<int> unasked_neighbours(const VertexAdjacency& adjacency, const std:
 /// A connected part of what is enclosed.
 struct EnclosedPart {
   Cavity cavity;
-  // Of its faces, those included that its rim runs along; mesh units squared, mesh units.
+  // Of its faces, including those along its boundary; mesh units squared; length of the boundary, mesh units.
   double area = 0, rim = 0;
 
-  /// A cavity is wider than its mouth. What has as long a rim as a disc of its area, or a longer one, is a
-  /// crease between parts that touch, and opens as these part.
+  /// A cavity is wider than its opening. One whose boundary is at least as long as that of a disc of its area
+  /// is a crease between parts that touch, and opens as these separate.
   bool is_crease() const { return rim * rim >= 4 * std::numbers::pi * area; }
 };
 

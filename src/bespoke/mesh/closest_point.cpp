@@ -172,7 +172,7 @@ Distances measure_boxes(const BoxTree::Node& node, const float (&low)[3], const 
   return squared;
 }
 
-/// The best answer among the triangles asked so far.
+/// The closest point on the triangles visited so far.
 class Nearest {
  public:
   Nearest(const Vector3& x, const ClosestPointQuery& query) : x_(x), query_(query) {
@@ -180,7 +180,7 @@ class Nearest {
     reach_ = round_up(best_.squared_distance * slack);
   }
 
-  /// Nodes farther than this (squared) hold no better answer.
+  /// Squared distance; nodes farther away hold no closer point.
   float reach() const { return reach_; }
 
   void offer(const Triangle& triangle, const Vector3& normal) {

@@ -8,15 +8,13 @@
 namespace bespoke {
 namespace {
 
-// Of the target's diagonal. Fifteen right pairs of each of five pairs of models, left out one by one, came to
-// lie within 2.7 %; clicks displaced by 15 % on ten, at 11.6 % or farther.
+// Of the target's diagonal: farther from it a pair is not met (tests/accuracy/tuning.md).
 constexpr double unmet = 0.04;
 // Of the pair's σ, if that is more: an inaccurate pair is not met anyway.
 constexpr double unmet_sigmas = 4;
 
-// Right pairs of 31 pairs of models: .63 at most, except for armpits of one body with its arms overhead, .93.
-// Clicks displaced by 15 %: 1.0 or more there or at a neighbour, except for fingers that bend with the
-// click, .5, whose pairs the others contradict.
+// Logarithmic, around an anchor: twofold. Correct anchors cause less, displaced ones more
+// (tests/accuracy/tuning.md).
 constexpr double max_strain = std::numbers::ln2;
 constexpr double max_strain_of_contradicted = max_strain / 2;
 

@@ -20,7 +20,7 @@ namespace {
 
 /// Places to choose from, about 1 to 2 % of the diagonal apart on a body.
 constexpr std::size_t candidates = 1000;
-/// A place counts as uncertain as the median of so many places around it: single vertices slip off edges.
+/// A place counts as uncertain as the median of so many places around it: single vertices slide off edges.
 constexpr std::size_t neighbours = 7;
 /// Of the diagonal: within about so much of a pair, another one says little. Half of the distance that
 /// maps reach by default, so that thirty pairs or so cover a body.

@@ -16,13 +16,9 @@ constexpr int halvings_on_path = 3, halvings_by_layers = 2;
 // Of a plan; most have cost a bake that folded.
 constexpr std::size_t max_halved_steps = 16;
 
-/// Bakes a chain of planned steps, the last one first. A step that folds, or is foreseen to, is halved, as
-/// are its halves, and the steps after it are kept. But halves share what their step had to say, and later
-/// ones leave those before them fewer voxels: where there are half as many steps again as were planned, equal
-/// ones take their place: the plan's number doubled until they have room. Of eleven pairs that this concerns
-/// a body is whole whose hands had come off, bodies that raise or lower their arms meet the vertices that
-/// halves had missed, in about the same time, a bit farther off by the bake, and a scan in 301 pieces takes
-/// twice as long.
+/// Bakes a chain of planned steps, the last one first. A step that folds, or is predicted to, is halved, as
+/// are its halves; the steps after it are kept. Where that makes half as many steps again as were planned,
+/// equal steps replace them, the plan's number doubled until they have room (tests/accuracy/tuning.md).
 class BakeOfAPlan {
  public:
   BakeOfAPlan(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,

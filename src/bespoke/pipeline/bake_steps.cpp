@@ -123,9 +123,8 @@ bool finer_steps_help(const BakedSteps& baked, const BakeOptions& options) {
   return met && leaves < options.max_leaves.value_or(4 * leaves) / 2;
 }
 
-/// Whether a step that misses its tolerance has less than half of an even share of the leaves. From there on
-/// it shows: of a body that raises its arms a step with 0.4 of a share missed by 5 cm and turned 34 faces
-/// over. Shares of 0.6 cost a tenth of the error of even ones, and baking again a third of the time.
+/// Whether a step that misses its tolerance has less than half of an even share of the leaves
+/// (tests/accuracy/tuning.md).
 bool has_starved_step(const BakedSteps& baked, std::size_t max_leaves) {
   const std::size_t share = max_leaves / baked.steps.size();
   for (std::size_t k = 0; k < baked.steps.size(); ++k)

@@ -21,15 +21,11 @@ bool is_to_be_divided(const BakedSteps& baked, const std::vector<bool>& divisibl
 /// Adds a step's counts and levels to those of the whole; its error is not touched.
 void add_step(const BakeSummary& step, BakeSummary& whole);
 
-/// Bakes every step of a chain so that the whole meets the tolerance, the last one first: errors add up along
-/// a chain and later steps may magnify those of earlier ones, so that each step's are measured at the end of
-/// the chain, and held against a fraction of the tolerance. Then the whole is measured; where it misses the
-/// tolerance although every step met its own, all are baked once more, finer by what was missed. surfaces:
-/// 3×n per step, where the source's vertices are when it begins; faces: the source's. One step is baked as
-/// bake does. divisible: where not empty, whether a step may be divided, one per step; one of these that
-/// folds ends the baking, and the result holds it and the steps after it only. done: last steps of the
-/// chain as they were baked before, taken as they are. The steps share BakeOptions::max_leaves; where
-/// dividing left one less than half of an even share, all are baked once more.
+/// Bakes a chain, the last step first, so that the whole meets the tolerance: each step's error is measured
+/// at the end of the chain; where the whole misses, all are baked again, finer. surfaces: 3×n a step, the
+/// source's vertices before it; faces: the source's. divisible: one a step, or empty; the first such step
+/// that folds ends the baking, and the result holds it and later ones only. done: last steps baked before.
+/// Steps share BakeOptions::max_leaves; if one gets less than half of an even share, all are baked again.
 BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
                       const BakeOptions& options, const std::vector<bool>& divisible = {},
                       BakedSteps done = {}, const Progress& progress = {});

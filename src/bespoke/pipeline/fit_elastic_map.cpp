@@ -253,8 +253,8 @@ bool is_divisible(const FittedMapping& fitted, std::size_t step) {
 }
 
 bool is_foreseen_to_fold(const FittedMapping& fitted, std::size_t step) {
-  // Of 27 pairs fitted both ways 20 of 21 steps beyond it fold when baked (a scan's loose pieces, taken for a
-  // source, do not), and of 385 others 17. Maps of fewer scales are smooth, however many layers they take.
+  // Steps beyond it mostly fold when baked (tests/accuracy/tuning.md). Maps of fewer scales are smooth,
+  // however many layers they take.
   constexpr double max_layers_a_scale = 2.5;
   constexpr std::size_t usual_scales = 6;
   const CompositionOfMaps& composition = elastic_method(fitted.summary.elastic.method).composition;

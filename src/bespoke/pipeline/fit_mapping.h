@@ -55,16 +55,11 @@ const TriangleMesh& registered_source(const FittedMapping& fit, const TriangleMe
 /// confidence.
 FittedMapping with_loose_parts(FittedMapping fit, const TriangleMesh& source);
 
-/// The whole way of section IV: rigid part, coarse warp, surface fitting, elastic map. Anchors without weight
-/// and σ get a σ first; swapped ones, and outliers, are left out of everything but the residuals
-/// (anchor_accuracy.h). Exact
-/// anchors farther from the source's surface than the fit tolerance are points of their own for E (p-FFD,
-/// which knows faces only, leaves them out). Without anchors the surfaces alone are aligned
-/// (fit_unanchored.h). Throws InvalidInput, SolverError (also when the models cannot be aligned with
-/// certainty), MemoryLimitError. Loose parts of the source, without a counterpart on the target, are left out
-/// of the fit (registered_parts.h), except for the printed method and models taken as given. Curves and
-/// borders of patches (anchors.h) take a surface fitting more, which finds where along them their points lie;
-/// the borders are curves that every patch has.
+/// Section IV as a whole: rigid part, coarse warp, surface fit, elastic map. Anchors without weight and σ get
+/// a σ first, outliers are left out (anchor_accuracy.h); exact ones off the surface are points of E's own
+/// (not of p-FFD); without anchors the surfaces are aligned (fit_unanchored.h). Loose parts without a
+/// counterpart (registered_parts.h) are left out. Curves and borders of patches take a further surface fit.
+/// Throws InvalidInput, SolverError (also for an uncertain alignment), MemoryLimitError.
 FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                           const FitOptions& options, const Progress& progress = {});
 

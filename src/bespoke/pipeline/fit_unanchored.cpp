@@ -15,8 +15,8 @@
 namespace bespoke {
 namespace {
 
-/// Of the target's area that the fitted source must reach. Right fits of eleven pairs reach 0.9998 and more;
-/// where fingers or arms were left behind, 0.85 to 0.98 are reached.
+/// Of the target's area that the fitted source must reach: less where a limb was left behind
+/// (tests/accuracy/tuning.md).
 constexpr double min_covered = 0.99;
 
 /// Vertices at which the two directions lead: each some tenth of the diagonal from the next.

@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t sampled_vertices = 500;
 constexpr std::size_t one_in = 20;
 
-// Nodes are stored as floats, of 24 bits: what is shrunk below that is lost, and so is the way back.
+// Nodes are stored as floats, of 24 bits: what is shrunk below that is lost, and so is the inverse.
 constexpr double min_determinant = 6e-8;
 
-// A source scaled against its anchors by 2.54 grew to 34 and was useless.
+// Of the whole surface: a source scaled against its anchors grows beyond any use.
 constexpr std::size_t max_steps = 24;
 
 }  // namespace

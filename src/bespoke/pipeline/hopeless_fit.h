@@ -4,7 +4,7 @@
 
 namespace bespoke {
 
-/// What tells early that no useful map follows from a fit.
+/// Early signs that no useful map follows from a fit.
 struct MapHealth {
   std::size_t steps = 1;
   /// Determinants of ∇E at places on the source, over the cube of the whole surface's growth: one in twenty

@@ -26,7 +26,7 @@ struct OpenedMap {
   double source_diagonal = 0;  ///< of the source's bounding box, mesh units
   /// Of the two models of the asset (content_hash), whichever way the map leads.
   std::string source_hash = {}, target_hash = {};
-  std::string unit = {};  ///< of all lengths, "unknown" when nobody said
+  std::string unit = {};  ///< of all lengths, "unknown" when none was stated
   Box model_box = {};     ///< of the model that products are around: the source, the target of an inverse
 };
 

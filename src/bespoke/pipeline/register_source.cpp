@@ -219,10 +219,8 @@ std::vector<AnchorPair> pairs_of(const GeodesicCounterparts& counterparts, doubl
   return pairs;
 }
 
-/// Whether the registration may be wrong somewhere: missed parts are uncovered, displaced ones distorted.
-/// With five anchors, of the pairs of CounterpartOptions, those that had lost a limb were distorted by 0.18
-/// to 0.3; right ones in one pose by 0.03 to 0.16, and covered 0.995 and more, except for scans with debris
-/// (0.91, 0.98).
+/// Whether the registration may be wrong somewhere: missed parts are uncovered, displaced ones distorted
+/// (tests/accuracy/tuning.md).
 bool is_suspect(const PlacementFigures& registered) {
   return registered.distortion > 0.15 || registered.covered < 0.99;
 }
@@ -232,13 +230,9 @@ bool is_suspect(const PlacementFigures& registered) {
 /// better.
 void register_by_counterparts(FittedMapping& result, const RegistrationInput& input,
                               const EstimatedAnchors& estimated, const Progress& progress) {
-  // Of the target's diagonal. 0.5 and 2 % on the pairs of CounterpartOptions: errors x 1.15 and 1.10 when
-  // always taken.
-  constexpr double accuracy = 0.01;
-  constexpr double far_off = 3;  // standard deviations
-  // Of the misfits. On the pairs of CounterpartOptions, of which 5, 8, 12, 16 anchors were kept: below 0.99
-  // no error grew; from 0.99 to 1 it changed by x 0.92 to 1.10.
-  constexpr double clearly_better = 0.99;
+  constexpr double accuracy = 0.01;        // of the target's diagonal (tests/accuracy/tuning.md)
+  constexpr double far_off = 3;            // standard deviations
+  constexpr double clearly_better = 0.99;  // ratio of the misfits (tests/accuracy/tuning.md)
   const Stopwatch watch;
   const GeodesicCounterparts counterparts = remote_counterparts(input, estimated.anchors, progress);
   if (counterparts.sources.cols() == 0) return;

@@ -30,24 +30,11 @@ struct CarryOptions {
   const FaceSplits* splits = nullptr;
 };
 
-/// Carries a product: writes the file `input` once for every frame of the motion, with positions, normals
-/// and tangents moved and every other byte as it was. The ending of the input's name says what it is
-/// (`product_endings`); the outputs are files of the same kind, one a frame.
-///
-/// A normal n becomes cof(J) n, a tangent t becomes J t, both as long as they were, with J the Jacobian at
-/// their vertex (those that a glTF file rounds to whole numbers become unit vectors); an OBJ normal of
-/// several vertices becomes several where these differ. Text is written with as many digits as the file has,
-/// never fewer than 1e-7 of its diagonal needs; a number that would be read back as it was keeps its
-/// characters. The vertices of a glTF mesh move where its node shows it; a mesh that nodes show in several
-/// places becomes several.
-///
-/// Points of the options' parts move with their part, and so does what lies at the same places; no two parts
-/// may have a place in common. Points that splits add to a part move with it, but do not tell how.
-///
-/// Blocks of a file are read, moved and written on all threads; memory does not grow with the file except for
-/// the normals of OBJ files and for glTF. Throws FileError, InvalidInput for an unknown ending, an unknown
-/// part and for images that the file's numbers cannot hold, FormatError naming the line, the byte or the
-/// element at fault, and what the motion throws. Each output is complete or untouched.
+/// Writes the file `input` once for every frame of the motion, with positions, normals (as cof(J) n) and
+/// tangents (J t) moved, their lengths kept, and every other byte as it was; the endings must agree. Text
+/// keeps its digits. Points of the options' parts, and what lies at the same places, move with their part.
+/// Each output is complete or untouched. Throws FileError, InvalidInput (ending, unknown part, images that do
+/// not fit), FormatError naming line, byte or element, and what the motion throws.
 CarrySummary carry_product(const std::filesystem::path& input,
                            const std::vector<std::filesystem::path>& outputs, const PointMotion& motion,
                            const CarryOptions& options = {});

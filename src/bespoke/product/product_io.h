@@ -32,24 +32,18 @@ struct Product {
   Points normals;            ///< 3×n, as they were read: of a PLY or OFF file without faces, or empty
 };
 
-/// OBJ, PLY (ascii and binary), STL, OFF, glTF (.gltf, .glb) or 3MF, by the ending of the name, every number
-/// as the double that it says. Vertices keep their order and are never merged. STL, which shares no vertices,
-/// and glTF, which divides surfaces along the seams of their texture, are the exceptions: corners at exactly
-/// the same position become one vertex in order of first use, and a triangle whose corners coincide is left
-/// out. Of a glTF file all triangles are read where its nodes show them, without morph targets, in its bind
-/// pose; of a 3MF file where its build shows them. A product may have no faces (a point set). Texture
-/// coordinates are read from OBJ and PLY. Throws FileError when the file cannot be opened, InvalidInput for
-/// an unknown ending, FormatError naming the file and the line (binary: the element) of a bad index, number
-/// or corner, and for coordinates beyond the range of floats, in which maps are stored.
+/// Reads OBJ, PLY, STL, OFF, glTF (.gltf, .glb) or 3MF by the ending (samples/cookbook/formats.md). Vertices
+/// keep their order and are never merged, except in STL and glTF: coincident corners become one vertex,
+/// degenerate triangles are dropped. glTF in its bind pose. There may be no faces (a point set). Throws
+/// FileError, InvalidInput for an unknown ending, FormatError naming the file and the line (binary: the
+/// element) of a bad index, number or corner, and for coordinates beyond the range of floats.
 Product read_product(const std::filesystem::path& path);
 
-/// Writes the product with its vertices as they are now, as floats (text: the shortest that are read back as
-/// the same floats) or, where floats would lose 1e-7 of the bounding box's diagonal, as doubles; STL knows
-/// only floats. Normals, where the product had them, are recomputed; texture coordinates are written to OBJ.
-/// STL and 3MF hold triangles without texture, so polygons become fans there; 3MF says the product's unit, or
-/// millimetres where it has none, and leaves out triangles of which corners coincide. Atomic. Throws
-/// FileError, InvalidInput for an unknown ending, for coordinates that a float cannot hold, for a point set
-/// as STL or 3MF, and for a 3MF file of a unit that the format does not know.
+/// Writes the product as floats or, where these would lose 1e-7 of the bounding box's diagonal, as doubles
+/// (STL: floats). Normals, if any, are recomputed; texture coordinates go to OBJ. STL and 3MF hold triangles:
+/// polygons become fans; 3MF states the product's unit (default millimetres) and omits degenerate triangles.
+/// Atomic. Throws FileError, InvalidInput for an unknown ending, for coordinates beyond floats, for a point
+/// set as STL or 3MF, and for units that 3MF lacks.
 void write_product(const std::filesystem::path& path, const Product& product);
 
 /// By the ending of the name.

@@ -17,7 +17,7 @@ namespace {
 
 double fraction(double x) { return x - std::floor(x); }
 
-// Point i of the R3 sequence, which covers the unit cube evenly.
+// Point i of the R3 sequence (Roberts 2018), which covers the unit cube evenly.
 Vector3 spread_over_cube(std::size_t i) {
   constexpr double root = 1.22074408460575947536;  // of x⁴ = x + 1
   const auto n = static_cast<double>(i);

@@ -7,15 +7,11 @@
 
 namespace bespoke {
 
-/// How far a surface was stretched or squeezed around places on it: with s₁, s₂ a face's principal stretches
-/// and s² the factor of the whole surface's area,
-///   √ (mean of ln² (s₁ / s) + ln² (s₂ / s)),
-/// by area before, over the faces whose centre lies within `reach` of the place, and the place's own. 0
-/// under a similarity; ln 2 where all is twice as long in one direction. A stretch counts as tenfold at most.
-///
-/// `registered`: 3×n, the surface's vertices after. `places`: on the surface before; `reach` > 0, mesh units.
-/// Faces without area before do not count. Returns a value a place. Throws InvalidInput when the sizes
-/// differ, a value is not finite, or the surface has no area before or after.
+/// Root mean square logarithmic (Hencky) strain of a surface around places on it: with s₁, s₂ a face's
+/// principal stretches (tenfold at most) and s² the factor of the whole area, √ (mean of ln² (s₁ / s) + ln²
+/// (s₂ / s)) by area before, over the faces within `reach` (> 0, mesh units) and the place's own; 0 under a
+/// similarity. registered: 3×n, vertices after. places: on the surface before. Returns one a place. Throws
+/// InvalidInput for sizes that differ, values that are not finite, and surfaces without area.
 Eigen::VectorXd strain_around(const TriangleMesh& surface, const Points& registered,
                               const std::vector<SurfacePoint>& places, double reach);
 

@@ -13,8 +13,7 @@ struct UncoveredArea {
   double distance = 0;  ///< of the farthest place there from the source, mesh units; 0 without any
   Vector3 farthest = Vector3::Zero();  ///< that place, mesh units
 
-  /// Worth reporting. Of 35 pairs of models with all their anchors none leaves more than 0.6 % uncovered; of
-  /// hands in a fist whose fingers lack anchors 3 to 4 %.
+  /// Worth reporting: more than pairs with all their anchors leave (tests/accuracy/tuning.md).
   bool is_notable() const { return share > 0.01; }
 };
 

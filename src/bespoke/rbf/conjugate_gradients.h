@@ -6,14 +6,9 @@ namespace bespoke {
 
 /// Conjugate gradients (Hestenes, Stiefel 1952) for the three rows of a right-hand side at once: A x = b with
 /// A n×n, symmetric positive definite, x and b 3×n. `solution` holds the start and becomes the result;
-/// `residual` is that of the start. A row that is solved stays as it is. Returns the number of steps.
-///
-/// `System` offers, all const:
-///   Points multiply(const Points& x)                    A x
-///   Points precondition(const Points& residual)         M⁻¹ r; r itself without a preconditioner
-///   Vector3 products(const Points& a, const Points& b)  the scalar product of each row
-///   bool solved(const Points& residual, const Vector3& products, int steps)
-///                                                       products: of r and M⁻¹ r; may throw
+/// `residual` is that of the start. Solved rows stay. Returns the number of steps. `System`, const:
+/// multiply(x): A x; precondition(residual): M⁻¹ r; products(a, b): one scalar product a row;
+/// solved(residual, products, steps): products of r and M⁻¹ r, may throw.
 template <class System>
 int conjugate_gradients(const System& system, Points& solution, Points residual) {
   const auto ratio = [](const Vector3& a, const Vector3& b) -> Vector3 {

@@ -35,14 +35,14 @@ RadiusGraph radius_graph(const Points& points, double radius) {
 
 namespace {
 
-/// Splits sets of points until they are small or no plane separates them.
+/// Nested dissection (George 1973): splits sets of points until they are small or no plane separates them.
 class Dissection {
  public:
   Dissection(const Points& points, const RadiusGraph& graph, double radius,
              std::vector<EliminationTree::Front>& fronts)
       : points_(points), graph_(graph), radius_(radius), fronts_(fronts), label_(graph.start.size() - 1, 0) {}
 
-  /// Appends the fronts of `set`, children first; answers the index of the last.
+  /// Appends the fronts of `set`, children first; returns the index of the last.
   int dissect(std::vector<int> set) {
     constexpr std::size_t largest_leaf = 192;
     EliminationTree::Front front;

@@ -78,6 +78,7 @@ void FrontCholesky::add_child(int child, const Front& front, const Eigen::Matrix
     }
 }
 
+/// The multifrontal method (Duff, Reid 1983).
 Eigen::MatrixXd FrontCholesky::factor(int index) {
   const Front& front = tree_.fronts()[std::size_t(index)];
   Eigen::MatrixXd child_updates[2];

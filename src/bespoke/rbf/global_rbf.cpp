@@ -78,7 +78,7 @@ struct Solution {
   Eigen::Matrix<double, 4, 3> affine;
 };
 
-/// Minimises over c ⊥ tail: the conditionally definite system [K P; Pᵀ 0] [c; a] = [f; 0].
+/// Eq. 7–10, a polyharmonic spline (Duchon 1977) over c ⊥ tail: [K P; Pᵀ 0] [c; a] = [f; 0].
 class NullSpaceSolver {
  public:
   NullSpaceSolver(Eigen::MatrixXd kernel, const Eigen::MatrixX4d& tail)

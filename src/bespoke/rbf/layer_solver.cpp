@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t grain = 1024;
 
-/// The kernel matrix of a layer; the diagonal entries are among those of the graph.
+/// The kernel matrix of a layer, Wendland's C4 function (1995; kernels.h); the diagonal entries are among
+/// those of the graph.
 class KernelSystem {
  public:
   /// tolerance: largest residual, in the unit of the values.

@@ -29,6 +29,7 @@ void require_weighted_pairs(const Points& source, const Points& target, const Ei
 
 }  // namespace
 
+// Ridge regression (Hoerl, Kennard 1970), direction by direction.
 RegularisedAlignment align_regularised(const Points& source, const Points& target,
                                        const Eigen::VectorXd& weights) {
   require_weighted_pairs(source, target, weights);

@@ -4,12 +4,11 @@
 
 namespace bespoke {
 
-/// What point pairs say of an affine map, and how far their spread lets them say it. With the sources'
-/// principal directions d_k, widest first, σ_k their standard deviation along d_k, s R the similarity of
-/// least squares, D the least-squares slopes of what it leaves, and ρ_k the standard deviation of a
-/// coordinate that a map with slopes along wider directions only leaves, all in the sources' unit,
-///   A = s R + Σ κ_k D d_k d_kᵀ,    κ_k = σ_k² / (σ_k² + ρ_k²):
-/// ridge regression (Hoerl, Kennard 1970). Pairs in one plane give no slope across it, however they err.
+/// The affine map of point pairs, as far as their spread determines it. With principal directions d_k of the
+/// sources, widest first, σ_k their standard deviations, s R the least-squares similarity, D the slopes of
+/// its residuals, and ρ_k the standard deviation without a slope along d_k, in the sources' unit:
+///   A = s R + Σ κ_k D d_k d_kᵀ,    κ_k = σ_k² / (σ_k² + ρ_k²),
+/// ridge regression (Hoerl, Kennard 1970). Pairs in one plane give no slope across it.
 struct RegularisedAlignment {
   Similarity similarity;
   AffineMap affine;                      ///< drawn towards the similarity where κ is small

@@ -5,6 +5,7 @@
 
 namespace bespoke {
 
+// Umeyama 1991.
 Similarity align_similarly(const Points& source, const Points& target, const Eigen::VectorXd& weights) {
   const double total = weights.sum();
   const Vector3 source_mean = source * weights / total, target_mean = target * weights / total;

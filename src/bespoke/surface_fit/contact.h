@@ -45,13 +45,11 @@ struct ContactFit {
   ContactSummary summary;
 };
 
-/// Moves the vertices of a fitted surface (3×n, mesh units, the source's faces) apart where the target
-/// touches itself: a vertex and the nearest point that faces it are in contact when they lie on the same side
-/// of each other as on no source (signed distance below the gap) although the source keeps them at more than
-/// gap / compression. Each gives way by half, the vertices around follow smoothly. Sheets that lie back to
-/// back (the two sides of an ear) are no contact. Where parts are too folded to be parted, the step with
-/// the fewest contacts is the result. Throws InvalidInput for sizes that differ or options out of range,
-/// SolverError, Interrupted.
+/// Separates parts of a fitted surface (3×n, mesh units, the source's faces) where the target touches itself:
+/// a vertex and the nearest point facing it are in contact if their signed distance is below the gap although
+/// the source keeps them more than gap / compression apart. Each moves by half, vertices around follow
+/// smoothly; the step with the fewest contacts is the result. Sheets back to back (an ear's sides) are no
+/// contact. Throws InvalidInput for sizes that differ or options out of range, SolverError, Interrupted.
 ContactFit separate_contacts(const TriangleMesh& source, const Points& fitted, const ContactOptions& options,
                              const Progress& progress = {});
 

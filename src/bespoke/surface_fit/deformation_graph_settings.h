@@ -6,8 +6,7 @@
 namespace bespoke {
 
 // Every tuned constant of the default surface fit, one struct for each stage. "Diagonal" is that of the
-// bounding box of the aligned source. tests/accuracy/tuning.md has the experiments behind the values, one row
-// each; a constant without a row there has been given one value only.
+// bounding box of the aligned source. The experiments behind the values: tests/accuracy/tuning.md.
 
 /// One similarity for the whole source (similarity_fit.h), by iteratively reweighted least squares.
 struct SimilaritySettings {
@@ -58,7 +57,7 @@ struct NodeSettings {
 struct BendingSettings {
   double squared_width = 3;    ///< squared spacings: a neighbour's weight is exp(−r² / this)
   double weight_floor = 1e-2;  ///< couples distant components, where the exponential vanishes
-  /// Fixes slopes across a flat neighbourhood, which no node shows; beside a Gram matrix of order 1.
+  /// Added to a Gram matrix of order 1: fixes slopes across a flat neighbourhood, which no node determines.
   double slope_penalty = 1e-3;
   /// Bounds a local scale over the median one, either way, where the surface has collapsed. A node bends by
   /// its area at rest times the squared scale: a grown area counts as it is now, except where a pose grew it.
@@ -122,8 +121,8 @@ struct CavitySettings {
 
 /// Whole cavities (mesh/cavities.h) that the target lacks (unmatched_cavities.h).
 struct UnmatchedCavitySettings {
-  double min_matched =
-      0.25;                  ///< of a cavity's area: with less enclosed about its middle, the target lacks it
+  /// Of a cavity's area: with less enclosed about its middle, the target lacks it.
+  double min_matched = 0.25;
   double around = 2;         ///< radii of a cavity about its middle: the places that carry its space
   std::size_t places = 300;  ///< at most: the system is dense
   /// Of each place in the smoothing warp (GlobalRbf). Exact ones follow eyelids that the target has closed.
@@ -220,10 +219,10 @@ struct DetailSettings {
 /// Misoriented faces, reset to a harmonic extension (misoriented_faces.h), except for patches that this would
 /// bend farther. Edges folded anew by more than a right angle are repaired as well.
 struct FaceRepairSettings {
-  double max_degrees =
-      55;  ///< against the coarse deformation: a face beyond lies on the wrong side of a fold
+  /// Against the coarse deformation: a face beyond lies on the wrong side of a fold.
+  double max_degrees = 55;
   /// Factor of a length in a face, either way, against the coarse deformation
-  /// (SurfaceFitOptions::max_stretch). 99.9 % of the faces of true correspondences stay below 6.
+  /// (SurfaceFitOptions::max_stretch). Faces of true correspondences stay below 6.
   double max_stretch = 10;
   int max_rings = 8;  ///< of vertices around a misoriented face that are released with it
   /// Of the vertices, and a number for small meshes. Where more are misoriented, anchors contradict each

@@ -94,8 +94,8 @@ struct SurfaceFitSummary {
   double stiffness = 0;         ///< laplacian: s of Eq. 11
   // deformation-graph:
   bool similarity_suffices = false;  ///< one similarity explains the target, nothing else was fitted
-  /// Largest angle between the turn of a part, as the anchors alone tell it, and the mean turn; where they
-  /// were queried.
+  /// Largest angle between the rotation of a part, as the anchors alone determine it, and the mean rotation;
+  /// where it was determined.
   double anchor_turn_degrees = 0;
   bool posed_by_anchors = false;  ///< the anchors alone bent the source before anything else
   /// How much more than other pairs the models keep their shape, 1 to 10; similarities of parts count by it.

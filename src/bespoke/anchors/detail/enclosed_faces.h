@@ -12,14 +12,11 @@ struct EnclosedFaces {
   std::vector<int> crossed;  ///< the line runs through them; some are inside, some are not
 };
 
-/// The faces that a closed polyline (3×n, mesh units, on the surface or near it) encloses: of the two sides
-/// of the line, on the connected piece of the surface that it runs on, the one with less area. A face belongs
-/// to the side of two of its corners at least. Vertices at one position count as one.
-///
-/// The line is projected onto the surface as a path from face to face. Every vertex is on one side, two ends
-/// of an edge on the same one if the path crosses the edge an even number of times; where no such choice
-/// exists the line does not separate the surface. Throws InvalidInput, `where` first, if so, if the line
-/// leaves the surface, encloses no vertex, or cuts the surface in two about equal halves.
+/// The faces that a closed polyline (3×n, mesh units, on or near the surface) encloses: the side of less area
+/// on the connected component that it runs on. A face belongs to the side of two of its corners at least;
+/// ends of an edge are on one side if the projected line crosses the edge an even number of times. Throws
+/// InvalidInput, `where` first, if the line does not separate the surface, leaves it, encloses no vertex, or
+/// cuts the surface into two about equal halves.
 EnclosedFaces enclosed_faces(const TriangleMesh& mesh, const Points& border, const std::string& where);
 
 /// The mesh with the vertices at one position as one, without the faces that have less than three then.

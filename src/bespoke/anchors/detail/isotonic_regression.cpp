@@ -6,7 +6,8 @@
 namespace bespoke {
 namespace {
 
-/// Values between two fixed ones: the nearest rising sequence within bounds is the nearest one, clamped.
+/// Values between two fixed ones, by pooling adjacent violators (Ayer et al. 1955): the nearest rising
+/// sequence within bounds is the nearest one, clamped.
 void append_rising(const SlidingValue* begin, const SlidingValue* end, double low, double high,
                    std::vector<double>& rising) {
   struct Pool {

@@ -16,9 +16,8 @@
 namespace bespoke {
 namespace {
 
-// Places where a finished pyramid misses the tolerance are refined and it is measured anew: at a few points,
-// then at more, around those that missed it, and everywhere. With six points a cell in the second round, not
-// one, eight of the shared cases take 12 full measurements instead of 21, and 0.85 of the points.
+// Places where a finished pyramid misses the tolerance are refined and it is measured anew: at a few points a
+// cell, then at more, around those that missed it, and everywhere (tests/accuracy/tuning.md).
 constexpr std::array<std::size_t, 2> points_of_quick_rounds = {1, 6};
 constexpr int local_rounds = 6;
 constexpr int full_rounds = 6;

@@ -21,12 +21,10 @@ struct LeafSurroundings {
 /// interpolation errs by 0 to 1/8 of it.
 inline constexpr float share_of_difference = 1.0f / 16;
 
-/// What a level's sum is at the nodes of a leaf. Between nodes that have the values of u, trilinear
-/// interpolation errs to one side: by 0 at the nodes and by h² (u_xx + u_yy + u_zz) / 8 in the middle of a
-/// cell of size h. With u − (δ²_x + δ²_y + δ²_z) u / 16 at the nodes, δ² the second difference along an axis,
-/// it errs as far to either side and, where the three have one sign, half as far (a quasi-interpolant).
-/// Affine functions stay exact, nodes where u is zero stay zero, and an axis along which one of the two nodes
-/// beside is not in these leaves adds nothing.
+/// What a level's sum is at the nodes of a leaf: the quasi-interpolant u − (δ²_x + δ²_y + δ²_z) u / 16, δ²
+/// the second difference along an axis. Trilinear interpolation of u itself errs to one side, by up to h²
+/// (u_xx + u_yy + u_zz) / 8 in a cell of size h; this errs half as far to either side. Exact for affine
+/// functions; zero stays zero; an axis with a neighbour outside these leaves adds nothing.
 std::shared_ptr<const LeafValues> balanced_values(const LeafSurroundings& u);
 
 }  // namespace bespoke

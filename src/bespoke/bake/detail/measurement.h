@@ -24,7 +24,7 @@ class Measurement {
   /// The same in the cells of worst() and those around them.
   double near_worst(Pyramid& pyramid);
 
-  /// Everywhere, as BakeSummary tells: fills its error and what it says about the sample.
+  /// Everywhere: fills the error of BakeSummary and its figures about the sample.
   double fully(Pyramid& pyramid, BakeSummary& summary);
 
   const Points& worst() const { return worst_; }

@@ -15,19 +15,11 @@
 
 namespace bespoke {
 
-/// Grows the nested pyramid of a map (src/bespoke/README.md, "Bake"): octants in which the sum so far misses
-/// u by more than the tolerance get a leaf of the next level (OctantRefinement); where a level ends with
-/// large residuals, neighbours are added (rim_neighbours), and the leaves above what was added.
-///
-/// No voxel is smaller than half the tolerance: voxels of that size meet it wherever ‖∇u‖ ≤ 2 or so, and
-/// smaller ones only chase a jump of u, which none meets. Where such a place is left the tolerance is missed.
-/// Nodes hold what RefinementOptions::nodes says, those of the smallest voxels u.
-///
-/// With RefinementOptions::max_leaves refinement stops there: once they might not suffice for a level, what
-/// is left goes to the largest errors of all levels, and, in turn, to the largest of errors times voxel
-/// sizes; the octants that go without are remembered.
-///
-/// Copies share the samples.
+/// Grows the nested pyramid of a map (src/bespoke/README.md, "Bake"): octants that miss u by more than the
+/// tolerance get a leaf of the next level (OctantRefinement), steep level boundaries get neighbours
+/// (rim_neighbours). No voxel is smaller than half the tolerance, which suffices for ‖∇u‖ ≤ 2; smaller ones
+/// chase a jump. RefinementOptions::max_leaves bounds the leaves: the last ones go to the largest errors and
+/// to the largest errors times voxel sizes in turn. Copies share the samples.
 class PyramidBuilder {
  public:
   /// The band at the coarsest level. `map` and `progress` must outlive the builder. Throws MemoryLimitError.

@@ -139,7 +139,7 @@ Bake bake_uniformly(const ElasticMap& map, double voxel_size, const BakeOptions&
   result.summary.misoriented_faces =
       FaceTurns(map, options, however_thin).misoriented_faces(result.pyramid).size();
   result.summary.measure_seconds = watch.lap();
-  // Asked for this size, it has no finer leaves to repair a fold by.
+  // All voxels have the requested size: there are no finer leaves that could repair a fold.
   result.certificate = certify(result.pyramid, map.affine(), 1, progress);
   result.summary.repair_seconds = watch.lap();
   return result;

@@ -7,9 +7,8 @@
 namespace bespoke {
 namespace {
 
-// A mean normal shorter than this says nothing: it comes of the middle between sheets that face away from
-// each other, of which the nearer must answer. At 0.5 a single point with a wrong normal outvoted its
-// neighbours.
+// A shorter mean normal lies in the middle between sheets that face away from each other; the nearer one then
+// decides. Larger values let a single point with a wrong normal outvote its neighbours.
 constexpr double min_agreement = 0.1;
 
 /// Rational, so that the same cloud gives the same bytes wherever arithmetic is IEEE's; about a Gaussian of

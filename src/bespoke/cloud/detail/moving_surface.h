@@ -24,12 +24,10 @@ struct SurfaceEstimate {
 };
 
 /// The surface f = 0 of moving least squares through oriented points,
-///   f(x) = Σ wᵢ ½ (nᵢ + n) · (x − pᵢ) / Σ wᵢ,   n = Σ wᵢ nᵢ / |Σ wᵢ nᵢ|,   wᵢ = (1 − |x − pᵢ|²/hᵢ²)⁴ c,
-/// the mean of the two classic forms: with nᵢ alone it is Kolluri's ("Provably good moving least squares",
-/// 2005), which lies outside a convex surface by h²κ/8, with n alone Adamson and Alexa's (2003), which lies
-/// as far inside. A chord of a circle is perpendicular to the sum of the normals at its ends, so that here
-/// the terms in h²κ cancel. c = max(0, nᵢ · m), with m the weighted mean without it, keeps sheets apart that
-/// face away from each other (Öztireli, Guennebaud, Gross 2009 weigh normals for the same reason).
+///   f(x) = Σ wᵢ ½ (nᵢ + n) · (x − pᵢ) / Σ wᵢ,   n = Σ wᵢ nᵢ / |Σ wᵢ nᵢ|,   wᵢ = (1 − |x − pᵢ|²/hᵢ²)⁴ c:
+/// the mean of Kolluri's (2005, nᵢ), outside a convex surface by h²κ/8, and Adamson and Alexa's (2003, n), as
+/// far inside. c = max(0, nᵢ · m), m the weighted mean without c, separates sheets that face away from each
+/// other (as Öztireli, Guennebaud, Gross 2009).
 class MovingSurface {
  public:
   /// The elements must outlive it, in an order that is their own.

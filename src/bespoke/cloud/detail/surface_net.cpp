@@ -186,6 +186,7 @@ class SurfaceNet {
 
 }  // namespace
 
+// Surface nets (Gibson 1998).
 TriangleMesh surface_net(const SparseField& field, const PlaceVertex& place) {
   SurfaceNet net(field);
   net.place_vertices(place);

@@ -26,6 +26,7 @@ struct CellPack {
   Lane stiffness;  ///< summed over the corners, no unit
 };
 
+/// The symmetric Dirichlet energy (Smith, Schaefer 2015) and the barriers of add_distortion.
 struct DistortionOfPack {
   [[gnu::always_inline]] static void run(CellPack& pack, double inverse_size,
                                          const DistortionBounds& bounds) {

@@ -21,16 +21,11 @@ struct Distortion {
   std::vector<std::vector<double>> stiffness;
 };
 
-/// ∫ ψ(F) dx over the finest cells, F = I + ∇u, with the corners of cells as quadrature points, which see
-/// every mode of a trilinear cell. ψ is the symmetric Dirichlet energy |F|²/2 + |F⁻¹|²/2 − 3 (Smith and
-/// Schaefer 2015) and two barriers that are negligible away from their bounds: with J = det F, m its bound, s
-/// = |F⁻¹|² and S its bound,
-///
-///     m · (1/(J − m) − 1/(1 − m) + (J − 1)/(1 − m)²)  and  (s/S)²/(1 − s/S).
-///
-/// In a cell all Bézier coefficients of J are above m (Johnen, Weill and Remacle 2017), so those of its parts
-/// are when it is split. values: of u, 3×points per level; the energy's gradient is added to `gradients`,
-/// sized alike.
+/// ∫ ψ(F) dx over the finest cells by corner quadrature, F = I + ∇u, J = det F ≥ m, s = |F⁻¹|² ≤ S, with
+///   ψ = |F|²/2 + |F⁻¹|²/2 − 3 + m (1/(J − m) − 1/(1 − m) + (J − 1)/(1 − m)²) + (s/S)²/(1 − s/S):
+/// the symmetric Dirichlet energy (Smith, Schaefer 2015) and two barriers, negligible away from their bounds.
+/// All Bézier coefficients of J in a cell are above m (Johnen, Weill, Remacle 2017), also after splits.
+/// values: of u, 3×points per level; the energy's gradient is added to `gradients`, sized alike.
 Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
                           const DistortionBounds& bounds, std::vector<Points>& gradients);
 

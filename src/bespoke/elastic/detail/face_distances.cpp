@@ -10,7 +10,7 @@ namespace bespoke {
 namespace {
 
 /// Squared distances of x from the triangles begin … end − 1. Without branches, so that several triangles are
-/// asked at once: the point of the plane where it is inside, else the nearest point of the three edges.
+/// evaluated at once: the point of the plane where it is inside, else the nearest point of the three edges.
 struct Measure {
   [[gnu::always_inline]] static void run(const FaceDistances::Columns& t, int begin, int end,
                                          const Vector3& x, double* result) {

@@ -33,7 +33,7 @@ void add(double factor, const Points& x, Points& y) {
   });
 }
 
-/// The last steps and how the gradient changed along them.
+/// Limited-memory BFGS (Nocedal 1980): the last steps, and how the gradient changed along them.
 class InverseHessian {
  public:
   void set_diagonal(Eigen::VectorXd diagonal) {

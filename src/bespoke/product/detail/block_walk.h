@@ -129,14 +129,11 @@ class BlockWalk {
   const Merge& merge_;
 };
 
-/// Goes through a file from `begin` to its end in waves of blocks, so that reading a wave, working on the one
-/// before and merging the one before that go on at the same time.
-/// - cut(window) returns the whole blocks that the window begins with, each with its `bytes`, one behind the
-///   other; what they leave over is shown again with more behind it. Without any the window grows; of a last
-///   window nothing may be left over. Called in the order of the file.
-/// - work(block) returns a result; called on all threads.
-/// - merge(block, result) is called in the order of the file.
-/// Of several exceptions the one of the first block is thrown on, whatever the number of threads.
+/// Reads a file from `begin` in waves of blocks: reading one, working on the one before and merging the one
+/// before that overlap. cut(window) returns the whole blocks that the window begins with, each with its
+/// `bytes` (what is left is shown again with more behind it; nothing may be left of the last). work(block)
+/// runs on all threads; cut and merge(block, result) in the order of the file. The exception of the first
+/// failing block is thrown, at any number of threads.
 template <class Cut, class Work, class Merge>
 void walk_blocks(const InputFile& file, std::uint64_t begin, const Cut& cut, const Work& work,
                  const Merge& merge, const Progress& progress) {

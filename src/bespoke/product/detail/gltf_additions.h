@@ -11,7 +11,7 @@ namespace bespoke {
 /// What a buffer's view is for, by its number in the file.
 enum class GltfTarget { vertices = 34962, indices = 34963 };
 
-/// Makes room behind the bytes of `room.buffer` for vectors as `room` says, and appends a view of them to the
+/// Adds space behind the bytes of `room.buffer` for vectors as `room` says, and appends a view of them to the
 /// JSON. Returns where they go: each vector of a vertex attribute at a multiple of four bytes.
 GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace room,
                    std::optional<GltfTarget> target);

@@ -30,7 +30,7 @@ bool read_number(std::string_view text, char point, NumberText& number);
 bool read_integer(const char* begin, const char* end, long long& value);
 
 /// How many decimals a file's numbers carry. The decimals of a number say little where trailing zeros are
-/// left out or exponents are used; those of the numbers of the largest magnitudes tell.
+/// left out or exponents are used; those of the numbers of the largest magnitudes decide.
 class CarriedDecimals {
  public:
   void add(const NumberText& number);

@@ -31,7 +31,8 @@ std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t size) {
   return value;
 }
 
-/// Puts the wide numbers of an entry in the place of those that have no room; false where they lack.
+/// Puts the wide numbers of an entry in the place of those that do not fit in theirs; false where they are
+/// missing.
 bool widen(std::string_view extra, ZipEntry& entry) {
   const std::array<std::uint64_t*, 3> fields{&entry.size, &entry.stored_size, &entry.header};
   const auto is_wide = [](const std::uint64_t* field) { return *field == in_wide_extra; };
@@ -69,7 +70,7 @@ class Inflater {
   bool wants_more() const { return stream_.avail_in == 0; }
   bool has_ended() const { return ended_; }
 
-  /// The next bytes, into the room given; false for damage.
+  /// The next bytes, into the given buffer; false for damage.
   bool next(std::string& room, std::string_view& piece) {
     stream_.next_out = reinterpret_cast<Bytef*>(room.data());
     stream_.avail_out = static_cast<uInt>(room.size());

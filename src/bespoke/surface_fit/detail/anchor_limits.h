@@ -14,15 +14,11 @@ struct FitState {
   double smoothing = 0;                     ///< ℓ
 };
 
-/// How much anchors of limited accuracy may pull, from iteration to iteration. Not thread-safe.
-///
-/// A stretch of surface ℓ wide moves as one and resists with its share ℓ²/A of the surface's weight. It is
-/// off by m where its pairs are m apart, and by τ (settings) along the surface in any case, an anchor by σ:
-/// by maximum likelihood their weights are as the inverse variances,
-///   w ≤ ℓ²/A · (κ m² + τ²) / σ².
-/// So anchors lead while surfaces are far apart and fade as they meet. κ ≥ 1 grows while the median residual
-/// exceeds that of normal errors of deviation σ, along the surface: then the surface, where smooth, has slid
-/// farther than m shows.
+/// Bounds the weight of anchors of limited accuracy. A stretch of surface ℓ wide has the share ℓ²/A of its
+/// weight and is off by the distance m of its pairs, by τ (settings) along the surface, an anchor by σ; by
+/// maximum likelihood (inverse variances)  w ≤ ℓ²/A · (κ m² + τ²) / σ²,  so anchors lead while surfaces are
+/// far apart. κ ≥ 1 grows while the median residual along the surface exceeds that of normal errors of
+/// deviation σ: the surface has slid farther than m shows. Not thread-safe.
 class AnchorLimits {
  public:
   /// sigmas: k, ≥ 0, mesh units; area: mesh units squared; diagonal: mesh units.

@@ -60,7 +60,8 @@ bool raise_around(const std::vector<Vector3>& places, const Points& anchors, dou
   return any;
 }
 
-/// The moves (3×k) as a field with the layer's kernel has them, of which each is a noisy sample.
+/// Simple kriging with noise: the moves (3×k) as samples, with these variances, of a field whose covariance
+/// is the layer's kernel.
 Points smoothed(const Points& anchors, const Points& moves, double radius, const Eigen::VectorXd& variances) {
   const Eigen::Index count = anchors.cols();
   Eigen::MatrixXd kernel(count, count);

@@ -16,7 +16,7 @@ struct AnchorMeeting {
 /// `max_stretch`, and more than it was, the anchors around give way: their σ grows, twofold each time, and
 /// they are met as the smoothing of all moves by these accuracies has them (kriging with noise), until no
 /// such face is left; likewise where some are missed since the moves of neighbours differ by more than a
-/// layer's gradient allows. So two anchors that contradict each other share the blame.
+/// layer's gradient allows. So two contradicting anchors share their residual.
 AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse, double max_stretch,
                                   const DetailSettings& settings = {});
 

@@ -21,13 +21,11 @@ struct AnchorPoseInput {
   double diagonal = 0;            ///< of `rest`
 };
 
-/// Bends the surface such that it takes the anchors to their targets and is everywhere as similar as possible
-/// to what it was, with similarities Mᵢ that change little from node to node:
-///   Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ.
-/// where h is the spacing of the nodes. So a limb turns by more than a right angle without shrinking before
-/// any closest point is queried. Alternates between the similarities and the places, from no motion on: few
-/// nodes first, which find the turns of whole limbs, then many from there. Without anchors nothing moves.
-/// Same bytes at any thread count.
+/// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets
+/// with
+///   min Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ,
+/// h the spacing of the nodes, before any closest point is queried. Alternates between similarities and
+/// places, coarse nodes first. Without anchors nothing moves. Same bytes at any thread count.
 class PosingByAnchors {
  public:
   /// Poses the few nodes. What `input` refers to must outlive it. Throws SolverError.

@@ -7,12 +7,11 @@
 
 namespace bespoke {
 
-/// One per vertex of the source: whether it lies in a cavity that the target lacks (a mouth, eye sockets,
-/// nostrils), so that nothing on the target is its counterpart. Such a vertex faces the source itself, where
-/// the nearest compatible point of the target faces nothing of the target, and another place of the source,
-/// in the open, is much nearer to that point. Drawn there, the cavity would lie flat under the skin around
-/// its mouth, and no map without folds could follow. What sees out of a cavity keeps its counterpart.
-/// source: aligned and roughly fitted; diagonal: of the aligned source, mesh units.
+/// One per vertex of the source: whether it lies in a cavity (mouth, eye socket, nostril) that the target
+/// lacks, so that it has no counterpart. Such a vertex faces the source itself, its closest compatible target
+/// point faces nothing of the target, and an exposed place of the source is much nearer to that point.
+/// Otherwise the cavity would be flattened under the skin. source: aligned, roughly fitted; diagonal: of it,
+/// mesh units.
 std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, const TargetSurface& target,
                                                double diagonal, const CavitySettings& settings);
 

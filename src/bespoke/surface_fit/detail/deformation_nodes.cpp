@@ -136,8 +136,8 @@ void complete_links(DeformationNodes& nodes, int min_neighbours) {
   for (auto& list : nodes.neighbours) std::sort(list.begin(), list.end());
 }
 
-/// Moving least squares of first order.
-/// Shepard weights, corrected so that linear functions along the surface are reproduced.
+/// Moving least squares of first order (Lancaster, Salkauskas 1981): Shepard's weights, corrected so that
+/// linear functions along the surface are reproduced.
 void weigh(const TriangleMesh& mesh, const std::vector<Near>& near, const NodeSettings& settings,
            DeformationNodes& nodes, Eigen::Index vertex) {
   const Vector3 x = mesh.vertices.col(vertex);

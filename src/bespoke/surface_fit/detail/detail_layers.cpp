@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t layer_grain = 128;
 
-/// Values of Wendland's C4 function between centres, plus a ridge on the diagonal.
+/// Values of Wendland's C4 function (1995; rbf/kernels.h) between centres, plus a ridge on the diagonal.
 class RidgeSystem {
  public:
   RidgeSystem(const Points& centers, const PointGrid& grid, double lambda, const DetailSettings& settings)

@@ -13,6 +13,7 @@ namespace {
 using Triplet = Eigen::Triplet<double>;
 using Factor = Eigen::SimplicialLLT<Eigen::SparseMatrix<double>>;
 
+/// I + L of Eq. 13.
 Eigen::SparseMatrix<double> umbrella_system(const TriangleMesh& mesh,
                                             const std::vector<DisplacementAnchor>& anchors,
                                             double stiffness) {

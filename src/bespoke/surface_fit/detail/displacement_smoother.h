@@ -14,7 +14,7 @@ struct DisplacementAnchor {
   double weight = 0;    ///< > 0, no unit; a vertex's own data term has weight 1
 };
 
-/// Eq. 11–13: smooth displacements T near the wished ones T⁰, the minimum of
+/// Eq. 11–13: smooth displacements T near the observed ones T⁰, the minimum of
 ///   Σᵢ |Tᵢ − T⁰ᵢ|² + s Σ_edges |Tᵢ − Tⱼ|² + Σ_anchors w |T(anchor) − T⁰_anchor|²,
 /// which is the solution of (I + L) T = T⁰ (Eq. 13) with L = s·(umbrella operator, each row times its
 /// valence). As printed s is 1 and there are no anchors, whose rows would be added to L. The matrix is
@@ -25,7 +25,7 @@ class DisplacementSmoother {
   DisplacementSmoother(const TriangleMesh& mesh, const std::vector<DisplacementAnchor>& anchors,
                        double stiffness);
 
-  /// wished: 3×n, mesh units, 0 where `matched` is 0: such a vertex has no data term and follows its
+  /// wished: T⁰, 3×n, mesh units, 0 where `matched` is 0: such a vertex has no data term and follows its
   /// neighbours (its first term is left out of the energy). anchor_wished: 3×k.
   Points solve(const Points& wished, const std::vector<char>& matched, const Points& anchor_wished) const;
 

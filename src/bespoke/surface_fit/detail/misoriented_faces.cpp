@@ -119,9 +119,9 @@ class FaceChanges {
   double max_turned_, max_stretch_;
 };
 
-/// Harmonic extension: the displacements (3×n) with those of the free vertices replaced by the mean of their
-/// neighbours', weighted by inverse length, so that displacements change as fast across short edges as across
-/// long ones.
+/// Harmonic extension (discrete Laplace equation): the displacements (3×n) with those of the free vertices
+/// replaced by the mean of their neighbours', weighted by inverse length, so that displacements change as
+/// fast across short edges as across long ones.
 Points spread_harmonically(const Points& places, const VertexAdjacency& adjacency,
                            const std::vector<int>& free, Points displacements,
                            const FaceRepairSettings& settings) {

@@ -23,15 +23,11 @@ struct RepairedSurface {
   std::size_t misoriented_faces = 0;    ///< faces still turned
 };
 
-/// Where a face turned or was stretched or squeezed by more than the limits of the settings since before, or
-/// is bent by more than a right angle at an edge at which it is not in the shape, its vertices give up their
-/// displacements and take the mean of their neighbours' (harmonic along the edges), in as many rings around
-/// the face as help and the settings allow, and as long as that is a small part of the vertices: where more
-/// has turned, repair would undo the fit. By as much as a face comes nearer to the surface around it, that
-/// of its corners' normals, it has not turned: the fit smooths what is folded on the source. A patch of
-/// such vertices stays as it was drawn, turned and stretched, where following would bend it farther from its
-/// shape (the sum of the squared bends of its edges, bends.h): there it is the smooth deformation that is
-/// folded, a nostril inside out, and measures nothing. Throws SolverError.
+/// Resets faces that are turned, stretched or squeezed beyond the settings since before, or newly bent by
+/// more than a right angle at an edge, to a harmonic extension of the displacements around, in as many rings
+/// as help and the settings allow. A face that approaches the surface around it (its corners' normals) has
+/// not turned. Patches that this would bend farther from their shape (bends.h) stay, as does all where too
+/// much is misoriented. Throws SolverError.
 RepairedSurface repair_misoriented_faces(const DrawnSurface& surface,
                                          const FaceRepairSettings& settings = {});
 

@@ -144,6 +144,7 @@ std::unique_ptr<NodeSystem> NodeFitting::system(const NodeLevel& level) const {
   return nodes;
 }
 
+/// Non-rigid iterative closest points (Amberg, Romdhani, Vetter 2007).
 void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
   for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit_.iterations) {
     progress_.step("surface-fit", static_cast<std::size_t>(fit_.iterations),

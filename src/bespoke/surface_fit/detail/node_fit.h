@@ -41,18 +41,14 @@ struct NodeFit {
   std::vector<char> hidden;     ///< n: in a cavity that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
-  double rigidity = 1;  ///< g of the pair, as NodeFitting::fit_coarse tells it
+  double rigidity = 1;  ///< g of the pair, from NodeFitting::fit_coarse
 };
 
-/// Smooth deformation of the source onto the target, coarse to fine: few nodes on the surface, displaced such
-/// that (compatible points both ways, nearest in place and normal, symmetric point to plane, weighted by
-/// informative_areas) + (anchors) + (boundaries) + ℓ⁴ (second differences along the surface) + (0.1 ℓ)²
-/// (deviation from local similarities) is least (node_system.h), with a smoothing length ℓ that falls
-/// geometrically. Second differences are taken along the surface as it lies now, so that the inverse bends
-/// least. After the first level vertices in cavities that the target lacks (cavities.h, unmatched_cavities.h)
-/// have no more pairs, and the similarities count by the pair's rigidity. Where no anchor leads, cavities of
-/// either (mesh/cavities.h) have none in the first level: they would be registered to whatever is near. Where
-/// the target has nothing to offer, the last two extrapolate.
+/// Smooth deformation onto the target by an embedded deformation graph (Sumner 2007), coarse to fine;
+/// node_system.h has the energy. Its smoothing length ℓ falls geometrically; second differences follow the
+/// surface as it lies now, so that the inverse bends least. After the first level cavities that the target
+/// lacks (cavities.h, unmatched_cavities.h) have no pairs, and the similarities count by the pair's rigidity.
+/// Without anchors no cavity (mesh/cavities.h) has pairs in the first level.
 class NodeFitting {
  public:
   /// The input's references and the progress must outlive it.

@@ -48,12 +48,10 @@ class NodeSystem {
   /// node.
   void start_from(const Points& vertices);
 
-  /// Minimises over the displacements, with A the surface's area and ℓ the smoothing length in node spacings:
-  ///   Σ_planes w/A (n·(x − p))² / (1 + (|x − p| before / (scale + ℓ gain))²)         Cauchy, point to plane
-  ///   + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
-  ///   + ℓ⁴/g² Σ_nodes (second differences along the surface as it lies now)², by areas grown as the shape
-  ///   + (g share ℓ)² Σ_nodes (deviation of the edges from those of the shape, rotated and scaled as
-  ///     around the node now; the scale half-way to the median one): as similar as possible.
+  /// Minimises, with A the area, ℓ the smoothing length in spacings g of nodes, c = 1 / (1 + (r / (scale + ℓ
+  /// gain))²) Cauchy's weight of the residual r before, s half-way to the median scale:
+  ///   Σ_planes c w/A (n·(x − p))² + Σ_boundary w/A |x − p|² across the cut + Σ_anchors w |x − q'|²
+  ///   + ℓ⁴/g² Σ_nodes (second differences)² + (g share ℓ)² Σ_nodes |edges − s R rest edges|².
   /// Returns where the vertices go, 3×n. Throws SolverError.
   Points solve(const NodeGoals& goals);
 

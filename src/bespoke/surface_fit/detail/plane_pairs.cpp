@@ -9,7 +9,7 @@
 namespace bespoke {
 namespace {
 
-/// One direction: whose vertices ask, and who answers.
+/// One direction of correspondence: whose vertices search, and on which surface.
 struct Search {
   const PairSurfaces& surfaces;
   const NodeLevel& level;
@@ -39,7 +39,7 @@ double sinking(const Search& search, const FoundPair& pair, int source_vertex) {
   return stands_out ? (*certainty)[source_vertex] : 0;
 }
 
-/// The claimed share as far as the pair depends on it; 1 beyond.
+/// Ratio of back distance to distance (reciprocity.h) as far as the pair depends on it; 1 beyond.
 double claimed_as_far_as_asked(const Search& search, const FoundPair& pair, double sunk) {
   const ReciprocitySettings& settings = search.settings.reciprocity;
   if (may_be_creased(pair)) return claimed_share(pair, search.asking(), 1, settings);

@@ -16,8 +16,8 @@ struct PlanePair {
   double weight = 0;  ///< mesh units squared: the area that the pair represents, times the squared agreement
                       ///< of the normals, times its direction's share
   /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
-  /// the asking surface is creased there (crease.h) or, where the source lies outside the target, how surely
-  /// anchors tell its pose (pose_certainty.h), whichever is more.
+  /// the searching surface is creased there (crease.h) or, where the source lies outside the target, how
+  /// certainly anchors determine its pose (pose_certainty.h), whichever is more.
   double outlier_scale_gain = 0;
 };
 

@@ -10,6 +10,7 @@ double distance(const FoundPair& pair) { return (pair.match.point - pair.point).
 
 }  // namespace
 
+/// Reciprocal correspondences (Pajdla, Van Gool 1995).
 std::optional<SurfaceMatch> nearer_claim(const FoundPair& pair, const TargetSurface& asking, double share) {
   MatchLimits limits = pair.limits;
   limits.max_distance = share * distance(pair);

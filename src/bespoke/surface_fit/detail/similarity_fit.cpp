@@ -48,7 +48,8 @@ double quantile(const std::vector<PlaneResidual>& residuals, double fraction) {
   return *nth;
 }
 
-/// One Gauss-Newton step on rotation, translation and scale about the centroid.
+/// One Gauss-Newton step on rotation, translation and scale about the centroid, iteratively reweighted
+/// (Holland, Welsch 1977).
 Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale) {
   Vector3 center = Vector3::Zero();
   for (const PlaneResidual& r : residuals) center += r.point / double(residuals.size());

@@ -109,6 +109,7 @@ std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3
   const double length = interpolated.norm();
   if (!(length > 0)) return std::nullopt;
   match.normal = interpolated / length;
+  // Symmetric point to plane (Rusinkiewicz 2019).
   match.halfway = (match.normal + normal).normalized();
   match.agreement = std::clamp(match.normal.dot(normal), 0.0, 1.0);
   return match;

@@ -47,8 +47,8 @@ class TargetSurface {
   /// The same faces with other vertices (3×n, mesh units).
   TargetSurface moved(Points vertices) const;
 
-  /// Closest point within the limits; empty when there is none, when it lies on the boundary and that does
-  /// not answer, or when `normal` (unit) is zero.
+  /// Closest point within the limits; empty when there is none, when it lies on the boundary without
+  /// `boundary_answers`, or when `normal` (unit) is zero.
   std::optional<SurfaceMatch> match(const Vector3& x, const Vector3& normal, const MatchLimits& limits) const;
 
   /// Closest point, whatever the normals and on the boundary too.

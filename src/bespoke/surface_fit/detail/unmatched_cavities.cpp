@@ -54,8 +54,8 @@ bool span_space(const Points& points, double min_width) {
   return widths[2] > min_width * widths[0];
 }
 
-/// Harmonic extension of the offsets at the rim into the cavity, by inverse edge length. `offsets`: 3×n, of
-/// the rim's vertices; the cavity's are set.
+/// Harmonic extension of the offsets at the cavity's boundary into it, by inverse edge length. `offsets`:
+/// 3×n, of the boundary's vertices; the cavity's are set.
 void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offsets) {
   std::map<int, Eigen::Index> column;
   for (const int vertex : cavity.vertices) column.emplace(vertex, static_cast<Eigen::Index>(column.size()));
@@ -77,7 +77,7 @@ void spread_from_rim(const Cavity& cavity, const Points& vertices, Points& offse
         right.row(own->second) += offsets.col(to).transpose() / length;
     }
   }
-  constexpr double free_floating = 1e-9;  // of the largest weight: a cavity without rim stays
+  constexpr double free_floating = 1e-9;  // of the largest weight: a cavity without boundary stays
   for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(i, i, free_floating * largest);
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());

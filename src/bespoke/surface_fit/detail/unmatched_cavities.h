@@ -21,11 +21,11 @@ struct RegisteredSurface {
   const Points& fitted;  ///< 3×n: its registered vertices
 };
 
-/// Takes cavities where the space around them goes: each by the warp |r|³ that takes places of the open
-/// surface around it where these are laid; what that leaves at its rim is spread over it. Following its
-/// neighbours along the surface, it would keep its shape, and come through a cheek that is thinner on the
-/// target. A cavity without enough of the surface around it stays. `lined`: n, the source's vertices in any
-/// cavity. Returns all vertices, 3×n. Throws SolverError.
+/// Moves cavities with the space around them: each by the warp |r|³ of places of the exposed surface around
+/// it to their registered ones; the residual at its boundary is extended into it. As part of the surface it
+/// would keep its shape and come through a cheek that is thinner on the target. A cavity without enough
+/// surface around it stays. `lined`: n, the source's vertices in any cavity. Returns all vertices, 3×n.
+/// Throws SolverError.
 Points carried_by_space(const RegisteredSurface& laid, const std::vector<Cavity>& cavities,
                         const std::vector<char>& lined, const UnmatchedCavitySettings& settings);
 
