@@ -47,7 +47,8 @@ Asset asset_from(StoredFile file, std::string_view exact_map) {
       pyramid.levels.push_back({grid.voxel_size, std::move(grid.leaves), std::move(grid.values)});
     }
   }
-  file.grids.resize(preview_count);
+  file.grids.erase(file.grids.begin() + preview_count,
+                   file.grids.begin() + static_cast<std::ptrdiff_t>(next));
   asset.preview = std::make_shared<PreviewGrids>(std::move(file.grids));
   asset.exact_map = exact_map;
   require_valid(asset);
@@ -58,7 +59,8 @@ StoredFile stored_file_from(const Asset& asset) {
   StoredFile file;
   const std::string record = record_json(asset);
   file.metadata = file_metadata(record);
-  file.grids = asset.preview->grids();
+  const std::vector<StoredGrid>& previews = asset.preview->grids();
+  file.grids.assign(previews.begin(), previews.begin() + preview_count);
   for (std::size_t step = 0; step < asset.steps.size(); ++step) {
     const Pyramid& pyramid = asset.steps[step].pyramid;
     for (std::size_t level = 0; level < pyramid.levels.size(); ++level) {
@@ -72,6 +74,8 @@ StoredFile stored_file_from(const Asset& asset) {
       file.grids.push_back(std::move(grid));
     }
   }
+  // After the levels, so that these keep their places.
+  file.grids.insert(file.grids.end(), previews.begin() + preview_count, previews.end());
   return file;
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/asset/model_distances.h"
 #include "bespoke/asset/source_surface.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/inverse.h"
@@ -198,6 +199,7 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
   take_measured_error(derived);
   record_stages(derived, "round trip");
   asset = with_preview_of(std::move(asset), b_from_a, [&](const Points& y) { return back(y); });
+  asset = with_model_distances_of(std::move(asset), b_from_a, b_from_a, true);
   return derived;
 }
 
@@ -289,6 +291,7 @@ DerivedMap compose_maps(const Asset& b_from_a, const Asset& c_from_b, const Bake
   take_measured_error(derived);
   record_stages(derived, "composition");
   asset = with_preview_of(std::move(asset), b_from_a);
+  asset = with_model_distances_of(std::move(asset), b_from_a, c_from_b, false);
   return derived;
 }
 

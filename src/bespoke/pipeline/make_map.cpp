@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "bespoke/clearance/model_sides.h"
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/pipeline/bake_fitted_map.h"
 #include "bespoke/pipeline/summary_json.h"
@@ -145,7 +146,7 @@ MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const
 
   progress.check();
   const Stopwatch watch;
-  asset = with_preview(std::move(asset), input.source);
+  asset = with_model_sides(with_preview(std::move(asset), input.source), input.source, input.target);
   made.preview_seconds = watch.seconds();
   return made;
 }

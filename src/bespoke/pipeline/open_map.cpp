@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/asset/model_distances.h"
 #include "bespoke/certificate/inverse.h"
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/error.h"
@@ -34,6 +35,7 @@ OpenedMap in_other_unit(const OpenedMap& map, double scale) {
   other.target_from_source = in_other_unit(map.target_from_source, scale);
   other.source_diagonal /= scale;
   other.model_box = Box(map.model_box.min() / scale, map.model_box.max() / scale);
+  other.target_diagonal /= scale;
   return other;
 }
 
@@ -46,7 +48,9 @@ OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAs
                 asset.record.source.hash,
                 asset.record.target.hash,
                 asset.record.unit,
-                form == MapForm::inverse ? asset.record.target.box : asset.record.source.box};
+                form == MapForm::inverse ? asset.record.target.box : asset.record.source.box,
+                asset.record.target.box.diagonal().norm(),
+                model_distances(asset)};
   switch (form) {
     case MapForm::grids:
       map.elastic = std::make_shared<ElasticChain>(loaded_chain(std::move(asset.steps)));
@@ -59,6 +63,9 @@ OpenedMap open_map(const std::filesystem::path& path, MapForm form, const ReadAs
         throw InvalidInput(path.string() + ": is not certified as a bijection, so it has no inverse");
       map.elastic = inverse_map(std::move(asset.steps), asset.target_from_source);
       map.target_from_source = inverse(asset.target_from_source);
+      if (map.distances)
+        map.distances = std::make_shared<const ModelDistances>(
+            ModelDistances{map.distances->target, map.distances->source});
       break;
   }
   return map;

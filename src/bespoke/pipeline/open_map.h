@@ -18,6 +18,8 @@ enum class MapForm {
   inverse,  ///< back from the target, through the cells of a certified map
 };
 
+struct ModelDistances;
+
 /// A map as products are carried through it. Any number of threads may share one.
 struct OpenedMap {
   std::shared_ptr<const ElasticMap> elastic;
@@ -28,6 +30,9 @@ struct OpenedMap {
   std::string source_hash = {}, target_hash = {};
   std::string unit = {};  ///< of all lengths, "unknown" when none was stated
   Box model_box = {};     ///< of the model that products are around: the source, the target of an inverse
+  double target_diagonal = 0;  ///< of the target's bounding box, mesh units
+  /// Of the models, in the map's unit, whichever way it leads; null where the file lacks them, and of a part.
+  std::shared_ptr<const ModelDistances> distances = {};
 };
 
 /// The map for points in another unit, of which one is `scale` > 0 units of the map.

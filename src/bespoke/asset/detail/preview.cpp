@@ -117,15 +117,20 @@ void pack(const LeafRange& leaves, const Points& values, StoredGrid& grid) {
 }  // namespace
 
 PreviewGrids::PreviewGrids(std::vector<StoredGrid> grids) : grids_(std::move(grids)) {
-  constexpr std::array<std::pair<const char*, int>, 3> expected = {
-      {{displacement_name, 3}, {source_distance_name, 1}, {jacobian_name, 1}}};
-  if (grids_.size() != expected.size()) throw InvalidInput("there are not three preview grids");
-  for (std::size_t i = 0; i < expected.size(); ++i) {
+  constexpr std::array<std::pair<const char*, int>, 5> expected = {{{displacement_name, 3},
+                                                                    {source_distance_name, 1},
+                                                                    {jacobian_name, 1},
+                                                                    {target_distance_name, 1},
+                                                                    {source_side_name, 1}}};
+  if (grids_.size() < required || grids_.size() > expected.size())
+    throw InvalidInput("there are not three preview grids");
+  for (std::size_t i = 0; i < grids_.size(); ++i) {
     require_valid(grids_[i]);
     if (grids_[i].half) throw InvalidInput("grid " + grids_[i].name + " is of half precision");
     if (grids_[i].name != expected[i].first || grids_[i].components != expected[i].second)
       throw InvalidInput("grid " + grids_[i].name + " stands in the place of " + expected[i].first);
-    if ((grids_[i].grid_class == GridClass::level_set) != (grids_[i].name == source_distance_name))
+    const bool is_distance = grids_[i].components == 1 && grids_[i].name != jacobian_name;
+    if ((grids_[i].grid_class == GridClass::level_set) != is_distance)
       throw InvalidInput("grid " + grids_[i].name + " has the wrong class");
   }
 }

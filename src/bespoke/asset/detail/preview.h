@@ -12,11 +12,17 @@ namespace bespoke {
 inline constexpr const char* displacement_name = "displacement";
 inline constexpr const char* source_distance_name = "source_distance";
 inline constexpr const char* jacobian_name = "jacobian";
+inline constexpr const char* target_distance_name = "target_distance";
+inline constexpr const char* source_side_name = "source_side";
 
-/// The grids of an asset that no reader of bespoke needs: displacement, source_distance, jacobian.
+/// The grids of an asset that carry no map: displacement, source_distance, jacobian, which other programs
+/// show, and, of maps that have them, target_distance and source_side (model_distances.h).
 class PreviewGrids {
  public:
-  /// Throws InvalidInput unless these are the three, in this order, of their types.
+  static constexpr std::size_t required = 3;
+
+  /// Throws InvalidInput unless these are the three, followed by none, the first or both of the others, in
+  /// this order, of their types.
   explicit PreviewGrids(std::vector<StoredGrid> grids);
 
   const std::vector<StoredGrid>& grids() const { return grids_; }

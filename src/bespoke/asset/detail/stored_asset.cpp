@@ -62,7 +62,7 @@ std::string checked_record(const Metadata& metadata) {
 void require_grid_count(std::size_t grids, const ParsedRecord& record) {
   std::size_t count = preview_count;
   for (const std::vector<LevelRecord>& levels : record.levels) count += levels.size();
-  require_format(grids == count,
+  require_format(grids >= count && grids <= count + distance_count,
                  "has " + std::to_string(grids) + " grids, the record requires " + std::to_string(count));
 }
 

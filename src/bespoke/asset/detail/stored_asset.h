@@ -15,13 +15,16 @@ namespace bespoke {
 /// Grids before the first level's: those of PreviewGrids.
 inline constexpr std::size_t preview_count = 3;
 
+/// Grids that may follow the last level's: target_distance, then source_side.
+inline constexpr std::size_t distance_count = 2;
+
 /// u_0, u_1, … of the first step, s1_u_0, s1_u_1, … of the second.
 std::string level_name(std::size_t step, std::size_t level);
 
 /// The record, once the version is one of ours and the plain entries repeat it.
 std::string checked_record(const Metadata& metadata);
 
-/// The file has as many grids as the record requires.
+/// The file has as many grids as the record requires, and no more than may follow them.
 void require_grid_count(std::size_t grids, const ParsedRecord& record);
 
 /// The grid may stand for a level of the pyramid, of which origin and precision are known: all but its number

@@ -1,0 +1,196 @@
+#include "bespoke/asset/model_distances.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "bespoke/asset/detail/distance_band.h"
+#include "bespoke/asset/detail/preview.h"
+#include "bespoke/error.h"
+#include "bespoke/lattice/lattice.h"
+#include "bespoke/lattice/leaf_table.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t points_per_range = 512;
+
+// Voxels from the surface up to which cubic weights count alone, and from which trilinear ones do: beyond,
+// the cubic stencil of two nodes to each side leaves the band of three.
+constexpr double all_cubic = 1, all_trilinear = 2;
+
+// Keys's kernel (a = -1/2) at the four nodes around a place between the second and the third.
+std::array<double, 4> cubic_weights(double f) {
+  return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)),
+          f * f * (-0.5 + 0.5 * f)};
+}
+
+}  // namespace
+
+struct DistanceGrid::Data {
+  explicit Data(const StoredGrid& grid)
+      : lattice{grid.origin, grid.voxel_size},
+        background(grid.background),
+        values(grid.values),
+        table(grid.leaves),
+        error(0),
+        inside_leaves(enclosed_leaves(grid)),
+        inside(inside_leaves) {
+    if (const auto found = grid.metadata.find(distance_error_key); found != grid.metadata.end())
+      if (const auto* number = std::get_if<double>(&found->second)) error = *number;
+  }
+
+  float value(const LatticeCoordinates& node) const {
+    const int leaf = table.find(leaf_of(node));
+    if (leaf != no_leaf)
+      return values[static_cast<std::size_t>(leaf) * leaf_nodes +
+                    static_cast<std::size_t>(number_of_place(place_in_leaf(node)))];
+    return inside.find(leaf_of(node)) == no_leaf ? background : -background;
+  }
+
+  double trilinear(const LatticeCoordinates& cell, const Vector3& f) const {
+    double sum = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+      const LatticeCoordinates step = corner_step(corner);
+      double weight = 1;
+      for (int axis = 0; axis < 3; ++axis)
+        weight *= step[static_cast<std::size_t>(axis)] ? f[axis] : 1 - f[axis];
+      sum += weight * value(moved(cell, step));
+    }
+    return sum;
+  }
+
+  double cubic(const LatticeCoordinates& cell, const Vector3& f) const {
+    const std::array<std::array<double, 4>, 3> w = {cubic_weights(f[0]), cubic_weights(f[1]),
+                                                    cubic_weights(f[2])};
+    double sum = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) {
+        double row = 0;
+        for (int k = 0; k < 4; ++k)
+          row += w[2][static_cast<std::size_t>(k)] * value(moved(cell, {i - 1, j - 1, k - 1}));
+        sum += w[0][static_cast<std::size_t>(i)] * w[1][static_cast<std::size_t>(j)] * row;
+      }
+    return sum;
+  }
+
+  double at(const Vector3& x) const {
+    const Vector3 place = (x - lattice.origin) / lattice.voxel_size;
+    if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return background;
+    const LatticeCoordinates cell = lattice.cell_of(x);
+    const Vector3 f = place - as_vector(cell);
+    const double coarse = trilinear(cell, f);
+    const double voxels = std::abs(coarse) / lattice.voxel_size;
+    if (voxels >= all_trilinear) return coarse;
+    const double share = std::clamp((all_trilinear - voxels) / (all_trilinear - all_cubic), 0.0, 1.0);
+    return share * cubic(cell, f) + (1 - share) * coarse;
+  }
+
+  Lattice lattice;
+  float background;
+  std::vector<float> values;
+  LeafTable table;
+  double error;
+  std::vector<LeafCoordinates> inside_leaves;
+  LeafTable inside;
+};
+
+double DistanceGrid::band() const { return data_->background; }
+double DistanceGrid::voxel_size() const { return data_->lattice.voxel_size; }
+double DistanceGrid::error() const { return data_->error; }
+
+std::vector<double> DistanceGrid::operator()(const Points& x) const {
+  std::vector<double> distances(static_cast<std::size_t>(x.cols()));
+  parallel_for(distances.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) distances[i] = data_->at(x.col(static_cast<Eigen::Index>(i)));
+  });
+  return distances;
+}
+
+/// Makes look-ups of stored grids.
+class StoredDistances {
+ public:
+  static DistanceGrid lookup(const StoredGrid& grid) {
+    return DistanceGrid(std::make_shared<const DistanceGrid::Data>(grid));
+  }
+};
+
+namespace {
+
+const StoredGrid* grid_named(const Asset& asset, const char* name) {
+  if (!asset.preview) return nullptr;
+  for (const StoredGrid& grid : asset.preview->grids())
+    if (grid.name == name) return &grid;
+  return nullptr;
+}
+
+/// That of the target, or of the source: its preview where that has sides, else its own.
+const StoredGrid* sided_grid(const Asset& asset, bool of_target) {
+  const StoredGrid* target = grid_named(asset, target_distance_name);
+  if (of_target || !target) return target;
+  const StoredGrid* own = grid_named(asset, source_side_name);
+  return own ? own : grid_named(asset, source_distance_name);
+}
+
+StoredGrid measured(StoredGrid grid, const TriangleMesh& mesh) {
+  const DistanceGrid lookup = StoredDistances::lookup(grid);
+  std::vector<double> amounts = lookup(surface_probes(mesh));
+  for (double& amount : amounts) amount = std::abs(amount);
+  const Statistics error = summarize(std::move(amounts));
+  grid.metadata[distance_error_key] = error.p99;
+  grid.metadata["bespoke:error_max"] = error.max;
+  return grid;
+}
+
+StoredGrid made(const SidedModel& model, const char* name, const char* meaning) {
+  StoredGrid grid = measured(signed_band(model.mesh, model.distance), model.mesh);
+  grid.name = name;
+  grid.metadata["bespoke:meaning"] = std::string(meaning);
+  return grid;
+}
+
+constexpr const char* target_meaning = "signed distance to the target model, target frame";
+constexpr const char* source_meaning =
+    "signed distance to the source model, which is open: the side by its winding number and normals";
+
+Asset with_grids_of(Asset asset, std::vector<StoredGrid> further) {
+  std::vector<StoredGrid> grids = asset.preview->grids();
+  grids.resize(PreviewGrids::required);
+  for (StoredGrid& grid : further) grids.push_back(std::move(grid));
+  asset.preview = std::make_shared<PreviewGrids>(std::move(grids));
+  return asset;
+}
+
+}  // namespace
+
+Asset with_model_distances(Asset asset, const SidedModel& source, const SidedModel& target) {
+  if (!asset.preview) throw InvalidInput("the asset has no preview grids; with_preview adds them");
+  std::vector<StoredGrid> further;
+  further.push_back(made(target, target_distance_name, target_meaning));
+  if (inspect_mesh(source.mesh).boundary_edges > 0)
+    further.push_back(made(source, source_side_name, source_meaning));
+  return with_grids_of(std::move(asset), std::move(further));
+}
+
+Asset with_model_distances_of(Asset asset, const Asset& source_of, const Asset& target_of, bool turned) {
+  const StoredGrid* source = sided_grid(source_of, turned);
+  const StoredGrid* target = sided_grid(target_of, !turned);
+  if (!asset.preview || !source || !target) return asset;
+  std::vector<StoredGrid> further = {*target, *source};
+  further[0].name = target_distance_name;
+  further[0].metadata["bespoke:meaning"] = std::string(target_meaning);
+  further[1].name = source_side_name;
+  return with_grids_of(std::move(asset), std::move(further));
+}
+
+std::shared_ptr<const ModelDistances> model_distances(const Asset& asset) {
+  const StoredGrid* source = sided_grid(asset, false);
+  const StoredGrid* target = sided_grid(asset, true);
+  if (!source || !target) return nullptr;
+  return std::make_shared<const ModelDistances>(
+      ModelDistances{StoredDistances::lookup(*source), StoredDistances::lookup(*target)});
+}
+
+}  // namespace bespoke

@@ -1,0 +1,291 @@
+#include "bespoke/clearance/detail/correction.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+namespace bespoke {
+namespace {
+
+// Of the target's diagonal: what misses nothing moves no farther.
+constexpr double bystander_share = 0.002;
+
+// By ring of edges around what misses: whole for two, since a face sample misses between its corners, then
+// down to nothing where the reach ends, smoothly.
+constexpr std::array<double, reach_in_edges> share_of_ring = {1, 1, 0.85, 0.5, 0.15};
+
+constexpr int iterations_a_round = 30;
+
+// A gradient shorter than this is that of a place as near to one side as to another.
+constexpr double min_gradient = 0.2;
+
+// Of the target's diagonal: what a place is pushed in a round at most. Beyond, its gradient is another.
+constexpr double push_a_round = 0.02;
+
+// A round that brings a sample less than this share of the way that it was pushed was in vain, and after so
+// many there is no space for it.
+constexpr double least_gain = 0.3;
+constexpr int most_vain_rounds = 2;
+
+// Of the tolerance: how exactly a round meets its linear constraints, and what is aimed for beyond what is
+// required: together within the tolerance, so that the next round finds them met.
+constexpr double solved_share = 1, aimed_share = 0.5;
+
+}  // namespace
+
+Correction::Correction(const PreparedProduct::Data& product, const Points& carried,
+                       const std::vector<Obstacle>& obstacles)
+    : product_(product),
+      carried_(carried),
+      obstacles_(obstacles),
+      size_(0),
+      u_(NodeVectors::Zero(product.graph.nodes(), 3)),
+      is_missing_node_(static_cast<std::size_t>(product.graph.nodes()), 0),
+      is_bound_node_(is_missing_node_),
+      moved_(static_cast<std::size_t>(carried.cols()), 0) {
+  for (const Obstacle& obstacle : obstacles)
+    size_ = std::max(size_, obstacle.tolerance / clearance_tolerance);
+}
+
+void Correction::solve(SampleDistances& distances, int rounds) {
+  double tolerance = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : obstacles_) tolerance = std::min(tolerance, obstacle.tolerance);
+  bool let_go = false;
+  for (int round = 0; round < rounds && (choose_active(distances) || let_go); ++round) {
+    NodeVectors u = NodeVectors::Zero(u_.rows(), 3);
+    if (!active_.empty())
+      u = least_energy(product_.energy, linearised(distances), solved_share * tolerance, iterations_a_round,
+                       multipliers_);
+    limit(u);
+    move_to(std::move(u), distances);
+    let_go = count_vain_rounds(distances);
+  }
+}
+
+void Correction::move_to(NodeVectors u, SampleDistances& distances) {
+  u_ = std::move(u);
+  const NodeVectors moves = product_.graph.vertex_from_node * u_;
+  std::vector<char> changed = moved_;
+  for (std::size_t v = 0; v < moved_.size(); ++v) {
+    moved_[v] = !moves.row(static_cast<Eigen::Index>(v)).isZero(0);
+    changed[v] = changed[v] || moved_[v];
+  }
+  distances.look(vertices(), changed);
+}
+
+Points Correction::vertices() const {
+  Points corrected = carried_;
+  const NodeVectors moves = product_.graph.vertex_from_node * u_;
+  for (Eigen::Index v = 0; v < corrected.cols(); ++v)
+    if (moved_[static_cast<std::size_t>(v)]) corrected.col(v) += moves.row(v).transpose();
+  return corrected;
+}
+
+std::vector<char> Correction::involved() const {
+  std::vector<char> flags(moved_.size(), 0);
+  const auto& rows = product_.graph.vertex_from_node;
+  for (Eigen::Index v = 0; v < rows.rows(); ++v) {
+    // What goes with others has several nodes, or one that is not at its place.
+    int nodes = 0;
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(rows, v); it; ++it, ++nodes)
+      if (is_bound_node_[static_cast<std::size_t>(it.col())]) flags[static_cast<std::size_t>(v)] = 1;
+    if (nodes > 1) flags[static_cast<std::size_t>(v)] = 1;
+  }
+  return flags;
+}
+
+void Correction::note_missing(const SampleDistances& distances, int sample) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(distances.samples().weights(k, sample) > 0)) continue;
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(
+             product_.graph.vertex_from_node, distances.samples().vertices(k, sample));
+         it; ++it)
+      is_missing_node_[static_cast<std::size_t>(it.col())] = 1;
+  }
+}
+
+void Correction::bind_ties() {
+  is_bound_node_ = is_missing_node_;
+  for (Eigen::Index node = 0; node < product_.graph.weights.cols(); ++node) {
+    const auto at = static_cast<std::size_t>(node);
+    if (!is_missing_node_[at] || !product_.graph.is_tied[at]) continue;
+    for (Eigen::SparseMatrix<double>::InnerIterator it(product_.graph.weights, node); it; ++it)
+      if (product_.graph.is_tied[static_cast<std::size_t>(it.row())])
+        is_bound_node_[static_cast<std::size_t>(it.row())] = 1;
+  }
+}
+
+/// Where a push at the sample goes first.
+int Correction::nearest_node(const ProductSamples& samples, int sample) const {
+  Eigen::Index corner = 0;
+  samples.weights.col(sample).maxCoeff(&corner);
+  int nearest = 0;
+  double most = 0;
+  for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
+                                                                      samples.vertices(corner, sample));
+       it; ++it)
+    if (it.value() > most) {
+      most = it.value();
+      nearest = static_cast<int>(it.col());
+    }
+  return nearest;
+}
+
+/// Lets go of nodes whose samples rounds did not bring nearer: there is no space, and pushing on would
+/// crumple the product.
+bool Correction::count_vain_rounds(const SampleDistances& distances) {
+  bool let_go = false;
+  for (const Active& active : active_) {
+    const double expected = std::min(active.missing, push_a_round * size_);
+    const double gained = active.missing - distances.missing(active.obstacle, active.sample);
+    if (!distances.misses(active.obstacle, active.sample) || gained > least_gain * expected) continue;
+    int& rounds = vain_rounds_[{active.obstacle, nearest_node(distances.samples(), active.sample)}];
+    let_go = ++rounds == most_vain_rounds || let_go;
+  }
+  return let_go;
+}
+
+bool Correction::is_hopeless(std::size_t obstacle, int node) const {
+  const auto found = vain_rounds_.find({obstacle, node});
+  return found != vain_rounds_.end() && found->second >= most_vain_rounds;
+}
+
+/// Keeps what pushes, and adds of what misses the worst sample around each node: its neighbours follow it.
+/// Whether any is there.
+bool Correction::choose_active(const SampleDistances& distances) {
+  std::vector<Active> active;
+  std::vector<double> multipliers;
+  std::set<std::pair<std::size_t, int>> is_active;
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const Active& was = active_[i];
+    const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
+    if (!(multiplier > 0) || is_hopeless(was.obstacle, nearest_node(distances.samples(), was.sample)))
+      continue;
+    active.push_back(was);
+    multipliers.push_back(multiplier);
+    is_active.emplace(was.obstacle, was.sample);
+  }
+  bool any = false;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    std::vector<int> worst(is_missing_node_.size(), -1);
+    for (int i = 0; i < static_cast<int>(distances.samples().count()); ++i) {
+      if (!distances.misses(o, i)) continue;
+      const int node = nearest_node(distances.samples(), i);
+      if (is_hopeless(o, node)) continue;
+      any = true;
+      note_missing(distances, i);
+      int& at = worst[static_cast<std::size_t>(node)];
+      if (at < 0 || distances.missing(o, i) > distances.missing(o, at)) at = i;
+    }
+    for (const int i : worst)
+      if (i >= 0 && !is_active.contains({o, i})) {
+        active.push_back({o, i, 0});
+        multipliers.push_back(0);
+      }
+  }
+  for (Active& next : active) next.missing = distances.missing(next.obstacle, next.sample);
+  active_ = std::move(active);
+  multipliers_ =
+      Eigen::Map<Eigen::VectorXd>(multipliers.data(), static_cast<Eigen::Index>(multipliers.size()));
+  if (any) bind_ties();
+  return any;
+}
+
+/// Of distances at the samples, by central differences.
+void Correction::set_gradients(const SampleDistances& distances, LinearConstraints& constraints) const {
+  const Points places = places_of(distances.samples(), vertices());
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < active_.size(); ++i)
+      if (active_[i].obstacle == o) rows.push_back(static_cast<Eigen::Index>(i));
+    if (rows.empty()) continue;
+    const double step = obstacles_[o].step;
+    Points around(3, 6 * static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+          around.col(6 * static_cast<Eigen::Index>(i) + 2 * axis + side) =
+              places.col(active_[static_cast<std::size_t>(rows[i])].sample) +
+              (side ? -step : step) * Vector3::Unit(axis);
+    const std::vector<double> values = obstacles_[o].distance(around);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      Vector3 gradient;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        gradient[static_cast<Eigen::Index>(axis)] =
+            (values[6 * i + 2 * axis] - values[6 * i + 2 * axis + 1]) / (2 * step);
+      if (!(gradient.norm() > min_gradient)) gradient.setZero();
+      constraints.gradients.row(rows[i]) = gradient.normalized();
+    }
+  }
+}
+
+LinearConstraints Correction::linearised(const SampleDistances& distances) const {
+  const auto count = static_cast<Eigen::Index>(active_.size());
+  LinearConstraints constraints{
+      {count, product_.graph.nodes()}, NodeVectors(count, 3), Eigen::VectorXd(count)};
+  std::vector<Eigen::Triplet<double>> entries;
+  const ProductSamples& samples = distances.samples();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int sample = active_[static_cast<std::size_t>(i)].sample;
+    for (int k = 0; k < 3; ++k)
+      if (samples.weights(k, sample) > 0)
+        for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
+                                                                            samples.vertices(k, sample));
+             it; ++it)
+          entries.emplace_back(i, it.col(), samples.weights(k, sample) * it.value());
+  }
+  constraints.places.setFromTriplets(entries.begin(), entries.end());
+  set_gradients(distances, constraints);
+  const NodeVectors now = constraints.places * u_;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Active& active = active_[static_cast<std::size_t>(i)];
+    const double missing = std::min(distances.missing(active.obstacle, active.sample), push_a_round * size_);
+    constraints.amounts[i] = constraints.gradients.row(i).isZero(0)
+                                 ? -size_
+                                 : missing + aimed_share * obstacles_[active.obstacle].tolerance +
+                                       constraints.gradients.row(i).dot(now.row(i));
+  }
+  return constraints;
+}
+
+/// Of every node: edges to the next one that misses, reach_in_edges from there on.
+std::vector<int> Correction::rings() const {
+  std::vector<int> ring(is_missing_node_.size(), reach_in_edges);
+  std::vector<int> front;
+  for (std::size_t node = 0; node < ring.size(); ++node)
+    if (is_missing_node_[node]) {
+      ring[node] = 0;
+      front.push_back(static_cast<int>(node));
+    }
+  for (int next = 1; next < reach_in_edges; ++next) {
+    std::vector<int> following;
+    for (const int node : front)
+      for (Eigen::SparseMatrix<double>::InnerIterator it(product_.graph.weights, node); it; ++it)
+        if (int& at = ring[static_cast<std::size_t>(it.row())]; at > next) {
+          at = next;
+          following.push_back(static_cast<int>(it.row()));
+        }
+    front = std::move(following);
+  }
+  return ring;
+}
+
+void Correction::limit(NodeVectors& u) const {
+  const std::vector<int> ring = rings();
+  const double most = bystander_share * size_;
+  for (Eigen::Index node = 0; node < u.rows(); ++node) {
+    const auto at = static_cast<std::size_t>(node);
+    if (ring[at] >= reach_in_edges) {
+      u.row(node).setZero();
+      continue;
+    }
+    u.row(node) *= share_of_ring[static_cast<std::size_t>(ring[at])];
+    if (const double length = u.row(node).norm(); !is_bound_node_[at] && length > most)
+      u.row(node) *= most / length;
+  }
+}
+
+}  // namespace bespoke

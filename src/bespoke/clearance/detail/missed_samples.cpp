@@ -1,0 +1,110 @@
+#include "bespoke/clearance/detail/missed_samples.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bespoke {
+namespace {
+
+constexpr std::size_t most_places = 10;
+
+Points columns_of(const Points& points, const std::vector<int>& columns) {
+  Points some(3, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    some.col(static_cast<Eigen::Index>(i)) = points.col(columns[i]);
+  return some;
+}
+
+}  // namespace
+
+SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source,
+                                 const std::vector<Obstacle>& obstacles)
+    : samples_(std::move(samples)), obstacles_(obstacles) {
+  const Points places = places_of(samples_, on_source);
+  for (const Obstacle& obstacle : obstacles) {
+    required_.push_back(obstacle.required(places));
+    distance_.emplace_back(required_.back().size(), std::numeric_limits<double>::infinity());
+  }
+}
+
+void SampleDistances::look(const Points& on_target, const std::vector<char>& moved) {
+  std::vector<int> columns;
+  for (int i = 0; i < static_cast<int>(samples_.count()); ++i) {
+    bool is_moved = moved.empty();
+    for (const int vertex : samples_.vertices.col(i))
+      is_moved = is_moved || moved[static_cast<std::size_t>(vertex)];
+    if (is_moved) columns.push_back(i);
+  }
+  const Points places = columns_of(places_of(samples_, on_target), columns);
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    const std::vector<double> found = obstacles_[o].distance(places);
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      distance_[o][static_cast<std::size_t>(columns[i])] = found[i];
+  }
+}
+
+void SampleDistances::append(const SampleDistances& other, const std::vector<int>& columns) {
+  bespoke::append(other.samples_, columns, samples_);
+  for (std::size_t o = 0; o < obstacles_.size(); ++o)
+    for (const int column : columns) {
+      required_[o].push_back(other.required_[o][static_cast<std::size_t>(column)]);
+      distance_[o].push_back(other.distance_[o][static_cast<std::size_t>(column)]);
+    }
+}
+
+std::vector<int> SampleDistances::missed() const {
+  std::vector<int> columns;
+  for (int i = 0; i < static_cast<int>(samples_.count()); ++i)
+    for (std::size_t o = 0; o < obstacles_.size(); ++o)
+      if (misses(o, i)) {
+        columns.push_back(i);
+        break;
+      }
+  return columns;
+}
+
+MissedDistances SampleDistances::count() const {
+  MissedDistances count;
+  for (const int i : missed()) {
+    ++count.samples;
+    bool is_inside = false;
+    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+      if (!misses(o, i)) continue;
+      count.most = std::max(count.most, missing(o, i));
+      is_inside = is_inside || (required(o, i) > 0 && distance_[o][static_cast<std::size_t>(i)] < 0);
+    }
+    if (is_inside) ++count.inside;
+  }
+  return count;
+}
+
+std::vector<MissedPlace> worst_places(const SampleDistances& distances, const Points& on_target,
+                                      const std::vector<Obstacle>& obstacles, double radius) {
+  struct Miss {
+    double missing;
+    int sample;
+    std::size_t obstacle;
+  };
+  std::vector<Miss> misses;
+  for (const int i : distances.missed())
+    for (std::size_t o = 0; o < obstacles.size(); ++o)
+      if (distances.misses(o, i)) misses.push_back({distances.missing(o, i), i, o});
+  std::stable_sort(misses.begin(), misses.end(),
+                   [](const Miss& a, const Miss& b) { return a.missing > b.missing; });
+  const Points places = places_of(distances.samples(), on_target);
+  std::vector<MissedPlace> worst;
+  for (const Miss& miss : misses) {
+    const Vector3 place = places.col(miss.sample);
+    const auto near = std::find_if(worst.begin(), worst.end(), [&](const MissedPlace& found) {
+      return (found.place - place).norm() < radius;
+    });
+    if (near != worst.end())
+      ++near->samples;
+    else if (worst.size() < most_places)
+      worst.push_back({obstacles[miss.obstacle].name, place, miss.missing, 1});
+  }
+  return worst;
+}
+
+}  // namespace bespoke

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "bespoke/clearance/detail/product_samples.h"
+#include "bespoke/clearance/keep_clear.h"
+
+namespace bespoke {
+
+/// What the obstacles require of samples, and by how much they miss it.
+class SampleDistances {
+ public:
+  /// `on_source`: 3×n, the product's vertices.
+  SampleDistances(ProductSamples samples, const Points& on_source, const std::vector<Obstacle>& obstacles);
+
+  /// Takes the vertices (3×n) as they lie on the target; those of `moved` alone (n flags), unless it is
+  /// empty.
+  void look(const Points& on_target, const std::vector<char>& moved = {});
+
+  /// Some of another's after these.
+  void append(const SampleDistances& other, const std::vector<int>& columns);
+
+  const ProductSamples& samples() const { return samples_; }
+  double required(std::size_t obstacle, Eigen::Index sample) const {
+    return required_[obstacle][static_cast<std::size_t>(sample)];
+  }
+  /// Above the tolerance of the obstacle where the sample misses; mesh units.
+  double missing(std::size_t obstacle, Eigen::Index sample) const {
+    return required(obstacle, sample) - distance_[obstacle][static_cast<std::size_t>(sample)];
+  }
+  bool misses(std::size_t obstacle, Eigen::Index sample) const {
+    return missing(obstacle, sample) > obstacles_[obstacle].tolerance;
+  }
+  /// Columns that miss what some obstacle requires.
+  std::vector<int> missed() const;
+
+  MissedDistances count() const;
+
+ private:
+  ProductSamples samples_;
+  const std::vector<Obstacle>& obstacles_;
+  std::vector<std::vector<double>> required_, distance_;  // of each obstacle, of each sample
+};
+
+/// The worst places of what misses, one in a neighbourhood of `radius` (mesh units), ten at most.
+std::vector<MissedPlace> worst_places(const SampleDistances& distances, const Points& on_target,
+                                      const std::vector<Obstacle>& obstacles, double radius);
+
+}  // namespace bespoke

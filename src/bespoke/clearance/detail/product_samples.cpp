@@ -1,0 +1,103 @@
+#include "bespoke/clearance/detail/product_samples.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/parallel.h"
+
+namespace bespoke {
+namespace {
+
+constexpr int most_divisions = 16;
+constexpr int check_divisions = 4;
+constexpr std::size_t samples_per_range = 4096;
+
+class SampleList {
+ public:
+  void add(const Eigen::Vector3i& vertices, const Vector3& weights) {
+    vertices_.push_back(vertices);
+    weights_.push_back(weights);
+  }
+
+  ProductSamples samples() const {
+    const auto count = static_cast<Eigen::Index>(vertices_.size());
+    ProductSamples samples{Faces(3, count), Points(3, count)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+      samples.vertices.col(i) = vertices_[static_cast<std::size_t>(i)];
+      samples.weights.col(i) = weights_[static_cast<std::size_t>(i)];
+    }
+    return samples;
+  }
+
+ private:
+  std::vector<Eigen::Vector3i> vertices_;
+  std::vector<Vector3> weights_;
+};
+
+/// The middles of the n² equal parts of a face.
+void add_parts(const Eigen::Vector3i& face, int n, SampleList& list) {
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      const Vector3 low((3 * i + 1) / (3.0 * n), (3 * j + 1) / (3.0 * n), 0);
+      list.add(face, {low[0], low[1], 1 - low[0] - low[1]});
+      if (i + j + 1 >= n) continue;
+      const Vector3 high((3 * i + 2) / (3.0 * n), (3 * j + 2) / (3.0 * n), 0);
+      list.add(face, {high[0], high[1], 1 - high[0] - high[1]});
+    }
+}
+
+}  // namespace
+
+ProductSamples constraint_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines,
+                                  double spacing) {
+  SampleList list;
+  for (int v = 0; v < static_cast<int>(product.vertices.cols()); ++v) list.add({v, v, v}, {1, 0, 0});
+  for (const MeshEdge& edge : mesh_edges(product).edges) list.add({edge.a, edge.b, edge.b}, {0.5, 0.5, 0});
+  for (Eigen::Index i = 0; i < lines.cols(); ++i)
+    list.add({lines(0, i), lines(1, i), lines(1, i)}, {0.5, 0.5, 0});
+  for (Eigen::Index face = 0; face < product.faces.cols(); ++face) {
+    const Eigen::Vector3i corners = product.faces.col(face);
+    double longest = 0;
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(
+          longest, (product.vertices.col(corners[k]) - product.vertices.col(corners[(k + 1) % 3])).norm());
+    const double divisions = std::ceil(longest / spacing);
+    add_parts(corners, divisions < most_divisions ? std::max(1, static_cast<int>(divisions)) : most_divisions,
+              list);
+  }
+  return list.samples();
+}
+
+ProductSamples check_samples(const TriangleMesh& product) {
+  SampleList list;
+  for (Eigen::Index face = 0; face < product.faces.cols(); ++face)
+    add_parts(product.faces.col(face), check_divisions, list);
+  return list.samples();
+}
+
+Points places_of(const ProductSamples& samples, const Points& vertices) {
+  Points places(3, samples.count());
+  parallel_for(static_cast<std::size_t>(samples.count()), samples_per_range,
+               [&](std::size_t begin, std::size_t end) {
+                 for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
+                   places.col(i) = samples.weights(0, i) * vertices.col(samples.vertices(0, i));
+                   for (int k = 1; k < 3; ++k)
+                     if (samples.weights(k, i) != 0)
+                       places.col(i) += samples.weights(k, i) * vertices.col(samples.vertices(k, i));
+                 }
+               });
+  return places;
+}
+
+void append(const ProductSamples& from, const std::vector<int>& columns, ProductSamples& to) {
+  const Eigen::Index before = to.count(), more = static_cast<Eigen::Index>(columns.size());
+  to.vertices.conservativeResize(3, before + more);
+  to.weights.conservativeResize(3, before + more);
+  for (Eigen::Index i = 0; i < more; ++i) {
+    to.vertices.col(before + i) = from.vertices.col(columns[static_cast<std::size_t>(i)]);
+    to.weights.col(before + i) = from.weights.col(columns[static_cast<std::size_t>(i)]);
+  }
+}
+
+}  // namespace bespoke

@@ -1,0 +1,155 @@
+#include "bespoke/clearance/keep_clear.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "bespoke/clearance/detail/correction.h"
+#include "bespoke/clearance/detail/missed_samples.h"
+#include "bespoke/clearance/detail/prepared_data.h"
+#include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/number_format.h"
+#include "bespoke/quality/self_intersection.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+// Corrections of garments take three to five rounds, after each look at 16 samples a face one or two more.
+constexpr int rounds_of_a_solve = 12;
+constexpr int most_looks = 4;
+
+// Of the product's diagonal: places nearer than this are one.
+constexpr double place_radius = 0.03;
+
+constexpr int message_digits = 4;
+
+void require_sizes(const PreparedProduct& product, const Points& carried) {
+  if (carried.cols() != product.mesh().vertices.cols())
+    throw InvalidInput("keep_clear got " + std::to_string(carried.cols()) + " carried vertices of " +
+                       std::to_string(product.mesh().vertices.cols()));
+  if (!carried.allFinite()) throw InvalidInput("a carried vertex is not finite");
+}
+
+Statistics edge_strain(const TriangleMesh& before, const Points& after) {
+  const double size = growth(before, after);
+  std::vector<double> strains;
+  for (const MeshEdge& edge : mesh_edges(before).edges) {
+    const double was = (before.vertices.col(edge.a) - before.vertices.col(edge.b)).norm();
+    const double is = (after.col(edge.a) - after.col(edge.b)).norm();
+    if (was > 0 && is > 0) strains.push_back(std::abs(std::log(is / (size * was))));
+  }
+  return summarize(std::move(strains));
+}
+
+std::size_t new_pairs(const TriangleMesh& carried, const TriangleMesh& corrected) {
+  const auto before = self_intersections(carried), after = self_intersections(corrected);
+  std::vector<std::pair<int, int>> further;
+  std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(further));
+  return further.size();
+}
+
+void describe_moves(const PreparedProduct& product, const Points& carried, const Correction& correction,
+                    ClearedProduct& cleared) {
+  ClearanceSummary& summary = cleared.summary;
+  const std::vector<char> involved = correction.involved();
+  std::vector<double> moves;
+  for (Eigen::Index v = 0; v < carried.cols(); ++v) {
+    if (!correction.moved()[static_cast<std::size_t>(v)]) continue;
+    moves.push_back((cleared.vertices.col(v) - carried.col(v)).norm());
+    if (!involved[static_cast<std::size_t>(v)])
+      summary.largest_bystander = std::max(summary.largest_bystander, moves.back());
+  }
+  summary.moved = moves.size();
+  summary.moves = summarize(std::move(moves));
+  const TriangleMesh& mesh = product.mesh();
+  if (mesh.faces.cols() == 0) return;
+  summary.strain_before = summary.strain_after = edge_strain(mesh, carried);
+  if (summary.moved == 0) return;
+  summary.strain_after = edge_strain(mesh, cleared.vertices);
+  summary.new_self_intersections = new_pairs({carried, mesh.faces}, {cleared.vertices, mesh.faces});
+}
+
+MissedDistances together(const MissedDistances& a, const MissedDistances& b) {
+  return {a.samples + b.samples, a.inside + b.inside, std::max(a.most, b.most)};
+}
+
+}  // namespace
+
+ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
+                          const std::vector<Obstacle>& obstacles) {
+  require_sizes(product, carried);
+  const PreparedProduct::Data& data = product.data();
+  ClearedProduct cleared;
+  ClearanceSummary& summary = cleared.summary;
+  summary.vertices = static_cast<std::size_t>(carried.cols());
+  summary.looked_at = static_cast<std::size_t>(data.samples.count() + data.checks.count());
+
+  Stopwatch watch;
+  SampleDistances checks(data.checks, data.mesh.vertices, obstacles);
+  checks.look(carried);
+  summary.check_seconds = watch.seconds();
+  watch = {};
+  SampleDistances distances(data.samples, data.mesh.vertices, obstacles);
+  distances.look(carried);
+  summary.before = together(distances.count(), checks.count());
+  Correction correction(data, carried, obstacles);
+  correction.solve(distances, rounds_of_a_solve);
+  summary.solve_seconds = watch.seconds();
+  for (int look = 0; look < most_looks; ++look) {
+    watch = {};
+    checks.look(correction.vertices());
+    const std::vector<int> missed = checks.missed();
+    summary.check_seconds += watch.seconds();
+    if (missed.empty()) break;
+    watch = {};
+    distances.append(checks, missed);
+    correction.solve(distances, rounds_of_a_solve / 2);
+    summary.solve_seconds += watch.seconds();
+  }
+  watch = {};
+  cleared.vertices = correction.vertices();
+  checks.look(cleared.vertices);
+  distances.look(cleared.vertices);
+  summary.after = together(distances.count(), checks.count());
+  distances.append(checks, checks.missed());
+  summary.places = worst_places(distances, cleared.vertices, obstacles, place_radius * diagonal(carried));
+  describe_moves(product, carried, correction, cleared);
+  summary.check_seconds += watch.seconds();
+  return cleared;
+}
+
+namespace {
+
+std::string number(double value) { return format_number(value, message_digits); }
+
+std::string missed_text(const MissedDistances& missed) {
+  if (missed.samples == 0) return "none misses its distance";
+  return std::to_string(missed.samples) + " miss their distance by up to " + number(missed.most) + ", " +
+         std::to_string(missed.inside) + " of them inside that were outside";
+}
+
+}  // namespace
+
+std::string to_string(const ClearanceSummary& summary) {
+  std::string text = "clearance: of " + std::to_string(summary.looked_at) + " samples " +
+                     missed_text(summary.before) + "; corrected, " + missed_text(summary.after);
+  text +=
+      "\nmoved " + std::to_string(summary.moved) + " of " + std::to_string(summary.vertices) + " vertices";
+  if (summary.moved > 0)
+    text += " by p50 " + number(summary.moves.median) + ", p95 " + number(summary.moves.p95) + ", max " +
+            number(summary.moves.max) + "; strain of the edges p95 " + number(summary.strain_before.p95) +
+            " before, " + number(summary.strain_after.p95) + " after, max " +
+            number(summary.strain_before.max) + " and " + number(summary.strain_after.max);
+  if (summary.new_self_intersections > 0)
+    text += "\n" + std::to_string(summary.new_self_intersections) +
+            " pairs of its faces pass through each other that did not before";
+  for (const MissedPlace& place : summary.places)
+    text += "\nno space at (" + number(place.place[0]) + ", " + number(place.place[1]) + ", " +
+            number(place.place[2]) + "): " + number(place.missing) + " short of its distance from " +
+            place.obstacle + ", at " + std::to_string(place.samples) + " samples";
+  return text;
+}
+
+}  // namespace bespoke

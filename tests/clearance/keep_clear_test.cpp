@@ -1,0 +1,224 @@
+#include "bespoke/clearance/keep_clear.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bespoke/error.h"
+#include "bespoke/mesh/mesh_edges.h"
+#include "clearance/balls.h"
+
+namespace bespoke {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double pole_angle = 0.5;
+
+/// Edges from the nearest flagged vertex, of every vertex.
+std::vector<int> edges_from(const TriangleMesh& mesh, const std::vector<char>& flags) {
+  const VertexAdjacency around = vertex_adjacency(mesh);
+  std::vector<int> rings(flags.size(), 1000);
+  for (std::size_t v = 0; v < flags.size(); ++v)
+    if (flags[v]) rings[v] = 0;
+  for (int pass = 0; pass < 20; ++pass)
+    for (std::size_t v = 0; v < rings.size(); ++v)
+      for (int i = around.start[v]; i < around.start[v + 1]; ++i)
+        rings[v] = std::min(
+            rings[v], rings[static_cast<std::size_t>(around.neighbours[static_cast<std::size_t>(i)])] + 1);
+  return rings;
+}
+
+TEST(KeepClear, WhatMissesNothingKeepsItsBits) {
+  const TriangleMesh product = test::shell(1.05);
+  const Points carried = 1.01 * product.vertices;
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  EXPECT_EQ(cleared.vertices, carried);
+  EXPECT_EQ(cleared.summary.moved, 0u);
+  EXPECT_EQ(cleared.summary.before.samples, 0u);
+  EXPECT_TRUE(cleared.summary.is_clear());
+}
+
+TEST(KeepClear, KeepsTheDistanceThatEveryPlaceHad) {
+  const TriangleMesh product = test::shell(1.02);
+  const Points carried = test::dented(product.vertices, pole_angle, 0.05);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  EXPECT_GT(cleared.summary.before.inside, 100u);
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  for (Eigen::Index v = 0; v < carried.cols(); ++v)
+    ASSERT_GT(cleared.vertices.col(v).norm(), 1.02 - 1.01 * test::unit_ball().tolerance) << v;
+}
+
+TEST(KeepClear, MovesNothingBeyondFiveEdgesFromWhatMisses) {
+  const TriangleMesh product = test::shell(1.02);
+  const Points carried = test::dented(product.vertices, pole_angle, 0.05);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  const std::vector<int> rings = edges_from(product, test::near_pole(product.vertices, pole_angle));
+  for (std::size_t v = 0; v < rings.size(); ++v) {
+    const auto column = static_cast<Eigen::Index>(v);
+    if (rings[v] > 5) {
+      ASSERT_EQ(cleared.vertices.col(column), carried.col(column)) << v;
+    }
+  }
+  // Of the diagonal of the ball, whose tolerance says its size.
+  EXPECT_LE(cleared.summary.largest_bystander, 0.002 * 2 + 1e-12);
+}
+
+TEST(KeepClear, GivesTheEaseThatIsRequired) {
+  const TriangleMesh product = test::shell(1.01);
+  const ClearedProduct cleared =
+      keep_clear(PreparedProduct(product), product.vertices, {test::unit_ball({.ease = 0.05})});
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  for (const auto& vertex : cleared.vertices.colwise()) {
+    ASSERT_GT(vertex.norm(), 1.05 - 1.01 * test::unit_ball().tolerance);
+    ASSERT_LT(vertex.norm(), 1.06);
+  }
+}
+
+TEST(KeepClear, WhatWasInsideMayStayAsDeep) {
+  const TriangleMesh product = test::shell(0.98);
+  const ClearedProduct same = keep_clear(PreparedProduct(product), product.vertices, {test::unit_ball()});
+  EXPECT_EQ(same.vertices, product.vertices);
+  const ClearedProduct deeper =
+      keep_clear(PreparedProduct(product), 0.97 * product.vertices, {test::unit_ball()});
+  for (const auto& vertex : deeper.vertices.colwise())
+    ASSERT_NEAR(vertex.norm(), 0.98, 2 * test::unit_ball().tolerance);
+}
+
+// All vertices are outside, but the middles of edges and faces cut through.
+TEST(KeepClear, FindsFacesThatCutThroughBetweenTheirVertices) {
+  TriangleMesh product = shapes::icosphere(1);
+  product.vertices *= 1.25;
+  const Points carried = 1.005 / 1.25 * product.vertices;
+  const ClearedProduct cleared =
+      keep_clear(PreparedProduct(product), carried, {test::unit_ball({.ease = 0.0})});
+  EXPECT_GT(cleared.summary.before.samples, 0u);
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+}
+
+TEST(KeepClear, ClosedSeamsStayClosed) {
+  const TriangleMesh product = shapes::soup(test::shell(1.02, 3));
+  const Points carried = test::dented(product.vertices, pole_angle, 0.05);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  EXPECT_TRUE(cleared.summary.is_clear());
+  for (Eigen::Index a = 0; a < carried.cols(); ++a)
+    for (Eigen::Index b = a + 1; b < carried.cols(); ++b)
+      if (product.vertices.col(a) == product.vertices.col(b)) {
+        ASSERT_EQ(cleared.vertices.col(a), cleared.vertices.col(b));
+      }
+}
+
+TEST(KeepClear, PartsThatKeepTheirShapeAreShiftedAsAWhole) {
+  const TriangleMesh product = test::shell(1.02);
+  const Points carried = test::dented(product.vertices, pole_angle, 0.05);
+  std::vector<int> parts(static_cast<std::size_t>(carried.cols()), -1);
+  const std::vector<char> is_part = test::near_pole(product.vertices, 0.2);
+  for (std::size_t v = 0; v < parts.size(); ++v)
+    if (is_part[v]) parts[v] = 0;
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product, parts), carried, {test::unit_ball()});
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  Vector3 shift = Vector3::Zero();
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    if (!is_part[v]) continue;
+    const auto column = static_cast<Eigen::Index>(v);
+    const Vector3 move = cleared.vertices.col(column) - carried.col(column);
+    if (shift.isZero(0)) shift = move;
+    ASSERT_LT((move - shift).norm(), 1e-15);
+  }
+  EXPECT_GT(shift.norm(), 0.04);
+}
+
+// A button on a shirt: it shares no vertex with it, and misses nothing itself.
+TEST(KeepClear, SmallShellsGoWithWhatTheyLieOn) {
+  TriangleMesh cloth = test::shell(1.02);
+  TriangleMesh button = shapes::icosphere(2);
+  for (auto vertex : button.vertices.colwise())
+    vertex = Vector3(0.01 * vertex.x(), 0.01 * vertex.y(), 1.03 + 0.005 * vertex.z());
+  const TriangleMesh product = shapes::joined(cloth, button);
+  Points carried = product.vertices;
+  carried.leftCols(cloth.vertices.cols()) = test::dented(cloth.vertices, pole_angle, 0.04);
+  for (auto vertex : carried.rightCols(button.vertices.cols()).colwise()) vertex.z() -= 0.04;
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  for (Eigen::Index v = cloth.vertices.cols(); v < carried.cols(); ++v)
+    ASSERT_LT((cleared.vertices.col(v) - product.vertices.col(v)).norm(), 0.004) << v;
+}
+
+// A glove as modellers make it: two sheets, thinner than what the inner one is moved by.
+TEST(KeepClear, TheTwoSheetsOfAThickOneStayApart) {
+  const TriangleMesh inner = test::shell(1.001), outer = test::shell(1.011);
+  TriangleMesh product = shapes::joined(outer, inner);
+  for (auto face : product.faces.rightCols(inner.faces.cols()).colwise()) std::swap(face[1], face[2]);
+  const Points carried = test::dented(product.vertices, pole_angle, 0.03);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  const Eigen::Index n = outer.vertices.cols();
+  for (Eigen::Index v = 0; v < n; ++v)
+    ASSERT_GT(cleared.vertices.col(v).norm() - cleared.vertices.col(v + n).norm(), 0.005) << v;
+}
+
+TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
+  // A sheet between two plates that leave less than it had to each side.
+  TriangleMesh product = shapes::square_grid(20);
+  Obstacle plates;
+  plates.name = "the plates";
+  plates.step = 1e-3;
+  plates.tolerance = 1e-4;
+  plates.required = [](const Points& x) {
+    return std::vector<double>(static_cast<std::size_t>(x.cols()), 0.05);
+  };
+  plates.distance = [](const Points& x) {
+    std::vector<double> values;
+    for (const auto& point : x.colwise()) values.push_back(0.02 - std::abs(point.z()));
+    return values;
+  };
+  const Points carried = product.vertices.colwise() + Vector3(0, 0, 0.01);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {plates});
+  EXPECT_FALSE(cleared.summary.is_clear());
+  ASSERT_FALSE(cleared.summary.places.empty());
+  EXPECT_NEAR(cleared.summary.places.front().missing, 0.03, 0.012);
+  EXPECT_EQ(cleared.summary.places.front().obstacle, "the plates");
+  EXPECT_THAT(to_string(cleared.summary), HasSubstr("no space at"));
+  for (const auto& vertex : cleared.vertices.colwise()) ASSERT_LT(std::abs(vertex.z()), 0.05);
+  EXPECT_LT(cleared.summary.strain_after.max, 0.1);
+  EXPECT_EQ(cleared.summary.new_self_intersections, 0u);
+}
+
+TEST(KeepClear, PointsWithoutFacesMoveAlone) {
+  const TriangleMesh points{test::shell(1.02).vertices, Faces(3, 0)};
+  const Points carried = test::dented(points.vertices, pole_angle, 0.05);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(points), carried, {test::unit_ball()});
+  EXPECT_TRUE(cleared.summary.is_clear());
+  for (Eigen::Index v = 0; v < carried.cols(); ++v) {
+    ASSERT_GT(cleared.vertices.col(v).norm(), 1.02 - 1.01 * test::unit_ball().tolerance);
+    ASSERT_LT(cleared.vertices.col(v).norm(), 1.02 + 1e-3);
+  }
+}
+
+TEST(KeepClear, SameBitsEveryTime) {
+  const TriangleMesh product = test::shell(1.02);
+  const Points carried = test::dented(product.vertices, pole_angle, 0.05);
+  const PreparedProduct prepared(product);
+  EXPECT_EQ(keep_clear(prepared, carried, {test::unit_ball()}).vertices,
+            keep_clear(PreparedProduct(product), carried, {test::unit_ball()}).vertices);
+}
+
+TEST(KeepClear, RefusesSizesThatDifferAndWhatIsNotFinite) {
+  const TriangleMesh product = test::shell(1.02, 1);
+  const PreparedProduct prepared(product);
+  EXPECT_THROW(keep_clear(prepared, Points(3, 2), {}), InvalidInput);
+  Points carried = product.vertices;
+  carried(0, 3) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(keep_clear(prepared, carried, {}), InvalidInput);
+  TriangleMesh bad = product;
+  bad.faces(0, 0) = 1000;
+  EXPECT_THROW(PreparedProduct{bad}, InvalidInput);
+  EXPECT_THROW(PreparedProduct(product, std::vector<int>(3)), InvalidInput);
+  EXPECT_THROW(PreparedProduct(TriangleMesh{Points(3, 0), Faces(3, 0)}), InvalidInput);
+}
+
+}  // namespace
+}  // namespace bespoke

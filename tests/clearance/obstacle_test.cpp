@@ -1,0 +1,74 @@
+#include "bespoke/clearance/obstacle.h"
+
+#include <gtest/gtest.h>
+
+#include "asset/small_asset.h"
+#include "bespoke/clearance/keep_clear.h"
+#include "bespoke/clearance/model_sides.h"
+#include "clearance/balls.h"
+
+namespace bespoke {
+namespace {
+
+constexpr ModelSizes ball_sizes{3.5, 3.5};
+
+/// Of a map from the unit sphere to itself.
+std::shared_ptr<const ModelDistances> ball_distances() {
+  const TriangleMesh ball = test::shell(1, 5);
+  return model_distances(with_model_sides(with_preview(test::small_asset(), ball), ball, ball));
+}
+
+Points on_axis(double x) { return Vector3(x, 0, 0); }
+
+TEST(BodyObstacle, KeepRequiresTheDistanceOnTheSource) {
+  const auto distances = ball_distances();
+  const Obstacle body = body_obstacle(distances, ball_sizes, {});
+  const double exact = 1e-3;
+  EXPECT_NEAR(body.required(on_axis(1.04)).front(), 0.04, exact);
+  EXPECT_NEAR(body.required(on_axis(0.97)).front(), -0.03, exact);
+  EXPECT_NEAR(body.distance(on_axis(1.02)).front(), 0.02, exact);
+  // What touches is kept off by the error of the grid.
+  EXPECT_GE(body.required(on_axis(1.0001)).front(), distances->target.error());
+  // Far away the band is all that is known.
+  EXPECT_NEAR(body.required(on_axis(2)).front(), 0.9 * distances->target.band(), exact);
+}
+
+TEST(BodyObstacle, LengthsFollowThePowerOfTwoOfTheSizes) {
+  const Obstacle body = body_obstacle(ball_distances(), {3.5, 7.5}, {});
+  EXPECT_NEAR(body.required(on_axis(1.03)).front(), 0.06, 2e-3);
+}
+
+TEST(BodyObstacle, EaseIsTheSameEverywhere) {
+  const Obstacle body = body_obstacle(ball_distances(), ball_sizes, {.ease = 0.02});
+  for (const double x : {0.9, 1.0, 1.01, 3.0}) EXPECT_NEAR(body.required(on_axis(x)).front(), 0.02, 1e-9);
+}
+
+TEST(BodyObstacle, SpeaksTheProductsUnit) {
+  const auto distances = ball_distances();
+  const Obstacle metres = body_obstacle(distances, ball_sizes, {.ease = 0.02});
+  const Obstacle tenths = body_obstacle(distances, ball_sizes, {.ease = 0.2}, 0.1);
+  EXPECT_NEAR(tenths.required(on_axis(10.4)).front(), 10 * metres.required(on_axis(1.04)).front(), 1e-9);
+  EXPECT_NEAR(tenths.distance(on_axis(10.4)).front(), 10 * metres.distance(on_axis(1.04)).front(), 1e-9);
+  EXPECT_DOUBLE_EQ(tenths.step, 10 * metres.step);
+  EXPECT_DOUBLE_EQ(tenths.tolerance, 10 * metres.tolerance);
+}
+
+TEST(LayerObstacle, KeepsOrderAndDistance) {
+  const TriangleMesh lower = test::shell(1.02, 3), upper = test::shell(1.04, 4);
+  // The lower layer was corrected outwards, through the upper one.
+  const Points lower_after = 1.05 / 1.02 * lower.vertices;
+  const Obstacle layer = layer_obstacle("shirt", lower, lower_after, ball_sizes);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(upper), upper.vertices, {layer});
+  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  for (const auto& vertex : cleared.vertices.colwise()) ASSERT_GT(vertex.norm(), 1.065);
+}
+
+TEST(LayerObstacle, RequiresNothingOfWhatIsUnderIt) {
+  const TriangleMesh lower = test::shell(1.02, 3);
+  const Obstacle layer = layer_obstacle("shirt", lower, lower.vertices, ball_sizes);
+  EXPECT_EQ(layer.required(on_axis(1)).front(), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(layer.required(on_axis(3)).front(), -std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+}  // namespace bespoke
