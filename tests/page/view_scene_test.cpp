@@ -87,6 +87,15 @@ TEST(ViewScene, ThinsMeshesToTheTrianglesAllowed) {
               1e-4);
 }
 
+TEST(ViewScene, HasLengthsInMeshUnitsWhereNoUnitIsStated) {
+  Scenery scenery;
+  scenery.asset.record.unit = "unknown";
+  const UnpackedScene scene = scenery.scene();
+  EXPECT_EQ(scene.record["unit"], "mesh units");
+  for (const nlohmann::json& field : scene.record["meshes"][0]["fields"])
+    if (field["id"] == "displacement") EXPECT_EQ(field["unit"], "mesh units");
+}
+
 TEST(ViewScene, ColoursBySourceTargetProductAndFindings) {
   Scenery scenery;
   const auto ids = [](const nlohmann::json& mesh) {

@@ -9,6 +9,7 @@
 #include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/picture.h"
 #include "bespoke/page/detail/places.h"
+#include "bespoke/page/detail/shown_unit.h"
 #include "bespoke/page/detail/vertex_fields.h"
 #include "bespoke/page/html_text.h"
 #include "bespoke/report/inspection.h"
@@ -86,7 +87,7 @@ class Reporter {
  private:
   Points carried(const Points& x) const { return input_.asset.target_from_source * chain_(x); }
 
-  std::string length(double value) const { return number(value) + " " + input_.asset.record.unit; }
+  std::string length(double value) const { return number(value) + " " + shown_unit(input_.asset); }
 
   static void add(const std::string& name, const std::string& what, const std::vector<PaintedMesh>& meshes,
                   std::vector<ReportPicture>& pictures) {

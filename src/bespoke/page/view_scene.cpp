@@ -12,6 +12,7 @@
 #include "bespoke/page/detail/mesh_record.h"
 #include "bespoke/page/detail/packed_arrays.h"
 #include "bespoke/page/detail/places.h"
+#include "bespoke/page/detail/shown_unit.h"
 #include "bespoke/page/detail/space_samples.h"
 #include "bespoke/page/detail/vertex_fields.h"
 #include "bespoke/quality/signed_distance.h"
@@ -48,7 +49,7 @@ class SceneMaker {
   std::string make(const Progress& progress) {
     Json record = {{"page", "view"},
                    {"title", input_.title},
-                   {"unit", input_.asset.record.unit},
+                   {"unit", shown_unit(input_.asset)},
                    {"command", input_.command},
                    {"diagonal", diagonal(input_.source.vertices)},
                    {"motion", motion()}};
@@ -165,7 +166,7 @@ class SceneMaker {
   Json record(const char* role, const std::string& name, const TriangleMesh& whole,
               const DisplayMesh& display, const std::vector<Points>& knots,
               const std::vector<VertexField>& fields) {
-    return mesh_record({role, name, whole, display, knots, fields, input_.asset.record.unit}, arrays_);
+    return mesh_record({role, name, whole, display, knots, fields, shown_unit(input_.asset)}, arrays_);
   }
 
   Json anchors() const {

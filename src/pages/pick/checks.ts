@@ -37,7 +37,7 @@ export function check_pairs(pairs: PickedPair[]): PairChecks {
   };
   const missing = pairs.length - complete.length;
   if (missing > 0) checks.warnings.push(`${missing} ${missing === 1 ? "pair lacks" : "pairs lack"} one end; saved are complete pairs only.`);
-  if (complete.length < 4) checks.warnings.push(`${complete.length} complete ${complete.length === 1 ? "pair" : "pairs"}: a fit needs four that are not coplanar, a dozen do better.`);
+  if (complete.length < 4) checks.warnings.push(`${complete.length} complete ${complete.length === 1 ? "pair" : "pairs"}: a fit needs four, a dozen do better.`);
   if (complete.length >= 3) {
     const rigid = rigid_warp(a, b);
     checks.rigid = a.map((point, i) => distance(rigid(point), b[i]));

@@ -67,7 +67,7 @@ class ViewPage {
     return element(
       "header", {},
       element("h1", {}, this.record.title),
-      element("span", { class: "soft" }, `unit: ${this.record.unit}`),
+      element("span", { class: "soft" }, `lengths in ${this.record.unit}`),
       element("span", { class: "space" }),
       button_group("Layout", [{ value: "side", label: "Side by side" }, { value: "over", label: "Overlaid" }], "side", (value) => {
         this.state.layout = value as "side" | "over";
