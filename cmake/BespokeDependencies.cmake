@@ -16,3 +16,7 @@ set(bespoke_shared_libs "${BUILD_SHARED_LIBS}")
 find_dependency(OpenVDB 8.0 MODULE COMPONENTS openvdb)
 set(BUILD_SHARED_LIBS "${bespoke_shared_libs}")
 unset(bespoke_shared_libs)
+# Without packages for CMake: their headers are found by their directories, and they are linked by their names.
+find_path(BESPOKE_CAIRO cairo/cairo-pdf.h REQUIRED)
+find_path(BESPOKE_POLYCLIPPING polyclipping/clipper.hpp REQUIRED)
+mark_as_advanced(BESPOKE_CAIRO BESPOKE_POLYCLIPPING)

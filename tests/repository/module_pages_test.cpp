@@ -119,10 +119,13 @@ TEST(ModulePages, LibrariesAreIncludedInTheirPlacesOnly) {
        {"asset/detail/grid_conversion.cpp", "asset/detail/source_distance.cpp", "asset/detail/vdb_grid.h",
         "asset/detail/vdb_leaves.h", "asset/detail/vdb_part.cpp"}},
       {"OpenMesh/", {"mesh/half_edge_mesh.h"}},
+      {"cairo/", {"pattern/detail/sheet_pdf.cpp"}},
+      {"polyclipping/", {"pattern/detail/seam_allowance.cpp"}},
       {"tbb/", {"parallel.cpp", "thread_arena.cpp"}},
       {"nlohmann/",
        {"anchors/anchor_files.cpp", "anchors/detail/anchor_json.cpp", "anchors/detail/point_files.cpp",
         "anchors/detail/slicer_markups.cpp", "asset/detail/record_json.cpp", "exchange/glb_file.cpp",
+        "pattern/detail/pattern_json.cpp", "pattern/seam_file.cpp",
         "pipeline/summary_json.h", "product/detail/gltf_json.h"}}};
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library)) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;

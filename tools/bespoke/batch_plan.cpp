@@ -24,11 +24,12 @@ struct JobCommand {
 };
 
 constexpr std::array commands{
-    JobCommand{"fit", add_fit_command},       JobCommand{"apply", add_apply_command},
-    JobCommand{"invert", add_invert_command}, JobCommand{"compose", add_compose_command},
-    JobCommand{"check", add_check_command},   JobCommand{"measure", add_measure_command},
-    JobCommand{"diff", add_diff_command},     JobCommand{"export", add_export_command},
-    JobCommand{"view", add_view_command},     JobCommand{"report", add_report_command}};
+    JobCommand{"fit", add_fit_command},        JobCommand{"apply", add_apply_command},
+    JobCommand{"invert", add_invert_command},  JobCommand{"compose", add_compose_command},
+    JobCommand{"check", add_check_command},    JobCommand{"measure", add_measure_command},
+    JobCommand{"diff", add_diff_command},      JobCommand{"export", add_export_command},
+    JobCommand{"view", add_view_command},      JobCommand{"report", add_report_command},
+    JobCommand{"flatten", add_flatten_command}};
 
 // What the batch decides for all of its jobs.
 constexpr std::array keys_of_the_batch{"threads", "quiet", "verbose", "help", "html"};

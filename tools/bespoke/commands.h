@@ -25,6 +25,7 @@ void add_compose_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_measure_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_diff_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_export_command(CLI::App& app, const PlanHandler& handle_plan);
+void add_flatten_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_view_command(CLI::App& app, const PlanHandler& handle_plan);
 void add_report_command(CLI::App& app, const PlanHandler& handle_plan);
 

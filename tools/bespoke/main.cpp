@@ -50,7 +50,8 @@ void add_commands(CLI::App& app) {
   add_samples_command(app);
   group("Make a map", {"fit", "pick", "anchors", "invert", "compose", "samples"});
   add_apply_command(app, run_at_once);
-  group("Use it", {"apply"});
+  add_flatten_command(app, run_at_once);
+  group("Use it", {"apply", "flatten"});
   add_view_command(app, run_at_once);
   add_report_command(app, run_at_once);
   add_info_command(app);

@@ -1,0 +1,185 @@
+#include "bespoke/pattern/flat_pattern.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "bespoke/error.h"
+#include "bespoke/number_format.h"
+#include "bespoke/pattern/detail/dart.h"
+#include "bespoke/pattern/grain.h"
+#include "bespoke/pattern/paired_seams.h"
+
+namespace bespoke {
+namespace {
+
+/// Pieces flattened, and measured.
+struct Attempt {
+  CutPieces cut;
+  std::vector<Seam> seams;
+  FlatPieces flat;
+  std::vector<ClothStrain> strains;
+  std::vector<std::optional<OutlineCrossing>> overlaps;
+
+  bool is_relieved(std::size_t p, double limit) const {
+    return !overlaps[p] && strains[p].strain_p95 <= limit;
+  }
+};
+
+Attempt attempt(const Garment& garment, const PatternOptions& options, const CutOptions& cut) {
+  Attempt result;
+  result.cut = cut_pieces(garment, cut);
+  result.seams = paired_seams(result.cut.pieces);
+  result.flat = flatten_pieces(result.cut.pieces, result.seams, options.flatten);
+  for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {
+    const Piece& piece = result.cut.pieces[p];
+    result.strains.push_back(cloth_strain(piece, result.flat.places[p]));
+    result.overlaps.push_back(outline_crossing(result.flat.places[p], piece.outline));
+  }
+  return result;
+}
+
+/// The piece that strains most of those that are not relieved.
+std::optional<std::size_t> worst_piece(const Attempt& result, double limit) {
+  std::optional<std::size_t> worst;
+  for (std::size_t p = 0; p < result.strains.size(); ++p)
+    if (!result.is_relieved(p, limit) &&
+        (!worst || result.strains[p].strain_p95 > result.strains[*worst].strain_p95))
+      worst = p;
+  return worst;
+}
+
+/// Turned so that the grain is upright.
+Eigen::Matrix2Xd upright(const Eigen::Matrix2Xd& flat, const Eigen::Vector2d& grain) {
+  Eigen::Matrix2d turn;
+  turn << grain.y(), -grain.x(), grain.x(), grain.y();
+  return turn * flat;
+}
+
+Vector3 longest_axis(const Points& points) {
+  const Box box = bounding_box(points);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  return Vector3::Unit(axis);
+}
+
+Eigen::Vector2d own_grain(const Piece& piece, const Eigen::Matrix2Xd& flat, const Garment& garment) {
+  return garment.rule == PieceRule::charts ? grain_of_charts(piece, flat)
+                                           : grain_along(piece, flat, longest_axis(garment.mesh.vertices));
+}
+
+void require_same_faces(const Garment& garment, const Garment& source) {
+  if (source.mesh.vertices.cols() != garment.mesh.vertices.cols() ||
+      source.mesh.faces.cols() != garment.mesh.faces.cols() || source.mesh.faces != garment.mesh.faces)
+    throw InvalidInput(source.path + ": its faces are not those of " + garment.path +
+                       "; --source is the product before the map carried it");
+}
+
+std::string percent(double fraction) { return format_number(100 * fraction, 3) + " %"; }
+
+std::string seam_text(const FlatPattern& pattern, const PatternSeam& seam) {
+  const auto name = [&](std::size_t side) {
+    return pattern.pieces[static_cast<std::size_t>(seam.seam.sides[side].piece)].piece.name;
+  };
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f mm and %.1f mm", seam.lengths[0], seam.lengths[1]);
+  return "'" + name(0) + "' to '" + name(1) + "': " + text;
+}
+
+}  // namespace
+
+FlatPattern flat_pattern(const Garment& garment, const Garment* source, const PatternOptions& options) {
+  if (source) require_same_faces(garment, *source);
+  FlatPattern pattern;
+  CutOptions cut = options.cut;
+  Attempt result = attempt(garment, options, cut);
+  std::vector<std::array<int, 2>> darts;
+  for (; pattern.darts < options.max_darts; ++pattern.darts) {
+    const std::optional<std::size_t> worst = worst_piece(result, options.strain_limit);
+    if (!worst) break;
+    const Piece& piece = result.cut.pieces[*worst];
+    const std::vector<int> path = dart_path(piece, result.strains[*worst].of_face);
+    if (path.empty()) break;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k)
+      cut.further_edges.push_back({piece.vertices[static_cast<std::size_t>(path[k])],
+                                   piece.vertices[static_cast<std::size_t>(path[k + 1])]});
+    result = attempt(garment, options, cut);
+  }
+  pattern.charts = result.cut.charts;
+  pattern.auto_cut = result.cut.auto_cut;
+  pattern.summary = result.flat.summary;
+  std::vector<Piece> source_pieces;
+  FlatPieces source_flat;
+  if (source) {
+    source_pieces = pieces_at(result.cut.pieces, source->mesh.vertices);
+    source_flat = flatten_pieces(source_pieces, result.seams, options.flatten);
+  }
+  for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {
+    PatternPiece piece;
+    const Eigen::Matrix2Xd& flat = result.flat.places[p];
+    Eigen::Vector2d grain;
+    if (source) {
+      const Eigen::Matrix2Xd& before = source_flat.places[p];
+      piece.source_strain = cloth_strain(source_pieces[p], before);
+      grain = carried_grain(source_pieces[p], before, own_grain(source_pieces[p], before, *source), flat);
+    } else {
+      grain = own_grain(result.cut.pieces[p], flat, garment);
+    }
+    piece.strain = result.strains[p];
+    piece.overlap = result.overlaps[p];
+    if (options.stretch_limits)
+      piece.excess = stretch_beyond(result.cut.pieces[p], flat, grain, *options.stretch_limits);
+    if (!result.is_relieved(p, options.strain_limit)) {
+      const std::vector<int> path = dart_path(result.cut.pieces[p], piece.strain.of_face);
+      if (!path.empty())
+        piece.dart = SuggestedDart{result.cut.pieces[p].vertices[static_cast<std::size_t>(path.front())],
+                                   result.cut.pieces[p].vertices[static_cast<std::size_t>(path.back())]};
+    }
+    piece.flat = upright(flat, grain);
+    piece.piece = std::move(result.cut.pieces[p]);
+    pattern.pieces.push_back(std::move(piece));
+  }
+  for (Seam& seam : result.seams) {
+    PatternSeam measured;
+    for (std::size_t side = 0; side < 2; ++side)
+      measured.lengths[side] = side_length(
+          seam.sides[side], pattern.pieces[static_cast<std::size_t>(seam.sides[side].piece)].flat);
+    measured.differs = std::abs(measured.lengths[0] - measured.lengths[1]) > options.flatten.seam_tolerance;
+    measured.seam = std::move(seam);
+    pattern.seams.push_back(std::move(measured));
+  }
+  return pattern;
+}
+
+std::string to_string(const FlatPattern& pattern, const PatternOptions& options) {
+  std::string text;
+  const auto line = [&](const std::string& name, const std::string& what) {
+    text += name + std::string(name.size() < 12 ? 12 - name.size() : 0, ' ') + " " + what + "\n";
+  };
+  line("pieces", std::to_string(pattern.pieces.size()) + ", " + std::to_string(pattern.seams.size()) +
+                     " seams; " + to_string(pattern.summary));
+  if (pattern.charts)
+    line("charts", "1 unit of texture is " + format_number(pattern.charts->mm_per_unit, 4) + " mm, edges " +
+                       format_number(pattern.charts->p5, 3) + " … " + format_number(pattern.charts->p95, 3) +
+                       " times that (p5 … p95)");
+  for (const std::string& name : pattern.auto_cut) line("cut", "'" + name + "' was cut to a disk");
+  if (pattern.darts > 0) line("darts", std::to_string(pattern.darts));
+  for (const PatternPiece& piece : pattern.pieces) {
+    line(piece.piece.name, to_string(piece.strain));
+    if (piece.source_strain) line("  source", to_string(*piece.source_strain));
+    if (piece.strain.strain_p95 > options.strain_limit)
+      line("  strain",
+           "p95 " + percent(piece.strain.strain_p95) + ", more than " + percent(options.strain_limit));
+    if (piece.excess && piece.excess->area_share > 0)
+      line("  stretch", percent(piece.excess->area_share) + " of the area beyond the limit, warp to " +
+                            percent(piece.excess->warp_max) + ", weft to " + percent(piece.excess->weft_max));
+    if (piece.overlap) line("  overlap", "the flat piece overlaps itself");
+    if (piece.dart)
+      line("  dart", "suggested: {\"path\": [" + std::to_string(piece.dart->from + 1) + ", " +
+                         std::to_string(piece.dart->to + 1) + "]}, or --darts");
+  }
+  for (const PatternSeam& seam : pattern.seams)
+    if (seam.differs) line("seam", seam_text(pattern, seam));
+  return text;
+}
+
+}  // namespace bespoke
