@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "support/instruction_sets.h"
 #include "support/random_points.h"
@@ -70,6 +73,36 @@ TEST(Distortion, IsTheSymmetricDirichletEnergyOfAnAffineMap) {
   const Distortion found = add_distortion(elements, linear_values(elements, f), no_bounds, gradients);
   EXPECT_NEAR(found.energy, volume(elements) * ((f.squaredNorm() + f.inverse().squaredNorm()) / 2 - 3), 1e-9);
   EXPECT_NEAR(found.min_determinant, f.determinant(), 1e-12);
+}
+
+TEST(Distortion, CountsByTheWeightsOfCells) {
+  NestedElements elements = two_levels();
+  const std::vector<Points> values = linear_values(elements, Vector3(1.2, 1, 0.9).asDiagonal());
+  const double energy = of(elements, values).energy;
+  std::vector<std::vector<double>> weights;
+  double heavy = 0;
+  for (const ElementLevel& level : elements.levels()) {
+    weights.emplace_back(level.finest.size(), 1.0);
+    weights.back().front() = 3;
+    heavy += std::pow(level.voxel_size, 3);
+  }
+  elements.weigh(std::move(weights));
+  EXPECT_NEAR(of(elements, values).energy, energy * (1 + 2 * heavy / volume(elements)), 1e-12);
+}
+
+TEST(Distortion, TellsTheCellsThatAreBeyondABound) {
+  const NestedElements elements = two_levels();
+  std::vector<Points> values = zeros(elements);
+  values[1](0, 0) = 10 * elements.levels()[1].voxel_size;
+  const Distortion found = of(elements, values);
+  ASSERT_TRUE(std::isinf(found.energy));
+  const ElementLevel& level = elements.levels()[1];
+  for (std::size_t number = 0; number < level.finest.size(); ++number) {
+    const std::array<int, 8>& corners = level.corners[static_cast<std::size_t>(level.finest[number])];
+    EXPECT_EQ(std::isinf(found.stiffness[1][number]),
+              std::find(corners.begin(), corners.end(), 0) != corners.end());
+  }
+  for (const double stiffness : found.stiffness[0]) EXPECT_TRUE(std::isfinite(stiffness));
 }
 
 TEST(Distortion, IsInfiniteWhereAVolumeOrALengthIsBeyondItsBound) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/error.h"
@@ -91,6 +92,40 @@ TEST(FitFiniteElements, TheBoundOnSqueezeComesBeforeTheVertices) {
   const FiniteElementFit fit = fit_finite_elements(plates.vertices, targets, plates, options_for(0.15));
   EXPECT_GE(min_relative_determinant(*fit.map), 1 / options_for(1).max_squeeze * 0.98);
   EXPECT_GT(fit.summary.residuals.max, 0.01 * gap);
+}
+
+TEST(FitFiniteElements, DistortionIsAwayFromTheSurface) {
+  // A lid turned against a fixed floor: space next to the lid turns with it, that in between shears.
+  const TriangleMesh plates = two_plates(0.3);
+  const Matrix3 turn = Eigen::AngleAxisd(0.3, Vector3::UnitZ()).toRotationMatrix();
+  const auto turned = [&](const Vector3& x) {
+    return (turn * (x - Vector3(0.5, 0.5, 0)) + Vector3(0.5, 0.5, 0)).eval();
+  };
+  Points targets = plates.vertices;
+  for (Eigen::Index i = targets.cols() / 2; i < targets.cols(); ++i) targets.col(i) = turned(targets.col(i));
+  const FiniteElementFit fit = fit_finite_elements(plates.vertices, targets, plates, options_for(0.3));
+  Points beside(3, 2);
+  beside << 0.8, 0.8, 0.5, 0.5, 0.27, 0.15;
+  const Points images = (*fit.map)(beside);
+  const double full = (turned(beside.col(0)) - beside.col(0)).norm();
+  const double left_behind = (images.col(0) - turned(beside.col(0))).norm();
+  // Of an even shear a tenth of the height costs a tenth of the turn.
+  EXPECT_LT(left_behind, 0.08 * full);
+}
+
+TEST(FitFiniteElements, NoLevelIsAddedBeyondTheNodesAllowed) {
+  const TriangleMesh sphere = shapes::icosphere(4);
+  FiniteElementOptions options = options_for(0.3);
+  options.fit_tolerance /= 10;
+  const auto nodes = [&] {
+    const FiniteElementSummary summary =
+        fit_finite_elements(sphere.vertices, bent(sphere.vertices), sphere, options).summary;
+    return std::accumulate(summary.nodes.begin(), summary.nodes.end(), std::size_t{0});
+  };
+  const std::size_t unbounded = nodes();
+  options.max_nodes = unbounded / 2;
+  // Corners of split cells come on top.
+  EXPECT_LT(nodes(), 0.75 * static_cast<double>(unbounded));
 }
 
 TEST(FitFiniteElements, ATargetTwiceAsLargeHasTheSameMapTwiceAsLarge) {

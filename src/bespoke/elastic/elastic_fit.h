@@ -46,6 +46,7 @@ struct ElasticOptions {
   bool guided = false;  ///< the multiscale methods meet guides in space too
   /// Finite elements: largest factor by which a volume may shrink relative to the affine part, > 1, no unit.
   double max_squeeze = 50;
+  std::size_t max_nodes = 180'000;  ///< of finite elements, > 0
   /// How many times as large lambda is around the fitted source, > 0: there the layers of a composition act.
   double growth = 1;
 };

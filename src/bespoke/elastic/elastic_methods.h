@@ -65,6 +65,8 @@ struct ElasticMethodRow {
   /// Whether its maps fold nowhere, so that a bake's folds are those of its voxels.
   bool keeps_orientation;
   bool takes_guides;  ///< in space, beside the surface
+  /// Whether it weighs guides against distortion, so that none need be left out where they harm.
+  bool weighs_guides;
   /// In fit tolerances: vertices missed by more are listed. A least-squares fit refines where the tolerance
   /// is missed and leaves what costs too much distortion.
   double met_within;

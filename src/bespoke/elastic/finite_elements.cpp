@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <utility>
 
 #include "bespoke/elastic/detail/element_objective.h"
+#include "bespoke/elastic/detail/element_weights.h"
 #include "bespoke/elastic/detail/exact_map_bytes.h"
 #include "bespoke/elastic/detail/nested_elements.h"
 #include "bespoke/elastic/detail/preconditioned_bfgs.h"
@@ -28,17 +30,17 @@ constexpr double refined_reach = 2;
 // Of the mean size of the sources' displacement: how soft data are at first; their stiffness then grows
 // fourfold.
 constexpr double softest = 0.25, stiffening = 4;
-// Of a vertex's weight: that of a guide.
-constexpr double guide_share = 0.05;
 // Of the energy, per iteration: while data are soft, and on the finest level; half of that on the one before,
 // …
 constexpr double soft_decrease = 1e-2, last_decrease = 3e-3;
-constexpr int max_iterations = 60;
+constexpr int max_iterations = 60, max_evaluations = 3 * max_iterations;
 // Of the bounds on squeeze: where the barriers are. Nearer ones trap the minimiser on its way.
 constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
 // Of the weight of a place at a cell beyond the bounds, and rounds of it.
 constexpr double loosening = 0.1;
 constexpr int max_loosenings = 3;
+// Of the bounds on squeeze: those on levels that are yet to be refined.
+constexpr double unrefined_beyond = 10;
 // Of the barriers, fourfold each.
 constexpr int max_widenings = 20;
 
@@ -87,6 +89,7 @@ void require_usable(const Points& sources, const Points& targets, const FiniteEl
   require(options.fit_tolerance, 0, "the fit tolerance");
   require(options.max_squeeze, 1, "the largest squeeze of a volume");
   require(options.max_length_squeeze, 1, "the largest squeeze of a length");
+  if (options.max_nodes < 1) throw InvalidInput("finite elements: there must be one node at least");
   if (options.max_levels < 1) throw InvalidInput("finite elements: there must be one level at least");
 }
 
@@ -104,14 +107,15 @@ class Solver {
         options_(options),
         barriers_{1 / (barrier_beyond * options.max_squeeze),
                   std::pow(length_barrier_beyond * options.max_length_squeeze, 2)},
-        shares_(static_cast<std::size_t>(sources_.cols()), guide_share),
+        shares_(static_cast<std::size_t>(sources_.cols()), 1.0),
+        source_(source),
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
-    std::fill_n(shares_.begin(), vertices, 1.0);
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
     elements_ = std::make_unique<NestedElements>(
         coarsest_,
         std::vector<std::vector<LatticeCoordinates>>{band_nodes(source, coarsest_, options.lambda)});
+    elements_->weigh(element_weights(*elements_, source, options.lambda));
     coefficients_ = Points::Zero(3, static_cast<Eigen::Index>(elements_->unknowns()));
   }
 
@@ -119,10 +123,12 @@ class Solver {
     for (int level = 1;; ++level) {
       progress_.step("elastic", static_cast<std::size_t>(level - 1),
                      static_cast<std::size_t>(options_.max_levels));
-      const std::vector<double> residuals = minimised(level);
+      std::vector<double> residuals = minimised(level);
+      for (int round = 0; round < max_loosenings && loosen(unrefined_beyond); ++round)
+        residuals = minimised(level);
       if (level == options_.max_levels || !refine(residuals)) break;
     }
-    for (int round = 0; round < max_loosenings && loosen(); ++round) minimised(options_.max_levels);
+    for (int round = 0; round < max_loosenings && loosen(1); ++round) minimised(options_.max_levels);
     for (const ElementLevel& level : elements_->levels()) {
       summary_.voxel_sizes.push_back(level.voxel_size);
       summary_.nodes.push_back(level.nodes.size());
@@ -138,11 +144,12 @@ class Solver {
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
     ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
-    const Energy energy = [&](const Points& x, Points& gradient) {
-      progress_.check();
-      return objective(x, gradient);
-    };
-    const auto inverse_diagonal = [&] { return objective.inverse_diagonal(); };
+    const Objective of_coefficients{[&](const Points& x, Points& gradient) {
+                                      progress_.check();
+                                      return objective(x, gradient);
+                                    },
+                                    [&] { return objective.inverse_diagonal(); },
+                                    [&](Points& step) { objective.damp(step); }};
     Points unused;
     // Inside a cell that was split a length may be beyond its barrier.
     for (int wider = 0; !std::isfinite(objective(coefficients_, unused)); ++wider) {
@@ -155,7 +162,7 @@ class Solver {
     const auto run = [&](double soft, double decrease) {
       objective.set_weight(weighted_area_ / soft);
       iterations += static_cast<std::size_t>(
-          minimise(energy, inverse_diagonal, {max_iterations, decrease}, coefficients_));
+          minimise(of_coefficients, {max_iterations, max_evaluations, decrease}, coefficients_));
     };
     // From the identity stiff data would push single cells to their bounds, which stops all.
     const double stiff = compliance * tolerance_;
@@ -163,7 +170,7 @@ class Solver {
       for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
         run(soft, soft_decrease);
     run(stiff, std::ldexp(last_decrease, level - options_.max_levels));
-    const double volume = cell_volume();
+    const double volume = weighted_volume();
     objective(coefficients_, unused);
     summary_.iterations.push_back(iterations);
     summary_.distortion = volume > 0 ? objective.distortion().energy / volume : 0;
@@ -172,11 +179,12 @@ class Solver {
     return objective.residuals(coefficients_);
   }
 
-  /// Where cells are beyond the bounds their places count less. Whether there are any.
-  bool loosen() {
+  /// Where cells are so many times beyond the bounds their places count less. Whether there are any.
+  bool loosen(double times) {
     const ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
-    const std::vector<std::size_t> squeezed = objective.squeezed(
-        coefficients_, {1 / options_.max_squeeze, std::pow(options_.max_length_squeeze, 2) + 2});
+    const std::vector<std::size_t> squeezed =
+        objective.squeezed(coefficients_, {1 / (times * options_.max_squeeze),
+                                           std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
       summary_.loosened += place < vertices_ && shares_[place] == 1;
       shares_[place] *= loosening;
@@ -184,7 +192,7 @@ class Solver {
     return !squeezed.empty();
   }
 
-  /// Before `added` nodes, repeated ones included, come to those that there are.
+  /// Before `added` nodes come to those that there are.
   void require_memory(std::size_t added) const {
     constexpr std::size_t bytes_of_a_node =
         1500;  // vectors of the minimiser, and gradients of the cells around it
@@ -195,29 +203,45 @@ class Solver {
                              " MiB; a larger --fit-tolerance needs fewer");
   }
 
-  double cell_volume() const {
+  double weighted_volume() const {
     double volume = 0;
     for (const ElementLevel& level : elements_->levels())
-      volume += static_cast<double>(level.finest.size()) * std::pow(level.voxel_size, 3);
+      volume +=
+          std::accumulate(level.weights.begin(), level.weights.end(), 0.0) * std::pow(level.voxel_size, 3);
     return volume;
   }
 
-  /// Returns whether any vertex required it.
+  /// Nodes of a finer level around the vertices that are missed by more than a distance and did not give way.
+  std::vector<LatticeCoordinates> nodes_around_missed(const Lattice& finer,
+                                                      const std::vector<double>& residuals,
+                                                      double distance) const {
+    std::vector<LatticeCoordinates> nodes;
+    for (std::size_t i = 0; i < vertices_; ++i) {
+      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
+      if (shares_[i] == 1 && residuals[i] > distance && !elements_->places(x).empty())
+        add_nodes_around(finer, x, nodes);
+    }
+    return unique_leaves(std::move(nodes));
+  }
+
+  /// Whether any vertex asks for it; those that are missed most come first where nodes are scarce.
   bool refine(const std::vector<double>& residuals) {
     std::vector<std::vector<LatticeCoordinates>> nodes;
     for (const ElementLevel& level : elements_->levels()) nodes.push_back(level.nodes);
-    nodes.emplace_back();
     const Lattice finer{coarsest_.origin, elements_->levels().back().voxel_size / 2};
-    for (std::size_t i = 0; i < vertices_; ++i) {
-      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
-      if (residuals[i] > refined_beyond * tolerance_ && !elements_->places(x).empty())
-        add_nodes_around(finer, x, nodes.back());
-    }
-    if (nodes.back().empty()) return false;
-    require_memory(nodes.back().size());
+    std::vector<LatticeCoordinates> added;
+    double distance = refined_beyond * tolerance_;
+    do {
+      added = nodes_around_missed(finer, residuals, distance);
+      distance *= 2;
+    } while (added.size() + elements_->unknowns() > options_.max_nodes && !added.empty());
+    if (added.empty()) return false;
+    require_memory(added.size());
+    nodes.push_back(std::move(added));
     auto refined = std::make_unique<NestedElements>(coarsest_, std::move(nodes));
     coefficients_ = transferred(*elements_, coefficients_, *refined);
     elements_ = std::move(refined);
+    elements_->weigh(element_weights(*elements_, source_, options_.lambda));
     return true;
   }
 
@@ -228,6 +252,7 @@ class Solver {
   FiniteElementOptions options_;
   DistortionBounds barriers_;
   std::vector<double> shares_;  ///< of a place's weight
+  const TriangleMesh& source_;
   const Progress& progress_;
   Lattice coarsest_;
   double weighted_area_ = 0;  ///< of a place

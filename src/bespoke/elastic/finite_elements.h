@@ -23,11 +23,12 @@ struct FiniteElementOptions {
   /// cells; > 1, no unit. Vertices that need more are missed.
   double max_squeeze = 50;
   double max_length_squeeze = 10;
-  int max_levels = 5;  ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
+  int max_levels = 5;               ///< of nested elements, > 0: the finest have λ/4 · 2^(1 − max_levels)
+  std::size_t max_nodes = 180'000;  ///< no level is added beyond, > 0; about 30 bytes each in a file
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
-  /// Followed softly, so that space turns with the surface beneath it. They change neither the affine part
-  /// nor what the summary says, and halve no cell.
+  /// They count as vertices do, so that space turns with the surface beneath it, but change neither the
+  /// affine part nor what the summary says, and halve no cell.
   SpaceGuides guides = {};
 };
 
@@ -36,7 +37,7 @@ struct FiniteElementSummary {
   std::vector<std::size_t> nodes;       ///< with an unknown, one per level
   std::vector<std::size_t> cells;       ///< finest cells, one per level
   std::vector<std::size_t> iterations;  ///< of the minimiser when the level was added
-  double distortion = 0;       ///< mean symmetric Dirichlet energy over the cells, 0 for an affine map
+  double distortion = 0;       ///< weighted mean of the symmetric Dirichlet energy, 0 for an affine map
   double min_determinant = 0;  ///< at the nodes of cells, relative to the affine part, no unit
   Statistics residuals;        ///< |E(vᵢ) − v'ᵢ|, mesh units of the targets
   std::size_t loosened = 0;    ///< places that gave way to the bounds
@@ -53,11 +54,11 @@ struct FiniteElementFit {
   FiniteElementSummary summary;
 };
 
-/// E = affine ∘ (id + u), sources to targets (3×n, mesh units), with least ∫ ψ(I + ∇u) dx + Σ_i w/2 |u(vᵢ) −
-/// uᵢ|², ψ the symmetric Dirichlet energy (Smith, Schaefer 2015) and barriers (element_distortion.h), by
-/// limited-memory BFGS. u is trilinear on nested cells around `source`, zero beyond λ and one coarse cell. w
-/// = (mean area of a vertex) / (a quarter of the fit tolerance). No iterate flips a cell. Throws InvalidInput
-/// (sizes, values, affine part with det ≤ 0), SolverError, MemoryLimitError, Interrupted.
+/// E = affine ∘ (id + u), sources to targets (3×n, mesh units), with least ∫ κ ψ(I + ∇u) dx + Σ_i w/2 |u(vᵢ)
+/// − uᵢ|², ψ the symmetric Dirichlet energy (Smith, Schaefer 2015) and barriers (element_distortion.h), κ as
+/// in element_weights.h, w = (mean area of a vertex) / (a quarter of the fit tolerance), by limited-memory
+/// BFGS. u is trilinear on nested cells, zero beyond λ and one coarse cell. No iterate flips a cell. Throws
+/// InvalidInput (sizes, values, affine part with det ≤ 0), SolverError, MemoryLimitError, Interrupted.
 FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,
                                      const FiniteElementOptions& options, const Progress& progress = {});
 

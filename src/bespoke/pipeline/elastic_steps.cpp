@@ -126,9 +126,9 @@ StepPlan halved(const StepPlan& plan, std::size_t step) {
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
                                ElasticMethod method, const ElasticOptions& options,
                                const Progress& progress) {
-  // What steps squeeze in one place multiplies.
+  // A chain has as many nodes as two maps of one step.
   ElasticOptions of_a_step = options;
-  of_a_step.max_squeeze = std::pow(options.max_squeeze, 1.0 / static_cast<double>(plan.steps()));
+  if (plan.steps() > 1) of_a_step.max_nodes = 2 * options.max_nodes / plan.steps();
   StepFitter fitter(source, pairs, method, of_a_step, progress);
   for (std::size_t k = 0; k < plan.steps(); ++k) {
     progress.step("elastic", k, plan.steps());

@@ -41,6 +41,7 @@ std::string recorded_options(const MakeMapOptions& options, const FittedMapping&
   if (elastic_method(options.fit.elastic).takes_guides)
     json["guides"] =
         name_of(guided_maps, fit.summary.elastic.left_guides ? GuidedMaps::none : options.fit.guides);
+  if (options.fit.elastic == ElasticMethod::finite_elements) json["max_squeeze"] = options.fit.max_squeeze;
   json["fit_tolerance"] = options.fit.fit_tolerance;
   json["contact_gap"] = options.fit.contact_offset;
   json["tolerance"] = options.bake.tolerance;

@@ -60,6 +60,18 @@ std::optional<InapplicableOption> against_paper(const MapRequest& request) {
   return std::nullopt;
 }
 
+std::optional<InapplicableOption> unknown_to_elastic_method(const MapRequest& request, ElasticMethod method) {
+  const bool elements = method == ElasticMethod::finite_elements;
+  if (request.max_squeeze && !elements)
+    return InapplicableOption{"max-squeeze", "bounds the elastic method finite-elements, no other"};
+  if (request.strict && elements)
+    return InapplicableOption{"strict",
+                              "meets every vertex, which the elastic method finite-elements does not"};
+  if (request.nodes && elements)
+    return InapplicableOption{"nodes", "the elastic method finite-elements stores its own nodes"};
+  return std::nullopt;
+}
+
 std::optional<InapplicableOption> unknown_to_methods(const MapRequest& request) {
   if (request.nodes == NodeValues::balanced && request.voxel_size)
     return InapplicableOption{"nodes", "one uniform level (--voxel-size) is always sampled"};
@@ -67,6 +79,7 @@ std::optional<InapplicableOption> unknown_to_methods(const MapRequest& request) 
   const ElasticMethodRow& elastic = elastic_method(fit.elastic);
   if (request.guides && fit.guides != GuidedMaps::none && !elastic.takes_guides)
     return InapplicableOption{"guides", "the elastic method " + std::string(elastic.name) + " takes none"};
+  if (std::optional<InapplicableOption> found = unknown_to_elastic_method(request, fit.elastic)) return found;
   if (fit.surface_fit.method == SurfaceFitMethod::deformation_graph) return std::nullopt;
   const std::string reason = "the surface fitting " +
                              std::string(name_of(surface_fits, fit.surface_fit.method)) +
@@ -87,7 +100,9 @@ MakeMapOptions make_options(const MapRequest& request, double source_diagonal, d
   options.fit.any_anchors = request.any_anchors;
   if (request.boundaries) options.fit.surface_fit.boundaries = *request.boundaries;
   if (request.max_stretch) options.fit.surface_fit.max_stretch = *request.max_stretch;
+  if (request.strict) options.fit.elastic = ElasticMethod::diffeomorphic;
   if (request.elastic) options.fit.elastic = *request.elastic;
+  if (request.max_squeeze) options.fit.max_squeeze = *request.max_squeeze;
   if (request.guides) options.fit.guides = *request.guides;
   if (request.path) options.path = *request.path;
   if (request.steps) options.fit.steps = *request.steps;

@@ -18,6 +18,7 @@ struct MapRequest {
   std::optional<double> max_stretch;  ///< > 1
   std::optional<ElasticMethod> elastic;
   std::optional<GuidedMaps> guides;
+  std::optional<double> max_squeeze;  ///< > 1
   std::optional<RotationPath> path;
   std::optional<int> steps;  ///< > 0
   std::optional<Length> anchor_sigma;
@@ -30,7 +31,7 @@ struct MapRequest {
   std::optional<std::uint64_t> max_memory;  ///< bytes
   bool keep_exact = false;
   bool half = false;
-  bool strict = false;       ///< the tolerance is met everywhere, whatever it takes
+  bool strict = false;       ///< every vertex and the tolerance are met, whatever it takes: diffeomorphic
   bool as_given = false;     ///< models are not repaired (SurfaceFitOptions)
   bool any_size = false;     ///< models may be in two units (FitOptions)
   bool any_anchors = false;  ///< anchors may lie off their models (FitOptions)

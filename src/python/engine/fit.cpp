@@ -41,6 +41,7 @@ class RequestReader {
     take("path", rotation_paths, request.path);
     take("nodes", node_values, request.nodes);
     take("max_stretch", request.max_stretch);
+    take("max_squeeze", request.max_squeeze);
     take("steps", request.steps);
     take("max_memory", request.max_memory);
     take("anchor_sigma", request.anchor_sigma, LengthRange::not_negative);

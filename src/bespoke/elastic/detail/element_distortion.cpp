@@ -11,6 +11,8 @@
 namespace bespoke {
 namespace {
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
 constexpr int lanes = 8;  // cells that are evaluated side by side
 using Lane = std::array<double, lanes>;
 
@@ -33,7 +35,7 @@ struct DistortionOfPack {
     const double m = bounds.min_determinant, at_rest = 1 / (1 - m), rest_slope = at_rest * at_rest;
     const double inverse_bound = 1 / bounds.max_inverse_squared;
     pack.energy.fill(0);
-    pack.min_determinant.fill(std::numeric_limits<double>::infinity());
+    pack.min_determinant.fill(infinite);
     pack.max_inverse_squared.fill(0);
     pack.stiffness.fill(0);
     for (auto& corner : pack.gradient)
@@ -172,25 +174,31 @@ void evaluate(const ElementLevel& level, const Points& values, const DistortionB
   run_dispatched<DistortionOfPack>(pack, 1 / level.voxel_size, bounds);
 }
 
-/// Whether the first `count` cells of a pack are within the bounds.
-bool is_within(const CellPack& pack, std::size_t count, double inverse_size, const DistortionBounds& bounds) {
+/// Which of the first `count` cells of a pack are not within the bounds; bits.
+unsigned beyond_bounds(const CellPack& pack, std::size_t count, double inverse_size,
+                       const DistortionBounds& bounds) {
   // Summed over eight corners: cells of less energy keep their volume to two thirds at least.
   constexpr double safe_energy = 0.5;
   bool safe = true;
+  unsigned beyond = 0;
   for (std::size_t l = 0; l < count; ++l) {
     if (!(pack.min_determinant[l] > bounds.min_determinant) ||
         !(pack.max_inverse_squared[l] < bounds.max_inverse_squared))
-      return false;
+      beyond |= 1U << l;
     safe = safe && pack.energy[l] < safe_energy;
   }
-  if (safe) return true;
+  if (safe && beyond == 0) return 0;
   Lane coefficient;
   run_dispatched<MinCoefficientOfPack>(pack.u, inverse_size, coefficient);
-  return std::all_of(coefficient.begin(), coefficient.begin() + static_cast<std::ptrdiff_t>(count),
-                     [&](double value) { return value > bounds.min_determinant; });
+  for (std::size_t l = 0; l < count; ++l)
+    if (!(coefficient[l] > bounds.min_determinant)) beyond |= 1U << l;
+  return beyond;
 }
 
 constexpr std::size_t packs_per_task = 64;
+
+// Of the bound on J: that of its Bézier coefficients, which are below it.
+constexpr double coefficient_share = 0.1;
 
 /// Of one level; `cell_gradients`: 24 numbers a finest cell.
 Distortion evaluate_level(const ElementLevel& level, const Points& values, const DistortionBounds& bounds,
@@ -205,15 +213,19 @@ Distortion evaluate_level(const ElementLevel& level, const Points& values, const
     for (std::size_t first = begin; first < end; first += lanes) {
       evaluate(level, values, bounds, first, pack);
       const std::size_t filled = std::min<std::size_t>(lanes, end - first);
-      if (!is_within(pack, filled, 1 / h, bounds))
-        return Distortion{std::numeric_limits<double>::infinity(), 0, {}};
+      if (const unsigned beyond = beyond_bounds(pack, filled, 1 / h, bounds)) {
+        part.energy = infinite;
+        for (std::size_t l = 0; l < filled; ++l) stiffness[first + l] = (beyond >> l) & 1 ? infinite : 0;
+        continue;
+      }
       for (std::size_t l = 0; l < filled; ++l) {
-        part.energy += volume * pack.energy[l];
-        stiffness[first + l] = pack.stiffness[l] / 8;
+        const double weight = level.weights[first + l];
+        part.energy += weight * volume * pack.energy[l];
+        stiffness[first + l] = weight * pack.stiffness[l] / 8;
         part.min_determinant = std::min(part.min_determinant, pack.min_determinant[l]);
         double* gradient = cell_gradients.data() + 24 * (first + l);
         for (std::size_t corner = 0; corner < 8; ++corner)
-          for (std::size_t i = 0; i < 3; ++i) *gradient++ = area * pack.gradient[corner][i][l];
+          for (std::size_t i = 0; i < 3; ++i) *gradient++ = weight * area * pack.gradient[corner][i][l];
       }
     }
     return part;
@@ -236,7 +248,7 @@ Distortion add_distortion(const NestedElements& elements, const std::vector<Poin
     const Distortion part = evaluate_level(level, values[k], bounds, cell_gradients, whole.stiffness[k]);
     whole.energy += part.energy;
     whole.min_determinant = std::min(whole.min_determinant, part.min_determinant);
-    if (!std::isfinite(whole.energy)) return whole;
+    if (!std::isfinite(whole.energy)) continue;
     parallel_for(level.points.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p)
         for (int q = level.incident_begin[p]; q < level.incident_begin[p + 1]; ++q) {
@@ -257,9 +269,12 @@ std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& element
     const ElementLevel& level = elements.levels()[k];
     for (std::size_t first = 0; first < level.finest.size(); first += lanes) {
       evaluate(level, values[k], bounds, first, pack);
+      Lane coefficient;
+      run_dispatched<MinCoefficientOfPack>(pack.u, 1 / level.voxel_size, coefficient);
       for (std::size_t l = 0; l < lanes && first + l < level.finest.size(); ++l)
         if (!(pack.min_determinant[l] >= bounds.min_determinant &&
-              pack.max_inverse_squared[l] <= bounds.max_inverse_squared))
+              pack.max_inverse_squared[l] <= bounds.max_inverse_squared &&
+              coefficient[l] >= coefficient_share * bounds.min_determinant))
           beyond[k].push_back(first + l);
     }
   }

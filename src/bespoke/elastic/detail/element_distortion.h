@@ -17,7 +17,8 @@ struct DistortionBounds {
 struct Distortion {
   double energy = 0;                                                 ///< infinite where a bound does not hold
   double min_determinant = std::numeric_limits<double>::infinity();  ///< over the corners of all finest cells
-  /// How stiff each finest cell is, per level: about its largest second derivative, 4 at rest. No unit.
+  /// How stiff each finest cell is, per level: its weight times about the largest second derivative, 4 at
+  /// rest; infinite where a bound does not hold. No unit.
   std::vector<std::vector<double>> stiffness;
 };
 
@@ -30,7 +31,7 @@ Distortion add_distortion(const NestedElements& elements, const std::vector<Poin
                           const DistortionBounds& bounds, std::vector<Points>& gradients);
 
 /// The finest cells, per level by their place in ElementLevel::finest, at a corner of which a bound does not
-/// hold.
+/// hold, or within which a Bézier coefficient of J is below a tenth of its bound.
 std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& elements,
                                                    const std::vector<Points>& values,
                                                    const DistortionBounds& bounds);

@@ -64,6 +64,32 @@ double ElementObjective::operator()(const Points& coefficients, Points& gradient
   return distortion_.energy + data;
 }
 
+void ElementObjective::damp(Points& step) const {
+  constexpr double damping = 0.1;
+  const std::vector<ElementLevel>& levels = elements_.levels();
+  std::vector<std::vector<char>> flags;  // one per point and level
+  for (const ElementLevel& level : levels) flags.emplace_back(level.points.size(), 0);
+  const auto flag_corners = [&](std::size_t k, int cell) {
+    for (const int corner : levels[k].corners[static_cast<std::size_t>(cell)])
+      flags[k][static_cast<std::size_t>(corner)] = 1;
+  };
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (std::size_t number = 0; number < levels[k].finest.size(); ++number) {
+      if (std::isfinite(distortion_.stiffness[k][number])) continue;
+      const int cell = levels[k].finest[number];
+      flag_corners(k, cell);
+      LatticeCoordinates at = levels[k].cells[static_cast<std::size_t>(cell)];
+      for (std::size_t coarser = k; coarser-- > 0;) {
+        at = parent_of(at);
+        flag_corners(coarser, levels[coarser].cell_table.find(at));
+      }
+    }
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (std::size_t n = 0; n < levels[k].nodes.size(); ++n)
+      if (flags[k][static_cast<std::size_t>(levels[k].point_of_node[n])])
+        step.col(static_cast<Eigen::Index>(levels[k].first_unknown + n)) *= damping;
+}
+
 Eigen::VectorXd ElementObjective::inverse_diagonal() const {
   const std::vector<std::vector<double>> diagonal = distortion_diagonal(elements_, distortion_.stiffness);
   Eigen::VectorXd inverse(static_cast<Eigen::Index>(elements_.unknowns()));

@@ -29,6 +29,10 @@ class ElementObjective {
   /// About the inverse of the Hessian's diagonal at the state of the last call, one number per unknown.
   Eigen::VectorXd inverse_diagonal() const;
 
+  /// Shortens a step of the coefficients at all nodes whose functions reach a cell that the last call found
+  /// beyond the bounds, so that a few cells do not stop all others.
+  void damp(Points& step) const;
+
   /// |u(vᵢ) − uᵢ|, mesh units.
   std::vector<double> residuals(const Points& coefficients) const;
 

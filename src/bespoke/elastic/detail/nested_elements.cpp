@@ -77,6 +77,7 @@ void NestedElements::add_points(ElementLevel& level, const ElementLevel* coarser
       level.first_part[c] = levels_[k + 1].cell_table.find(child_of(level.cells[c], 0));
     if (level.first_part[c] == no_leaf) level.finest.push_back(static_cast<int>(c));
   }
+  level.weights.assign(level.finest.size(), 1.0);
   level.incident_begin.assign(level.points.size() + 1, 0);
   for (const int cell : level.finest)
     for (const int corner : level.corners[static_cast<std::size_t>(cell)])
@@ -101,6 +102,10 @@ void NestedElements::add_points(ElementLevel& level, const ElementLevel* coarser
     }
     level.parents_begin.push_back(static_cast<int>(level.parents.size()));
   }
+}
+
+void NestedElements::weigh(std::vector<std::vector<double>> weights) {
+  for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].weights = std::move(weights[k]);
 }
 
 std::vector<ElementPlace> NestedElements::places(const Vector3& x) const {

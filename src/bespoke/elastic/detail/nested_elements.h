@@ -27,6 +27,7 @@ struct ElementLevel {
   std::vector<std::array<int, 8>> corners;  ///< points, one array per cell, by corner_step
   std::vector<int> first_part;      ///< per cell: the first of its eight parts on the finer level, or no_leaf
   std::vector<int> finest;          ///< cells that no finer level splits
+  std::vector<double> weights;      ///< of the distortion in the finest cells, > 0, 1 unless weighed
   std::vector<int> incident_begin;  ///< one more than there are points
   std::vector<std::size_t> incident;  ///< corners of finest cells at a point: 8·(number in finest) + corner
   std::vector<int> parents_begin;     ///< one more than there are points
@@ -46,6 +47,9 @@ class NestedElements {
   const std::vector<ElementLevel>& levels() const { return levels_; }
   Lattice lattice(std::size_t level) const { return {origin_, levels_[level].voxel_size}; }
   std::size_t unknowns() const { return unknowns_; }  ///< nodes of all levels
+
+  /// Weights of the finest cells, per level, as ElementLevel::finest lists them; > 0, no unit.
+  void weigh(std::vector<std::vector<double>> weights);
 
   /// Places of x, one per level from 0 to the finest whose cells hold it; empty outside of all cells.
   std::vector<ElementPlace> places(const Vector3& x) const;

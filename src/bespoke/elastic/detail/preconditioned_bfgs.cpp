@@ -1,5 +1,6 @@
 #include "bespoke/elastic/detail/preconditioned_bfgs.h"
 
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <utility>
@@ -12,7 +13,8 @@ namespace {
 
 constexpr std::size_t memory = 6;   // pairs that are kept
 constexpr double armijo = 1e-4;     // Nocedal and Wright, Numerical Optimization, 3.1
-constexpr int max_halvings = 20;    // of a step
+constexpr int max_dampings = 3;     // before a step is halved as a whole
+constexpr int max_trials = 30;      // of a line search
 constexpr double first_step = 0.3;  // of the diagonal's, before any pair tells the scale
 constexpr std::size_t columns_per_task = 8192;
 
@@ -77,33 +79,59 @@ class InverseHessian {
   double scale_ = 1;
 };
 
+struct LineSearch {
+  Points x, gradient;
+  double energy = 0;
+  int evaluations = 0;
+};
+
+/// From x of an energy along −direction, which is damped where it leads to an infinite energy.
+LineSearch search(const Objective& objective, const Points& x, double energy, const Points& gradient,
+                  Points direction) {
+  LineSearch result;
+  double slope = dot(gradient, direction), step = 1;
+  for (int damped = 0; result.evaluations < max_trials;) {
+    result.x = x;
+    add(-step, direction, result.x);
+    result.energy = objective.energy(result.x, result.gradient);
+    ++result.evaluations;
+    if (result.energy <= energy - armijo * step * slope) break;
+    if (std::isinf(result.energy) && damped < max_dampings) {
+      Points shorter = direction;
+      objective.damp(shorter);
+      if (const double then = dot(gradient, shorter); then > 0) {
+        direction = std::move(shorter);
+        slope = then;
+        ++damped;
+        continue;
+      }
+    }
+    damped = 0;
+    step /= 2;
+  }
+  return result;
+}
+
 }  // namespace
 
-int minimise(const Energy& energy, const InverseDiagonal& inverse_diagonal, const MinimiserOptions& options,
-             Points& x) {
-  Points gradient, next_gradient;
-  double now = energy(x, gradient);
+int minimise(const Objective& objective, const MinimiserOptions& options, Points& x) {
+  Points gradient;
+  double now = objective.energy(x, gradient);
   InverseHessian inverse;
-  int iteration = 0;
-  for (int slow = 0; iteration < options.max_iterations && slow < 2; ++iteration) {
-    inverse.set_diagonal(inverse_diagonal());
-    const Points direction = inverse * gradient;
-    const double slope = dot(gradient, direction);
-    double step = inverse.empty() ? first_step : 1;
-    Points next;
-    double then = 0;
-    for (int halvings = 0; halvings <= max_halvings; ++halvings, step /= 2) {
-      next = x;
-      add(-step, direction, next);
-      then = energy(next, next_gradient);
-      if (then <= now - armijo * step * slope) break;
-    }
-    if (!(then < now)) break;
-    slow = now - then < options.min_relative_decrease * now ? slow + 1 : 0;
-    inverse.learn(next - x, next_gradient - gradient);
-    x = std::move(next);
-    std::swap(gradient, next_gradient);
-    now = then;
+  int iteration = 0, evaluations = 1;
+  for (int slow = 0; iteration < options.max_iterations && evaluations < options.max_evaluations && slow < 2;
+       ++iteration) {
+    inverse.set_diagonal(objective.inverse_diagonal());
+    Points direction = inverse * gradient;
+    if (inverse.empty()) direction *= first_step;
+    LineSearch next = search(objective, x, now, gradient, std::move(direction));
+    evaluations += next.evaluations;
+    if (!(next.energy < now)) break;
+    slow = now - next.energy < options.min_relative_decrease * now ? slow + 1 : 0;
+    inverse.learn(next.x - x, next.gradient - gradient);
+    x = std::move(next.x);
+    gradient = std::move(next.gradient);
+    now = next.energy;
   }
   return iteration;
 }

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "bespoke/elastic/detail/nested_elements.h"
+#include "bespoke/mesh/triangle_mesh.h"
+
+namespace bespoke {
+
+/// How much distortion counts in the finest cells, per level (NestedElements::weigh): 1 at the surface, where
+/// products are, and less the farther away, so that what must be distorted is so out there,
+///
+///     κ = κ₀ + (1 − κ₀)/(1 + (d/r)²),  κ₀ = 1/30, r = 0.4 λ,
+///
+/// d from the surface to a cell's middle. lambda > 0, mesh units.
+std::vector<std::vector<double>> element_weights(const NestedElements& elements, const TriangleMesh& surface,
+                                                 double lambda);
+
+}  // namespace bespoke
