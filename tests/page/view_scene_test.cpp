@@ -92,8 +92,11 @@ TEST(ViewScene, HasLengthsInMeshUnitsWhereNoUnitIsStated) {
   scenery.asset.record.unit = "unknown";
   const UnpackedScene scene = scenery.scene();
   EXPECT_EQ(scene.record["unit"], "mesh units");
-  for (const nlohmann::json& field : scene.record["meshes"][0]["fields"])
-    if (field["id"] == "displacement") EXPECT_EQ(field["unit"], "mesh units");
+  for (const nlohmann::json& field : scene.record["meshes"][0]["fields"]) {
+    if (field["id"] == "displacement") {
+      EXPECT_EQ(field["unit"], "mesh units");
+    }
+  }
 }
 
 TEST(ViewScene, ColoursBySourceTargetProductAndFindings) {
