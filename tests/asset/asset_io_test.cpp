@@ -346,7 +346,8 @@ TEST_F(AssetIo, RejectsWellSealedContentThatItCannotVouchFor) {
   rejects([](StoredFile& f) { std::swap(f.grids[0], f.grids[3]); }, "in the place of u_0");
   rejects([](StoredFile& f) { std::swap(f.grids[1], f.grids[2]); }, "in the place of source_distance");
   rejects([](StoredFile& f) { f.grids.pop_back(); }, "4 grids, the record requires 5");
-  rejects([](StoredFile& f) { f.grids.push_back(f.grids[4]), f.grids[5].name = "u_2"; }, "6 grids");
+  rejects([](StoredFile& f) { f.grids.push_back(f.grids[4]), f.grids[5].name = "u_2"; },
+          "in the place of target_distance");
   rejects([](StoredFile& f) { f.grids[3] = f.grids[1], f.grids[3].name = "u_0"; }, "no Vec3S");
   rejects([](StoredFile& f) { f.grids[3].voxel_size *= 2; }, "contradicts the record");
   rejects([](StoredFile& f) { f.grids[4].origin.x() += 1e-9; }, "contradicts the record");

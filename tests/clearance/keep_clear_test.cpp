@@ -18,6 +18,8 @@ using ::testing::HasSubstr;
 
 constexpr double pole_angle = 0.5;
 
+bool is_met(const ClearanceSummary& summary) { return summary.is_clear() && summary.after.samples == 0; }
+
 /// Edges from the nearest flagged vertex, of every vertex.
 std::vector<int> edges_from(const TriangleMesh& mesh, const std::vector<char>& flags) {
   const VertexAdjacency around = vertex_adjacency(mesh);
@@ -39,7 +41,7 @@ TEST(KeepClear, WhatMissesNothingKeepsItsBits) {
   EXPECT_EQ(cleared.vertices, carried);
   EXPECT_EQ(cleared.summary.moved, 0u);
   EXPECT_EQ(cleared.summary.before.samples, 0u);
-  EXPECT_TRUE(cleared.summary.is_clear());
+  EXPECT_TRUE(is_met(cleared.summary));
 }
 
 TEST(KeepClear, KeepsTheDistanceThatEveryPlaceHad) {
@@ -47,7 +49,7 @@ TEST(KeepClear, KeepsTheDistanceThatEveryPlaceHad) {
   const Points carried = test::dented(product.vertices, pole_angle, 0.05);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
   EXPECT_GT(cleared.summary.before.inside, 100u);
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
   for (Eigen::Index v = 0; v < carried.cols(); ++v)
     ASSERT_GT(cleared.vertices.col(v).norm(), 1.02 - 1.01 * test::unit_ball().tolerance) << v;
 }
@@ -71,7 +73,7 @@ TEST(KeepClear, GivesTheEaseThatIsRequired) {
   const TriangleMesh product = test::shell(1.01);
   const ClearedProduct cleared =
       keep_clear(PreparedProduct(product), product.vertices, {test::unit_ball({.ease = 0.05})});
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
   for (const auto& vertex : cleared.vertices.colwise()) {
     ASSERT_GT(vertex.norm(), 1.05 - 1.01 * test::unit_ball().tolerance);
     ASSERT_LT(vertex.norm(), 1.06);
@@ -96,14 +98,14 @@ TEST(KeepClear, FindsFacesThatCutThroughBetweenTheirVertices) {
   const ClearedProduct cleared =
       keep_clear(PreparedProduct(product), carried, {test::unit_ball({.ease = 0.0})});
   EXPECT_GT(cleared.summary.before.samples, 0u);
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
 }
 
 TEST(KeepClear, ClosedSeamsStayClosed) {
   const TriangleMesh product = shapes::soup(test::shell(1.02, 3));
   const Points carried = test::dented(product.vertices, pole_angle, 0.05);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
-  EXPECT_TRUE(cleared.summary.is_clear());
+  EXPECT_TRUE(is_met(cleared.summary));
   for (Eigen::Index a = 0; a < carried.cols(); ++a)
     for (Eigen::Index b = a + 1; b < carried.cols(); ++b)
       if (product.vertices.col(a) == product.vertices.col(b)) {
@@ -119,7 +121,7 @@ TEST(KeepClear, PartsThatKeepTheirShapeAreShiftedAsAWhole) {
   for (std::size_t v = 0; v < parts.size(); ++v)
     if (is_part[v]) parts[v] = 0;
   const ClearedProduct cleared = keep_clear(PreparedProduct(product, parts), carried, {test::unit_ball()});
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
   Vector3 shift = Vector3::Zero();
   for (std::size_t v = 0; v < parts.size(); ++v) {
     if (!is_part[v]) continue;
@@ -142,7 +144,7 @@ TEST(KeepClear, SmallShellsGoWithWhatTheyLieOn) {
   carried.leftCols(cloth.vertices.cols()) = test::dented(cloth.vertices, pole_angle, 0.04);
   for (auto vertex : carried.rightCols(button.vertices.cols()).colwise()) vertex.z() -= 0.04;
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
   for (Eigen::Index v = cloth.vertices.cols(); v < carried.cols(); ++v)
     ASSERT_LT((cleared.vertices.col(v) - product.vertices.col(v)).norm(), 0.004) << v;
 }
@@ -154,7 +156,7 @@ TEST(KeepClear, TheTwoSheetsOfAThickOneStayApart) {
   for (auto face : product.faces.rightCols(inner.faces.cols()).colwise()) std::swap(face[1], face[2]);
   const Points carried = test::dented(product.vertices, pole_angle, 0.03);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {test::unit_ball()});
-  EXPECT_TRUE(cleared.summary.is_clear()) << to_string(cleared.summary);
+  EXPECT_TRUE(is_met(cleared.summary)) << to_string(cleared.summary);
   const Eigen::Index n = outer.vertices.cols();
   for (Eigen::Index v = 0; v < n; ++v)
     ASSERT_GT(cleared.vertices.col(v).norm() - cleared.vertices.col(v + n).norm(), 0.005) << v;
@@ -177,7 +179,7 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   };
   const Points carried = product.vertices.colwise() + Vector3(0, 0, 0.01);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {plates});
-  EXPECT_FALSE(cleared.summary.is_clear());
+  EXPECT_GT(cleared.summary.after.samples, 0u);
   ASSERT_FALSE(cleared.summary.places.empty());
   EXPECT_NEAR(cleared.summary.places.front().missing, 0.03, 0.012);
   EXPECT_EQ(cleared.summary.places.front().obstacle, "the plates");
@@ -191,7 +193,7 @@ TEST(KeepClear, PointsWithoutFacesMoveAlone) {
   const TriangleMesh points{test::shell(1.02).vertices, Faces(3, 0)};
   const Points carried = test::dented(points.vertices, pole_angle, 0.05);
   const ClearedProduct cleared = keep_clear(PreparedProduct(points), carried, {test::unit_ball()});
-  EXPECT_TRUE(cleared.summary.is_clear());
+  EXPECT_TRUE(is_met(cleared.summary));
   for (Eigen::Index v = 0; v < carried.cols(); ++v) {
     ASSERT_GT(cleared.vertices.col(v).norm(), 1.02 - 1.01 * test::unit_ball().tolerance);
     ASSERT_LT(cleared.vertices.col(v).norm(), 1.02 + 1e-3);

@@ -50,7 +50,8 @@ std::vector<std::pair<int, int>> pairs_between(const TriangleMesh& both, int spl
 
 }  // namespace
 
-WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts) {
+WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts,
+                              double scale) {
   const Product product = read_product(file);
   WornProduct worn{file.filename().string(), nullptr, {}, parts};
   if (!parts.empty()) worn.part_of_vertex = parts_of_places(file, parts, product.vertices);
@@ -58,7 +59,7 @@ WornProduct read_worn_product(const std::filesystem::path& file, const std::vect
       product.line_edges.data(), 2, static_cast<Eigen::Index>(product.line_edges.size() / 2));
   try {
     worn.prepared = std::make_shared<const PreparedProduct>(
-        TriangleMesh{product.vertices, triangulated(product)}, worn.part_of_vertex, lines);
+        TriangleMesh{scale * product.vertices, triangulated(product)}, worn.part_of_vertex, lines);
   } catch (const InvalidInput& error) {
     throw InvalidInput(file.string() + ": " + error.what());
   }
@@ -77,6 +78,11 @@ Points carried_vertices(const WornProduct& product, const ElasticMap& elastic,
     if (!columns.empty()) keep_shape(places, columns, product.parts[part].motion, images);
   }
   return images;
+}
+
+bool ProductClearance::is_clear() const {
+  return summary.is_clear() && std::all_of(layers.begin(), layers.end(),
+                                           [](const LayerContact& layer) { return layer.after == 0; });
 }
 
 std::string to_string(const LayerContact& contact) {

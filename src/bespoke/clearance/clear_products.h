@@ -20,8 +20,10 @@ struct WornProduct {
   std::vector<RigidPart> parts;
 };
 
-/// Reads the faces and lines, without splits. Throws as read_product and parts_of_places.
-WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts = {});
+/// Reads the faces and lines, without splits. `scale`: how many units of the map one of the file is; what
+/// comes back is in the map's. Throws as read_product and parts_of_places.
+WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts = {},
+                              double scale = 1);
 
 /// The vertices of the product where a map takes them (3×n, target frame), those of its parts by the motion
 /// of least squares of each.
@@ -38,6 +40,15 @@ struct LayerContact {
 /// "shirt.obj under jacket.obj: 3 pairs of faces passed through each other on the source and are left, 0
 /// new".
 std::string to_string(const LayerContact& contact);
+
+/// All that was found on one product.
+struct ProductClearance {
+  std::string product;
+  ClearanceSummary summary;
+  std::vector<LayerContact> layers;  ///< with every layer below it
+
+  bool is_clear() const;
+};
 
 /// Of two products on the source and on the target (3×n each).
 LayerContact layer_contact(const WornProduct& lower, const Points& lower_after, const WornProduct& upper,

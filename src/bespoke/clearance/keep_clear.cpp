@@ -71,8 +71,13 @@ void describe_moves(const PreparedProduct& product, const Points& carried, const
   summary.new_self_intersections = new_pairs({carried, mesh.faces}, {cleared.vertices, mesh.faces});
 }
 
+/// Vertices that moved at some time.
+void unite(std::vector<char>& flags, const std::vector<char>& further) {
+  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = flags[i] || further[i];
+}
+
 MissedDistances together(const MissedDistances& a, const MissedDistances& b) {
-  return {a.samples + b.samples, a.inside + b.inside, std::max(a.most, b.most)};
+  return {a.samples + b.samples, a.inside + b.inside, a.breaches + b.breaches, std::max(a.most, b.most)};
 }
 
 }  // namespace
@@ -97,21 +102,22 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   Correction correction(data, carried, obstacles);
   correction.solve(distances, rounds_of_a_solve);
   summary.solve_seconds = watch.seconds();
+  std::vector<char> touched = correction.moved();
   for (int look = 0; look < most_looks; ++look) {
     watch = {};
-    checks.look(correction.vertices());
+    checks.look(correction.vertices(), touched);
     const std::vector<int> missed = checks.missed();
     summary.check_seconds += watch.seconds();
     if (missed.empty()) break;
     watch = {};
     distances.append(checks, missed);
     correction.solve(distances, rounds_of_a_solve / 2);
+    unite(touched, correction.moved());
     summary.solve_seconds += watch.seconds();
   }
   watch = {};
   cleared.vertices = correction.vertices();
-  checks.look(cleared.vertices);
-  distances.look(cleared.vertices);
+  checks.look(cleared.vertices, touched);
   summary.after = together(distances.count(), checks.count());
   distances.append(checks, checks.missed());
   summary.places = worst_places(distances, cleared.vertices, obstacles, place_radius * diagonal(carried));

@@ -4,7 +4,9 @@
 #include <limits>
 #include <utility>
 
+#include "bespoke/error.h"
 #include "bespoke/length.h"
+#include "bespoke/number_format.h"
 #include "bespoke/quality/signed_distance.h"
 
 namespace bespoke {
@@ -24,11 +26,9 @@ constexpr double layer_reach = 0.025;
 // Far below the distance of layers, far above rounding.
 constexpr double layer_step = 1e-5;
 
-double keeping(double before, double scale, double floor, double most) {
-  double required = scale * before;
-  if (before > 0) required = std::max(required, floor);
-  return std::min(required, most);
-}
+// Of the source's diagonal: what lies no deeper inside may be outside, for all that a grid of 128 voxels
+// tells (a twentieth of a voxel), and is kept outside. Twice as much pushes what was modelled into the body.
+constexpr double touching = 4e-4;
 
 /// Of a layer before and after. Where the nearest place is on its rim it has no side.
 struct Layer {
@@ -57,26 +57,26 @@ struct Layer {
 double ModelSizes::scale() const { return power_of_two_scale(target_diagonal / source_diagonal); }
 
 Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const ModelSizes& sizes,
-                       const ClearanceRule& rule, double unit) {
+                       const ClearanceRule& rule) {
+  const double most = told_by_band * distances->target.band();
+  if (rule.ease && !(*rule.ease <= most))
+    throw InvalidInput("a clearance of " + format_number(*rule.ease, 4) + " is more than the " +
+                       format_number(most, 4) + " that the map's file can tell (three of its voxels)");
   Obstacle body;
   body.name = "the target";
-  body.step = step_in_voxels * distances->target.voxel_size() / unit;
-  body.tolerance = clearance_tolerance * sizes.target_diagonal / unit;
-  const double floor = distances->target.error(), most = told_by_band * distances->target.band();
+  body.short_is_breach = rule.ease.has_value();
+  body.step = step_in_voxels * distances->target.voxel_size();
+  body.tolerance = clearance_tolerance * sizes.target_diagonal;
   body.required = [=](const Points& x) {
-    std::vector<double> required = distances->source(unit * x);
+    std::vector<double> required = distances->source(x);
     for (double& value : required) {
-      value = rule.ease ? std::min(std::max(*rule.ease * unit, floor), most)
-                        : keeping(value, sizes.scale(), floor, most);
-      value /= unit;
+      const double depth = value > -touching * sizes.source_diagonal ? std::max(value, 0.0) : value;
+      value = std::min(rule.ease.value_or(sizes.scale() * depth), most);
     }
     return required;
   };
-  body.distance = [=](const Points& x) {
-    std::vector<double> distance = distances->target(unit * x);
-    for (double& value : distance) value /= unit;
-    return distance;
-  };
+  body.distance = [=](const Points& x) { return distances->target(x); };
+  body.uncertainty = [=](const Points& x) { return distances->target.uncertainty(x); };
   return body;
 }
 

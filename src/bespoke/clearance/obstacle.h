@@ -19,8 +19,12 @@ struct Obstacle {
   SignedDistances required;
   /// Signed distance at points in the target frame (3×n), positive outside, mesh units.
   SignedDistances distance;
+  /// By what such a distance may be off, ≥ 0; or empty. What was outside keeps at least that distance.
+  SignedDistances uncertainty = {};
   double step = 0;       ///< over which a difference of distances is a gradient, mesh units, > 0
   double tolerance = 0;  ///< by which a requirement may be missed, mesh units
+  /// Whether what is short of its distance, and yet outside, breaches the rule: where an ease is required.
+  bool short_is_breach = false;
 };
 
 /// What clearance is required.
@@ -40,11 +44,11 @@ struct ModelSizes {
 /// modelled.
 inline constexpr double clearance_tolerance = 1e-4;
 
-/// The target of a map. Keeping: s times the distance from the source, where that was positive at least the
-/// error of the target's grid, and at most what its band can tell; with s the scale of the sizes.
-/// `unit`: of a point of the product how many units of the map one is.
+/// The target of a map. Keeping: s times the distance from the source, at most what the target's band can
+/// tell; with s the scale of the sizes. What touched the source stays outside. Throws InvalidInput for more
+/// ease than the band can tell.
 Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const ModelSizes& sizes,
-                       const ClearanceRule& rule, double unit = 1);
+                       const ClearanceRule& rule);
 
 /// A layer below: `before` as it lies on the source, `after` (3×n, its vertices) on the target. Points that
 /// were on its outer side within `reach` stay there, as far away as they were, and as they were where they

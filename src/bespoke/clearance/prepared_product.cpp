@@ -9,8 +9,8 @@
 namespace bespoke {
 namespace {
 
-// Samples of long edges are as far apart as the nodes of a distance grid on a model of the product's size:
-// between them the field is smooth.
+// Edges longer than the voxels of a distance grid on a model of the product's size are sampled in their
+// middle from the start, others when they are looked at: between nodes the field is smooth.
 constexpr double sample_spacing = 1.0 / 128;
 
 std::unique_ptr<const PreparedProduct::Data> prepared(TriangleMesh mesh, const std::vector<int>& parts,
@@ -27,8 +27,9 @@ std::unique_ptr<const PreparedProduct::Data> prepared(TriangleMesh mesh, const s
   CorrectionGraph graph = correction_graph(mesh, lines, parts);
   SmoothCorrection energy(graph);
   const double size = diagonal(mesh.vertices);
-  ProductSamples samples = constraint_samples(mesh, lines, size > 0 ? sample_spacing * size : 1);
-  ProductSamples checks = check_samples(mesh);
+  const double spacing = size > 0 ? sample_spacing * size : 1;
+  ProductSamples samples = constraint_samples(mesh, lines, spacing);
+  ProductSamples checks = check_samples(mesh, lines, spacing);
   return std::unique_ptr<const PreparedProduct::Data>(new PreparedProduct::Data{
       std::move(mesh), std::move(graph), std::move(energy), std::move(samples), std::move(checks)});
 }

@@ -38,6 +38,41 @@ Json parts(const std::vector<PartSummary>& summaries) {
   return list;
 }
 
+Json missed_json(const MissedDistances& missed) {
+  return {{"samples", missed.samples},
+          {"inside", missed.inside},
+          {"breaches", missed.breaches},
+          {"most", missed.most}};
+}
+
+Json clearance_json(const ProductClearance& clearance) {
+  const ClearanceSummary& summary = clearance.summary;
+  Json places = Json::array(), layers = Json::array();
+  for (const MissedPlace& place : summary.places)
+    places.push_back({{"obstacle", place.obstacle},
+                      {"place", {place.place[0], place.place[1], place.place[2]}},
+                      {"missing", place.missing},
+                      {"samples", place.samples}});
+  for (const LayerContact& layer : clearance.layers)
+    layers.push_back({{"lower", layer.lower},
+                      {"intersections_on_source", layer.before},
+                      {"new_intersections", layer.after}});
+  return {{"clear", clearance.is_clear()},
+          {"samples", summary.looked_at},
+          {"missed_before", missed_json(summary.before)},
+          {"missed_after", missed_json(summary.after)},
+          {"places", std::move(places)},
+          {"moved", summary.moved},
+          {"moves", to_json(summary.moves)},
+          {"largest_bystander", summary.largest_bystander},
+          {"strain_before", to_json(summary.strain_before)},
+          {"strain_after", to_json(summary.strain_after)},
+          {"new_self_intersections", summary.new_self_intersections},
+          {"layers", std::move(layers)},
+          {"solve_seconds", summary.solve_seconds},
+          {"check_seconds", summary.check_seconds}};
+}
+
 }  // namespace
 
 std::size_t peak_memory() {
@@ -91,6 +126,7 @@ std::string apply_report(const std::vector<AppliedProduct>& products, const std:
                                        {"place", {chord->place[0], chord->place[1], chord->place[2]}},
                                        {"edges", chord->edges},
                                        {"splits", product.summary.splits}};
+    if (product.clearance) entries.back()["clearance"] = clearance_json(*product.clearance);
     if (!product.summary.parts.empty()) entries.back()["parts"] = parts(product.summary.parts);
   }
   const Json json = {{"command", "apply"},

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/apply/apply_to_product.h"
+#include "bespoke/clearance/clear_products.h"
 #include "bespoke/pipeline/make_map.h"
 
 namespace bespoke {
@@ -19,6 +21,7 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
 struct AppliedProduct {
   std::string name;  ///< of the file, without its directory
   ProductSummary summary;
+  std::optional<ProductClearance> clearance = {};  ///< where it was kept
 };
 
 /// What was applied at which times, as a JSON object.

@@ -9,6 +9,11 @@ namespace {
 
 constexpr std::size_t most_places = 10;
 
+constexpr double nothing_needed = -std::numeric_limits<double>::infinity();
+
+// Of the obstacle's step: where distances are larger, their uncertainty is not what decides.
+constexpr double near_in_steps = 1;
+
 Points columns_of(const Points& points, const std::vector<int>& columns) {
   Points some(3, static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i)
@@ -25,6 +30,7 @@ SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source
   for (const Obstacle& obstacle : obstacles) {
     required_.push_back(obstacle.required(places));
     distance_.emplace_back(required_.back().size(), std::numeric_limits<double>::infinity());
+    least_.emplace_back(required_.back().size(), nothing_needed);
   }
 }
 
@@ -41,7 +47,25 @@ void SampleDistances::look(const Points& on_target, const std::vector<char>& mov
     const std::vector<double> found = obstacles_[o].distance(places);
     for (std::size_t i = 0; i < columns.size(); ++i)
       distance_[o][static_cast<std::size_t>(columns[i])] = found[i];
+    if (obstacles_[o].uncertainty) look_at_uncertainty(o, columns, places);
   }
+}
+
+void SampleDistances::look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns,
+                                          const Points& places) {
+  std::vector<int> near, near_columns;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto column = static_cast<std::size_t>(columns[i]);
+    least_[obstacle][column] = nothing_needed;
+    if (!(required_[obstacle][column] >= 0) ||
+        distance_[obstacle][column] > near_in_steps * obstacles_[obstacle].step)
+      continue;
+    near.push_back(static_cast<int>(i));
+    near_columns.push_back(columns[i]);
+  }
+  const std::vector<double> amounts = obstacles_[obstacle].uncertainty(columns_of(places, near));
+  for (std::size_t i = 0; i < near.size(); ++i)
+    least_[obstacle][static_cast<std::size_t>(near_columns[i])] = amounts[i];
 }
 
 void SampleDistances::append(const SampleDistances& other, const std::vector<int>& columns) {
@@ -50,6 +74,7 @@ void SampleDistances::append(const SampleDistances& other, const std::vector<int
     for (const int column : columns) {
       required_[o].push_back(other.required_[o][static_cast<std::size_t>(column)]);
       distance_[o].push_back(other.distance_[o][static_cast<std::size_t>(column)]);
+      least_[o].push_back(other.least_[o][static_cast<std::size_t>(column)]);
     }
 }
 
@@ -68,13 +93,15 @@ MissedDistances SampleDistances::count() const {
   MissedDistances count;
   for (const int i : missed()) {
     ++count.samples;
-    bool is_inside = false;
+    bool is_inside = false, is_breach = false;
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
       if (!misses(o, i)) continue;
       count.most = std::max(count.most, missing(o, i));
-      is_inside = is_inside || (required(o, i) > 0 && distance_[o][static_cast<std::size_t>(i)] < 0);
+      is_breach = is_breach || obstacles_[o].short_is_breach;
+      is_inside = is_inside || (required(o, i) >= 0 && distance_[o][static_cast<std::size_t>(i)] < 0);
     }
     if (is_inside) ++count.inside;
+    if (is_inside || is_breach) ++count.breaches;
   }
   return count;
 }

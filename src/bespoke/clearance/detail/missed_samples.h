@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -27,7 +28,8 @@ class SampleDistances {
   }
   /// Above the tolerance of the obstacle where the sample misses; mesh units.
   double missing(std::size_t obstacle, Eigen::Index sample) const {
-    return required(obstacle, sample) - distance_[obstacle][static_cast<std::size_t>(sample)];
+    const auto at = static_cast<std::size_t>(sample);
+    return std::max(required_[obstacle][at], least_[obstacle][at]) - distance_[obstacle][at];
   }
   bool misses(std::size_t obstacle, Eigen::Index sample) const {
     return missing(obstacle, sample) > obstacles_[obstacle].tolerance;
@@ -38,9 +40,12 @@ class SampleDistances {
   MissedDistances count() const;
 
  private:
+  void look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns, const Points& places);
+
   ProductSamples samples_;
   const std::vector<Obstacle>& obstacles_;
-  std::vector<std::vector<double>> required_, distance_;  // of each obstacle, of each sample
+  /// Of each obstacle, of each sample; `least`: what keeps it outside although the distance is uncertain.
+  std::vector<std::vector<double>> required_, distance_, least_;
 };
 
 /// The worst places of what misses, one in a neighbourhood of `radius` (mesh units), ten at most.

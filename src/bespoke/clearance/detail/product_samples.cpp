@@ -9,8 +9,10 @@
 namespace bespoke {
 namespace {
 
-constexpr int most_divisions = 16;
-constexpr int check_divisions = 4;
+// 16 places a face, and of a face that spans many voxels as many as find what pokes through between them.
+constexpr int least_divisions = 4, most_divisions = 16;
+constexpr double spacings_a_division = 2;
+
 constexpr std::size_t samples_per_range = 4096;
 
 class SampleList {
@@ -47,32 +49,44 @@ void add_parts(const Eigen::Vector3i& face, int n, SampleList& list) {
     }
 }
 
+double longest_edge(const TriangleMesh& product, Eigen::Index face) {
+  double longest = 0;
+  for (int k = 0; k < 3; ++k)
+    longest = std::max(longest, (product.vertices.col(product.faces(k, face)) -
+                                 product.vertices.col(product.faces((k + 1) % 3, face)))
+                                    .norm());
+  return longest;
+}
+
 }  // namespace
 
 ProductSamples constraint_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines,
                                   double spacing) {
   SampleList list;
   for (int v = 0; v < static_cast<int>(product.vertices.cols()); ++v) list.add({v, v, v}, {1, 0, 0});
+  const auto add_middle = [&](int a, int b) {
+    if ((product.vertices.col(a) - product.vertices.col(b)).norm() > spacing)
+      list.add({a, b, b}, {0.5, 0.5, 0});
+  };
+  for (const MeshEdge& edge : mesh_edges(product).edges) add_middle(edge.a, edge.b);
+  for (Eigen::Index i = 0; i < lines.cols(); ++i) add_middle(lines(0, i), lines(1, i));
+  for (Eigen::Index face = 0; face < product.faces.cols(); ++face)
+    if (longest_edge(product, face) > spacing) list.add(product.faces.col(face), Vector3::Constant(1.0 / 3));
+  return list.samples();
+}
+
+ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines, double spacing) {
+  SampleList list;
   for (const MeshEdge& edge : mesh_edges(product).edges) list.add({edge.a, edge.b, edge.b}, {0.5, 0.5, 0});
   for (Eigen::Index i = 0; i < lines.cols(); ++i)
     list.add({lines(0, i), lines(1, i), lines(1, i)}, {0.5, 0.5, 0});
   for (Eigen::Index face = 0; face < product.faces.cols(); ++face) {
-    const Eigen::Vector3i corners = product.faces.col(face);
-    double longest = 0;
-    for (int k = 0; k < 3; ++k)
-      longest = std::max(
-          longest, (product.vertices.col(corners[k]) - product.vertices.col(corners[(k + 1) % 3])).norm());
-    const double divisions = std::ceil(longest / spacing);
-    add_parts(corners, divisions < most_divisions ? std::max(1, static_cast<int>(divisions)) : most_divisions,
-              list);
+    const double divisions = std::ceil(longest_edge(product, face) / (spacings_a_division * spacing));
+    add_parts(
+        product.faces.col(face),
+        divisions < most_divisions ? std::max(least_divisions, static_cast<int>(divisions)) : most_divisions,
+        list);
   }
-  return list.samples();
-}
-
-ProductSamples check_samples(const TriangleMesh& product) {
-  SampleList list;
-  for (Eigen::Index face = 0; face < product.faces.cols(); ++face)
-    add_parts(product.faces.col(face), check_divisions, list);
   return list.samples();
 }
 

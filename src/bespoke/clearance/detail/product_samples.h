@@ -14,12 +14,13 @@ struct ProductSamples {
   Eigen::Index count() const { return vertices.cols(); }
 };
 
-/// Every vertex, the middle of every edge and of every line (2×l), and of every face the middle and, where an
-/// edge is longer than `spacing` (mesh units), a lattice as fine as that, up to `most_divisions` an edge.
+/// Every vertex; and the middles of edges, lines (2×l) and faces with an edge longer than `spacing` (mesh
+/// units, > 0).
 ProductSamples constraint_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines, double spacing);
 
-/// 16 places a face, the middles of its sixteenths.
-ProductSamples check_samples(const TriangleMesh& product);
+/// The middle of every edge and line, and 16 places a face, the middles of its sixteenths; more, up to 256,
+/// of a face with an edge longer than 8 spacings.
+ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines, double spacing);
 
 /// Where they are (3×k), on the vertices (3×n) at hand.
 Points places_of(const ProductSamples& samples, const Points& vertices);

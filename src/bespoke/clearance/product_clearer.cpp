@@ -1,0 +1,33 @@
+#include "bespoke/clearance/product_clearer.h"
+
+#include <utility>
+
+#include "bespoke/clearance/corrected_map.h"
+#include "bespoke/error.h"
+
+namespace bespoke {
+
+std::shared_ptr<const ElasticMap> ProductClearer::corrected(WornProduct product, const ClearanceMap& map) {
+  if (!map.distances)
+    throw InvalidInput(
+        "the map holds no distances of its models for clearance, since an older bespoke made it; make it "
+        "anew "
+        "by `bespoke fit`");
+  const Points carried = carried_vertices(product, *map.elastic, map.target_from_source);
+  std::vector<Obstacle> obstacles = {body_obstacle(map.distances, map.sizes, rule_)};
+  for (const Layer& layer : layers_)
+    if (layer.product.prepared->mesh().faces.cols() > 0)
+      obstacles.push_back(
+          layer_obstacle(layer.product.name, layer.product.prepared->mesh(), layer.after, map.sizes));
+  ClearedProduct cleared = keep_clear(*product.prepared, carried, obstacles);
+  ProductClearance found{product.name, std::move(cleared.summary), {}};
+  for (const Layer& layer : layers_)
+    found.layers.push_back(layer_contact(layer.product, layer.after, product, cleared.vertices));
+  found_.push_back(std::move(found));
+  std::shared_ptr<const ElasticMap> corrected =
+      corrected_map(map.elastic, map.target_from_source, product.prepared->mesh(), carried, cleared.vertices);
+  if (products_ == Products::layers) layers_.push_back({std::move(product), std::move(cleared.vertices)});
+  return corrected;
+}
+
+}  // namespace bespoke

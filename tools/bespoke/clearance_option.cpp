@@ -1,0 +1,133 @@
+#include "clearance_option.h"
+
+#include <cstdio>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <utility>
+
+#include "bespoke/error.h"
+#include "bespoke/product/format_unit.h"
+#include "bespoke/product/product_io.h"
+#include "length_option.h"
+
+namespace bespoke::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Products that jobs of a batch carry to many targets, each prepared once.
+class PreparedProducts {
+ public:
+  WornProduct get(const fs::path& file, const std::vector<RigidPart>& parts, double scale) {
+    std::string key = file.string() + "\n" + std::to_string(scale);
+    for (const RigidPart& part : parts)
+      key += "\n" + part.name + (part.motion == PartMotion::rigid ? "r" : "s");
+    std::error_code error;
+    const auto time = fs::last_write_time(file, error);
+    const std::lock_guard lock(mutex_);
+    const auto found = products_.find(key);
+    if (!error && found != products_.end() && found->second.first == time) return found->second.second;
+    if (products_.size() >= most_) products_.clear();
+    WornProduct product = read_worn_product(file, parts, scale);
+    if (!error) products_.insert_or_assign(key, std::pair(time, product));
+    return product;
+  }
+
+ private:
+  static constexpr std::size_t most_ = 32;  // of ten thousand vertices: some 10 MB each
+  std::mutex mutex_;
+  std::map<std::string, std::pair<fs::file_time_type, WornProduct>> products_;
+};
+
+PreparedProducts& prepared_products() {
+  static PreparedProducts products;
+  return products;
+}
+
+/// The ease that the option names; nothing to keep distances.
+ClearanceRule rule_of(const ClearanceOption& option, const ModelSizes& sizes) {
+  if (option.distance == "keep") return {};
+  const Length ease = parse_length("--clearance", option.distance, LengthRange::not_negative);
+  return {ease.in_mesh_units(sizes.source_diagonal) * (ease.percent ? sizes.scale() : 1)};
+}
+
+/// Of the two models as the map leads.
+ModelSizes sizes_of(const OpenedMap& map) {
+  ModelSizes sizes{map.source_diagonal, map.target_diagonal};
+  const double around = map.model_box.diagonal().norm();
+  if (around == sizes.target_diagonal && around != sizes.source_diagonal)
+    std::swap(sizes.source_diagonal, sizes.target_diagonal);
+  return sizes;
+}
+
+}  // namespace
+
+void add_clearance_options(CLI::App& apply, ClearanceOption& option) {
+  apply.add_option("--clearance", option.distance, std::string(clearance_help) + " (default: off)")
+      ->type_name("keep|LENGTH|off");
+  apply.add_flag("--require-clear", option.require_clear, require_clear_help);
+  apply.add_flag("--layers", option.layers,
+                 "The products are layers, from the inside to the outside: each keeps its order and its "
+                 "distance to those before it. Pairs that pass through each other on the source are listed "
+                 "and left");
+}
+
+void require_valid(const ClearanceOption& option) {
+  if (option.is_used() && option.distance != "keep") {
+    try {
+      parse_length("--clearance", option.distance, LengthRange::not_negative);
+    } catch (const CLI::ValidationError&) {
+      throw CLI::ValidationError("--clearance",
+                                 "is keep, off, a length such as 0.02, or a percentage of the "
+                                 "source's diagonal such as 0.5%; not '" +
+                                     option.distance + "'");
+    }
+  }
+  if (!option.is_used() && (option.require_clear || option.layers))
+    throw CLI::ValidationError(option.layers ? "--layers" : "--require-clear",
+                               "needs --clearance keep, or a length");
+}
+
+OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap& map) {
+  if (!option_.is_used()) return map;
+  if (!can_read_product(product))
+    throw InvalidInput(product +
+                       ": is no kind of file whose vertices can be read for --clearance; carry it "
+                       "without, or convert it to one that ends in " +
+                       read_product_endings());
+  const ModelSizes sizes = sizes_of(map);
+  if (!clearer_)
+    clearer_.emplace(rule_of(option_, sizes),
+                     option_.layers ? ProductClearer::Products::layers : ProductClearer::Products::alone);
+  OpenedMap own = map;
+  own.elastic =
+      clearer_->corrected(prepared_products().get(product, parts_, product_scale(product, map.unit, unit_)),
+                          {map.elastic, map.target_from_source, map.distances, sizes});
+  return own;
+}
+
+std::optional<ProductClearance> ClearanceKeeper::last() const {
+  if (!clearer_) return std::nullopt;
+  return clearer_->found().back();
+}
+
+void ClearanceKeeper::require_clear() const {
+  if (!option_.require_clear || !clearer_) return;
+  std::string names;
+  for (const ProductClearance& found : clearer_->found())
+    if (!found.is_clear()) names += (names.empty() ? "" : ", ") + found.product;
+  if (!names.empty())
+    throw SolverError("not clear: " + names +
+                      "; the lines above and the report say where. More anchors there, a smaller --clearance "
+                      "or a looser product may help");
+}
+
+void print_clearance(const std::string& output, const ProductClearance& clearance) {
+  std::istringstream lines(to_string(clearance.summary));
+  for (std::string line; std::getline(lines, line);) std::printf("%s: %s\n", output.c_str(), line.c_str());
+  for (const LayerContact& contact : clearance.layers)
+    std::printf("%s: %s\n", output.c_str(), to_string(contact).c_str());
+}
+
+}  // namespace bespoke::command

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bespoke/clearance/product_clearer.h"
+#include "bespoke/pipeline/open_map.h"
+
+namespace bespoke::command {
+
+struct ClearanceOption {
+  std::string distance = "off";  ///< keep, off, or a length
+  bool require_clear = false;
+  bool layers = false;
+
+  bool is_used() const { return distance != "off"; }
+};
+
+inline constexpr const char* clearance_help =
+    "What carried products keep from the target: keep (each place at least as far outside as it was from the "
+    "source), a length (mesh units or % of the source's diagonal), or off. What misses that is moved, as "
+    "little and as smoothly as it can be; the map must hold the distances of its models";
+inline constexpr const char* require_clear_help =
+    "Exit with code 3 if a product is not clear although it was corrected; it is written all the same";
+
+void add_clearance_options(CLI::App& apply, ClearanceOption& option);
+
+/// Throws CLI::ValidationError for a distance that is none, and for what needs one.
+void require_valid(const ClearanceOption& option);
+
+/// Keeps the products of a run clear, in the order of the calls.
+class ClearanceKeeper {
+ public:
+  /// `unit`: of the products' coordinates, as product_scale takes it.
+  ClearanceKeeper(ClearanceOption option, std::vector<RigidPart> parts, std::string unit)
+      : option_(std::move(option)), parts_(std::move(parts)), unit_(std::move(unit)) {}
+
+  /// The map that takes the product where it is clear; the map itself where clearance is off. Throws
+  /// InvalidInput for maps without distances and products without places that can be read.
+  OpenedMap corrected(const std::string& product, const OpenedMap& map);
+
+  /// Of the last product; nothing where clearance is off.
+  std::optional<ProductClearance> last() const;
+
+  /// Throws SolverError, naming them, where products are not clear and must be.
+  void require_clear() const;
+
+ private:
+  ClearanceOption option_;
+  std::vector<RigidPart> parts_;
+  std::string unit_;
+  std::optional<ProductClearer> clearer_;
+};
+
+/// Every line after "OUT: ".
+void print_clearance(const std::string& output, const ProductClearance& clearance);
+
+}  // namespace bespoke::command
