@@ -43,7 +43,7 @@ struct ClearanceSummary {
   double check_seconds = 0;  ///< of what was looked at before and afterwards
 
   /// Nothing is inside that was outside or short of a required ease, nothing passes through itself that did
-  /// not before. What is short of the distance that it had, for want of space, is listed and allowed.
+  /// not before. What is short of the distance that it had, where there is no space, is listed and allowed.
   bool is_clear() const { return after.breaches == 0 && new_self_intersections == 0; }
 };
 

@@ -10,7 +10,7 @@
 namespace bespoke {
 
 /// A displacement a row.
-using NodeVectors = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+using NodeVectors = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 /// Edges from a place that misses its distance within which all that moves lies.
 inline constexpr int reach_in_edges = 5;
@@ -25,12 +25,10 @@ class SmoothCorrection {
   /// Throws SolverError where the factorisation fails.
   explicit SmoothCorrection(const CorrectionGraph& graph);
 
-  /// The displacements of least energy under forces at the nodes: (H D⁻¹ H)⁻¹ f, column by column.
-  template <class Columns>
-  Columns operator()(const Columns& forces) const {
-    const Columns half = factor_->solve(forces);
-    return factor_->solve(Columns(degree_.asDiagonal() * half));
-  }
+  /// The displacements of least energy under forces at the nodes: (H D⁻¹ H)⁻¹ f.
+  NodeVectors operator()(const NodeVectors& forces) const;
+  /// The same of one number a node.
+  Eigen::VectorXd operator()(const Eigen::VectorXd& forces) const;
 
  private:
   Eigen::VectorXd degree_;
