@@ -122,6 +122,25 @@ def test_parts_keep_their_shape(pair, around, tmp_path):
     np.testing.assert_allclose(edges(moved), edges(corners), atol=1e-5)
 
 
+def test_clearance_keeps_products_outside_and_layers_in_order(pair, tmp_path):
+    faces = "".join(f"f {a} {b} {c}\n" for a, b, c in (np.asarray(pair.source.faces) + 1).tolist())
+    files = []
+    for name, size in (("shirt", 1.001), ("jacket", 1.01)):
+        files.append(tmp_path / f"{name}.obj")
+        corners = "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in (size * np.asarray(pair.source.vertices)).tolist())
+        files[-1].write_text(corners + faces)
+    output = tmp_path / "out.obj"
+    found = pair.map.apply(files[0], output, clearance="keep").json["products"][0]["clearance"]
+    assert found["clear"] and found["missed_before"]["samples"] > 0
+    found = pair.map.apply(files[1], output, clearance="1%", layers=files[:1]).json["products"][0]["clearance"]
+    assert found["layers"] == [{"lower": "shirt.obj", "intersections_on_source": 0, "new_intersections": 0}]
+    assert "clearance" not in pair.map.apply(files[0], output).json["products"][0]
+    with pytest.raises(bespoke.InvalidInput, match="not 'lots'"):
+        pair.map.apply(files[0], output, clearance="lots")
+    with pytest.raises(bespoke.InvalidInput, match="where t is 1"):
+        pair.map.apply(files[0], output, 0.5, clearance="keep")
+
+
 def test_measures_the_pair_and_no_other(pair):
     quality = pair.map.measure(pair.source, pair.target)
     assert quality.flipped_faces == 0

@@ -16,6 +16,7 @@
 #include "bespoke/strings.h"
 #include "bespoke/unknown_ending.h"
 #include "catalog_option.h"
+#include "clearance_option.h"
 #include "commands.h"
 #include "help.h"
 #include "length_option.h"
@@ -40,6 +41,7 @@ struct ApplyArguments {
   std::string report;
   std::vector<std::string> rigid, similar;  ///< parts
   std::optional<Length> refine;
+  ClearanceOption clearance;
   std::string unit;
   double t = 1;
   std::optional<int> frames;
@@ -251,7 +253,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   const fs::path map_file =
       arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
   ProductMap map(map_file, arguments.products,
-                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point,
+                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point || arguments.clearance.is_used(),
                   arguments.unit},
                  context);
   // A batch knows which jobs share a map only where they name it.
@@ -260,6 +262,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
   const PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "",
                                          arguments.catalog.target);
+  ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit);
   OutputFiles files;
   std::vector<AppliedProduct> applied;
   std::vector<std::string> penetrations(arguments.products.size());
@@ -268,15 +271,17 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     const std::string& name = arguments.products[i];
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
-      penetrations[i] = new_penetration(name, opened);
-      summary = apply_one(arguments, name, plan[i], opened, progress);
+      const OpenedMap cleared = keeper.corrected(name, opened);
+      penetrations[i] = new_penetration(name, cleared);
+      summary = apply_one(arguments, name, plan[i], cleared, progress);
       if (!penetrations[i].empty()) summary.warnings.push_back(penetrations[i]);
     });
     files.add(plan[i]);
     files.add(summary.companions);
     std::vector<fs::path>& further = context.findings.further_outputs;
     further.insert(further.end(), summary.companions.begin(), summary.companions.end());
-    applied.push_back({fs::path(name).filename().string(), std::move(summary)});
+    applied.push_back({fs::path(name).filename().string(), std::move(summary), {}});
+    applied.back().clearance = keeper.last();
   }
   progress.step("apply", arguments.products.size(), arguments.products.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -288,11 +293,13 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   if (!arguments.run.quiet && !map.reading().empty()) std::printf("%s\n", map.reading().c_str());
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
+    if (!arguments.run.quiet && applied[i].clearance) print_clearance(plan[i].back(), *applied[i].clearance);
     for (const std::string& warning : applied[i].summary.warnings)
       context.warn(arguments.products[i] + ": " + warning, warning == penetrations[i]
                                                                ? Entry::product_inside_the_target
                                                                : Entry::content_left_as_it_is);
   }
+  keeper.require_clear();
 }
 
 /// What keeps its shape, and where edges follow the map's.
@@ -325,6 +332,10 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
 ApplyArguments taken(ApplyArguments& arguments) {
   ApplyArguments given = std::exchange(arguments, {});
   require_valid(given.catalog);
+  require_valid(given.clearance);
+  if (given.clearance.is_used() && (given.frames || given.t != 1))
+    throw CLI::ValidationError("--clearance",
+                               "is kept from the target, where --t is 1; leave out --frames and --t");
   if (given.catalog.is_used())
     given.products.insert(given.products.begin(), std::exchange(given.map, {}));
   else if (given.products.empty())
@@ -378,12 +389,14 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
                  "Carry products of the target back to the source; the map must be proved one-to-one")
       ->excludes(exact);
   add_shape_options(*apply, *arguments);
+  add_clearance_options(*apply, arguments->clearance);
   add_run_options(*apply, arguments->run);
   apply->footer(
       "Examples:\n"
       "  bespoke apply map.vdb dress.obj -o dress_on_man.obj\n"
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
       "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24\n"
+      "  bespoke apply map.vdb shirt.obj jacket.obj --clearance keep --layers --out-dir fitted\n"
       "  bespoke apply dress.obj --from season --source woman.obj -o dress_on_man.obj");
   apply->callback([arguments, handle_plan] {
     const ApplyArguments given = taken(*arguments);

@@ -6,6 +6,7 @@
 #include "batch_plan.h"
 #include "batch_run.h"
 #include "bespoke/error.h"
+#include "clearance_option.h"
 #include "commands.h"
 #include "grade_sizes.h"
 #include "grade_tables.h"
@@ -67,6 +68,7 @@ void require_one_kind_of_sizes(const GradeArguments& arguments) {
 
 void run(const GradeArguments& arguments) {
   require_one_kind_of_sizes(arguments);
+  require_valid(ClearanceOption{arguments.request.clearance, arguments.request.require_clear, false});
   const fs::path& out_dir = arguments.request.out_dir;
   if (fs::exists(out_dir) && !fs::is_directory(out_dir))
     throw FileError(out_dir.string() + ": is no directory but a file; name another");
@@ -136,6 +138,13 @@ void add_grade_command(CLI::App& app) {
     grade->add_option(name, *parts, "Parts that keep their shape, as for `apply`; repeatable")
         ->type_name("NAME")
         ->allow_extra_args(false);
+  grade
+      ->add_option(
+          "--clearance", request.clearance,
+          "What products keep from the models of the sizes, as for `apply`: keep, a length, or off; sizes "
+          "on the way (t other than 1) are carried without (default: off)")
+      ->type_name("keep|LENGTH|off");
+  grade->add_flag("--require-clear", request.require_clear, require_clear_help);
   begin_group(*grade, jobs_group);
   grade->add_flag("--keep-going", arguments->keep_going,
                   "After a size has failed, go on with the others; the tables of the series need all sizes");

@@ -13,6 +13,8 @@ struct GradeRequest {
   std::string source;
   std::vector<std::string> products;
   std::vector<std::string> rigid, similar;  ///< parts, as for `apply`
+  std::string clearance = "off";            ///< as for `apply`, of sizes that are targets
+  bool require_clear = false;
   std::filesystem::path out_dir;
 };
 

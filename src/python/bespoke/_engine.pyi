@@ -40,6 +40,8 @@ class Map:
         similar: list[str],
         refine: _Length,
         unit: str,
+        clearance: str,
+        layers: list[str],
         progress: _Progress,
     ) -> str: ...
     def measure(

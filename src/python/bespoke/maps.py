@@ -71,6 +71,8 @@ class Map:
         similar: Sequence[str] = (),
         refine: Length | None = None,
         unit: str = "",
+        clearance: Length = "off",
+        layers: Sequence[str | os.PathLike[str]] = (),
         progress: Progress | None = None,
     ) -> ApplySummary:
         """Carries a product's file: positions and directions move, everything else is copied through.
@@ -79,6 +81,9 @@ class Map:
         components of PLY. `refine` splits edges of a product until their middles lie no farther than this from
         where the map takes them. `unit` is that of the product's coordinates ("mm", ..., "map" for the map's own), by
         default what a glTF or 3MF file says, else the map's; the product stays in it.
+        `clearance` ("keep", a length, or "off") keeps the product clear of the target at t = 1, as `bespoke apply
+        --clearance` does, and clear of the products in `layers`, which lie below it, from the inside to the outside;
+        what was found is in the summary's `json["products"][0]["clearance"]`.
         With several times, `output` names as many files, and they cost one look-up. All files are written or none.
         """
         times = [float(t)] if isinstance(t, (int, float)) else [float(time) for time in t]
@@ -96,6 +101,8 @@ class Map:
                 list(similar),
                 refine,
                 unit,
+                str(clearance),
+                [os.fspath(name) for name in layers],
                 progress,
             )
         )

@@ -5,6 +5,8 @@
 
 #include "bespoke/apply/unit_check.h"
 #include "bespoke/asset/asset_io.h"
+#include "bespoke/asset/model_distances.h"
+#include "bespoke/clearance/product_clearer.h"
 #include "bespoke/mapping/scaled_map.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/derive_map.h"
@@ -105,11 +107,50 @@ std::shared_ptr<LoadedAsset> composed(const LoadedAsset& first, const LoadedAsse
   });
 }
 
+struct ClearedRequest {
+  fs::path product;
+  std::vector<fs::path> layers;  ///< below it, from the inside to the outside
+  std::vector<RigidPart> parts;
+  std::string unit;
+  std::string clearance;
+  std::vector<double> times;
+};
+
+/// As `bespoke apply --clearance --layers`.
+std::shared_ptr<const ElasticMap> cleared_map(const Asset& asset, std::shared_ptr<const ElasticMap> elastic,
+                                              const ClearedRequest& request,
+                                              std::optional<ProductClearance>& found) {
+  if (request.times != std::vector<double>{1})
+    throw InvalidInput("clearance is kept from the target, where t is 1; leave out t");
+  const ModelSizes sizes{asset.record.source.box.diagonal().norm(),
+                         asset.record.target.box.diagonal().norm()};
+  ClearanceRule rule;
+  if (request.clearance != "keep") {
+    const auto ease = parse_length(request.clearance, LengthRange::not_negative);
+    if (!ease)
+      throw InvalidInput(
+          "clearance is \"keep\", \"off\", a length or a percentage of the source's diagonal, not '" +
+          request.clearance + "'");
+    rule.ease = ease->in_mesh_units(sizes.source_diagonal) * (ease->percent ? sizes.scale() : 1);
+  }
+  const ClearanceMap map{std::move(elastic), asset.target_from_source, model_distances(asset), sizes};
+  ProductClearer clearer(rule, ProductClearer::Products::layers);
+  const auto corrected = [&](const fs::path& file, const std::vector<RigidPart>& parts) {
+    return clearer.corrected(
+        read_worn_product(file, parts, product_scale(file, asset.record.unit, request.unit)), map);
+  };
+  for (const fs::path& layer : request.layers) corrected(layer, {});
+  std::shared_ptr<const ElasticMap> result = corrected(request.product, request.parts);
+  found = clearer.found().back();
+  return result;
+}
+
 /// The report of `bespoke apply`, JSON.
 std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vector<fs::path>& outputs,
                        const std::vector<double>& times, const std::string& path, const std::string& order,
                        const std::vector<std::string>& rigid, const std::vector<std::string>& similar,
-                       const py::object& refine, const std::string& unit, const py::object& callback) {
+                       const py::object& refine, const std::string& unit, const std::string& clearance,
+                       const std::vector<fs::path>& layers, const py::object& callback) {
   const AssetRecord& record = map.asset().record;
   const double scale = product_scale(product, record.unit, unit);
   ApplyToProductOptions options;
@@ -120,14 +161,19 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
     options.refine = length->in_mesh_units(record.source.box.diagonal().norm()) / scale;
   if (unit.empty()) options.model_box = Box(record.source.box.min() / scale, record.source.box.max() / scale);
   // Not the owner: the map outlives the call.
-  const std::shared_ptr<const ElasticMap> elastic =
-      in_other_unit(std::shared_ptr<const ElasticMap>(std::shared_ptr<void>(), &map.carrier()), scale);
-  const ProductSummary summary = released(callback, [&](const Progress& progress) {
+  const std::shared_ptr<const ElasticMap> carrier(std::shared_ptr<void>(), &map.carrier());
+  AppliedProduct applied{product.filename().string(), {}, {}};
+  applied.summary = released(callback, [&](const Progress& progress) {
     options.progress = progress;
-    return apply_to_product(product, outputs, *elastic, in_other_unit(map.asset().target_from_source, scale),
-                            times, options);
+    std::shared_ptr<const ElasticMap> elastic = carrier;
+    if (clearance != "off")
+      elastic = cleared_map(map.asset(), carrier, {product, layers, options.parts, unit, clearance, times},
+                            applied.clearance);
+    return apply_to_product(product, outputs, *in_other_unit(elastic, scale),
+                            in_other_unit(map.asset().target_from_source, scale), times, options);
   });
-  return apply_report({{product.filename().string(), summary}}, times, summary.points.seconds);
+  const double seconds = applied.summary.points.seconds;
+  return apply_report({std::move(applied)}, times, seconds);
 }
 
 std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
@@ -179,7 +225,7 @@ void add_map(py::module_& engine) {
            py::arg("any_models"), py::arg("progress"))
       .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
            py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("unit"),
-           py::arg("progress"))
+           py::arg("clearance"), py::arg("layers"), py::arg("progress"))
       .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
            py::arg("products"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });
