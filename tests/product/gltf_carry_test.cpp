@@ -92,15 +92,18 @@ TEST_F(CarryGltf, ChangesNothingButGeometry) {
   const GlbContent after(carried("a.glb", scene.glb(), bend_motion()));
 
   EXPECT_EQ(after.floats(0), bent_corners);  // in the bind pose, wherever the node is
-  EXPECT_THAT(summary_.warnings, ElementsAre(HasSubstr("bind pose")));
+  EXPECT_THAT(summary_.warnings, ::testing::IsEmpty());
   json root = after.root;
+  root["nodes"][2].erase("rotation");  // the bend turns what the knee holds
   for (const std::size_t accessor : {0u, 3u})
     for (const char* bound : {"min", "max"})
       root["accessors"][accessor][bound] = before.root["accessors"][accessor][bound];
   EXPECT_EQ(root, before.root);
   ASSERT_EQ(after.data.size(), before.data.size());
   for (std::size_t byte = 0; byte < after.data.size(); ++byte)
-    EXPECT_TRUE(after.data[byte] == before.data[byte] || byte < before.begin(4)) << byte;
+    EXPECT_TRUE(after.data[byte] == before.data[byte] || byte < before.begin(4) ||
+                byte >= before.begin(static_cast<std::size_t>(inverse_binds)))
+        << byte;
 }
 
 TEST_F(CarryGltf, KeepsTheCharactersOfTheJsonButOfBounds) {
@@ -156,13 +159,13 @@ GltfScene posed_triangle() {
 
 TEST_F(CarryGltf, CarriesASkinnedMeshInAnotherPoseAsAViewerShowsIt) {
   const GlbContent out(carried("a.glb", posed_triangle().glb(), bend_motion()));
-  // Shown at x = 0, 5 and 2, where the bend is 0, 12.5 and 2; joints that only shift leave that as it is.
-  EXPECT_EQ(out.floats(0), (Floats{0, 0, 0, 1, 0, 12.5, 0, 2, 2}));
+  // Shown at x = 0, 5 and 2, where the bend is 0, 12.5 and 2; it is bound in that pose.
+  EXPECT_EQ(out.floats(0), (Floats{0, 0, 0, 5, 0, 12.5, 2, 2, 2}));
   const float length = std::sqrt(26.0f);
   EXPECT_NEAR(out.floats(1)[3], -5 / length, 1e-6);
   EXPECT_NEAR(out.floats(1)[5], 1 / length, 1e-6);
   EXPECT_THAT(summary_.warnings, ElementsAre(HasSubstr("in the pose in which its nodes show it")));
-  EXPECT_EQ(out.root["skins"], posed_triangle().root["skins"]);
+  EXPECT_EQ(out.root["skins"][0]["joints"], posed_triangle().root["skins"][0]["joints"]);
   const std::string glb = posed_triangle().glb();
   EXPECT_EQ(carried("a.glb", glb, identity_motion()), glb);
 }

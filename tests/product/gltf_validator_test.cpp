@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "bespoke/product/detail/gltf_file.h"
-#include "product/gltf_scene.h"
+#include "product/rig_scene.h"
 
 namespace bespoke {
 namespace {
@@ -61,6 +61,23 @@ TEST_F(GltfValidator, AcceptsUnpackedPositionsAndQuantisedNormals) {
   scene.root["nodes"] = {{{"mesh", 0}}};
   scene.root["scenes"] = {{{"nodes", {0}}}};
   expect_valid("a.glb", scene.glb());
+}
+
+TEST_F(GltfValidator, AcceptsACarriedSkeleton) {
+  test::RigScene rig;
+  rig.scene.root.erase("extensionsUsed");
+  rig.scene.root.erase("extensions");
+  expect_valid("a.glb", rig.glb());
+}
+
+TEST_F(GltfValidator, AcceptsAProductOnAnotherSkeleton) {
+  test::RigScene rig;
+  const std::string target = file("target.glb", rig.glb());
+  rig.scene.root.erase("extensionsUsed");
+  rig.scene.root.erase("extensions");
+  carry_product(file("a.glb", rig.glb()), {directory_ / "out.glb"}, test::bend_motion(),
+                {{}, {}, nullptr, ModelPose::shown, target});
+  EXPECT_THAT(findings(directory_ / "out.glb"), HasSubstr("0 errors, 0 warnings"));
 }
 
 }  // namespace

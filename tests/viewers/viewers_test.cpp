@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command/example_pair.h"
+#include "product/rig_scene.h"
 
 // Programs that other people have, doing more with a map than looking at it: samples/viewers.
 namespace bespoke::test {
@@ -35,6 +36,46 @@ TEST(Blender, PropertiesOfTheAddOnHold) {
                    scripts + "/blender_test.py", "--", directory, BESPOKE_COMMAND, viewers + "/blender"});
   EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
   EXPECT_THAT(run.out, HasSubstr("held: t_moves_meshes_where_the_add_on_is_absent"));
+  EXPECT_THAT(run.out, Not(HasSubstr("broken: "))) << run.err;
+}
+
+/// The sleeve of RigScene around the source of the pair, and what its map makes of it.
+void write_rigged_sleeve(const ExamplePair& pair) {
+  RigScene rig;
+  rig.scene.root["nodes"][0]["translation"] = {-0.5, 1, 1.5};
+  rig.scene.root["nodes"][0]["scale"] = {0.25, 0.25, 0.25};
+  write_text(pair.file("sleeve.glb"), rig.glb());
+  std::string points = "x,y,z\n";
+  Points shown =
+      read_product(pair.file("sleeve.glb")).vertices.rightCols(RigScene::rings * RigScene::corners);
+  shown.conservativeResize(3, shown.cols() + 1);
+  shown.rightCols<1>().setZero();  // the elbow
+  for (const auto& x : shown.colwise())
+    points += std::to_string(x[0]) + "," + std::to_string(x[1]) + "," + std::to_string(x[2]) + "\n";
+  write_text(pair.file("shown.csv"), points);
+  const auto apply = [&](const std::string& product, const std::string& output,
+                         const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"apply", pair.file("map.vdb"), pair.file(product), "--unit", "map",
+                                   "-o",    pair.file(output)};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult run = bespoke(words);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  };
+  apply("shown.csv", "expected.csv");
+  apply("sleeve.glb", "carried.glb");
+  apply("sleeve.glb", "bound.glb", {"--skeleton", pair.file("carried.glb")});
+}
+
+TEST(Blender, PropertiesOfCarriedSkeletonsHold) {
+  if (!is_installed("blender")) GTEST_SKIP() << "blender is not installed";
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  write_rigged_sleeve(pair);
+  const std::string directory = std::filesystem::path(pair.file("map.vdb")).parent_path();
+  const ProgramResult run = run_program({"blender", "-b", "--factory-startup", "--python-exit-code", "1",
+                                         "-P", scripts + "/blender_rig_test.py", "--", directory});
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  EXPECT_THAT(run.out, HasSubstr("held: elbow_of_the_targets_skeleton_bends_the_bound_sleeve"));
   EXPECT_THAT(run.out, Not(HasSubstr("broken: "))) << run.err;
 }
 

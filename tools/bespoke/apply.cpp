@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "apply_plan.h"
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/apply/convert_product.h"
 #include "bespoke/atomic_file.h"
@@ -15,7 +16,6 @@
 #include "bespoke/report/report.h"
 #include "bespoke/strings.h"
 #include "bespoke/unknown_ending.h"
-#include "catalog_option.h"
 #include "clearance_option.h"
 #include "commands.h"
 #include "help.h"
@@ -32,101 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ApplyArguments {
-  std::string map;
-  CatalogOption catalog;
-  std::vector<std::string> products;
-  std::string output;
-  std::string out_dir;
-  std::string report;
-  std::vector<std::string> rigid, similar;  ///< parts
-  std::optional<Length> refine;
-  ClearanceOption clearance;
-  std::string unit;
-  double t = 1;
-  std::optional<int> frames;
-  std::optional<RotationPath> path;
-  std::optional<MappingOrder> order;
-  bool exact = false;
-  bool inverse = false;
-  bool untrusted = false;
-  RunOptions run;
-};
-
-/// OUT.obj itself, or OUT_000.obj … OUT_NNN.obj with --frames.
-std::vector<fs::path> frame_paths(const fs::path& path, std::optional<int> frames) {
-  if (!frames) return {path};
-  const int digits = std::max<int>(3, static_cast<int>(std::to_string(*frames).size()));
-  std::vector<fs::path> paths;
-  for (int k = 0; k <= *frames; ++k) {
-    std::string number = std::to_string(k);
-    number.insert(0, static_cast<std::size_t>(digits) - number.size(), '0');
-    fs::path frame = path;
-    frame.replace_filename(path.stem().string() + "_" + number + path.extension().string());
-    paths.push_back(std::move(frame));
-  }
-  return paths;
-}
-
-/// Whether the output says no kind of file: standard output, a pipe or a device.
-bool takes_any_kind(const fs::path& output) {
-  return is_standard_output(output) ||
-         (is_stream(output) && !has_product_ending(output) && !can_write_product(output));
-}
-
-/// Whether the product keeps its kind of file, and so all that it holds; otherwise its faces are converted.
-bool keeps_kind(const fs::path& product, const fs::path& output) {
-  const bool is_carried_or_unknown = has_product_ending(output) || !can_write_product(output);
-  return takes_any_kind(output) || (is_carried_or_unknown && lower_ending(product) == lower_ending(output));
-}
-
-/// Whether the file is carried as it is, with its edges split where that is required.
-bool is_carried(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
-  return keeps_kind(product, output) && (!arguments.refine || can_split_product(product));
-}
-
-/// Of points without edges, or of a kind whose edges are not split.
-[[noreturn]] void refuse_refinement(const fs::path& product) {
-  const std::string name = product.string();
-  if (!has_product_ending(product))
-    throw UnknownEnding("apply: " + name + " must end in " + product_endings() + conversion_advice(product));
-  if (!can_read_product(product))
-    throw CLI::ValidationError(
-        "--refine", name + " holds points, which have no edges to split; carry it without --refine");
-  throw CLI::ValidationError("--refine", "edges of " + name + " are split only where the output ends in " +
-                                             written_product_endings());
-}
-
-/// To a kind of file that is carried but not written anew.
-[[noreturn]] void refuse_conversion(const fs::path& product, const fs::path& output) {
-  std::string endings = has_product_ending(product) ? lower_ending(product) : "";
-  if (can_read_product(product)) endings += (endings.empty() ? "" : ", or ") + written_product_endings();
-  throw UnknownEnding("apply: " + product.string() + " cannot become " + lower_ending(output) +
-                      ", which is written only from files that are " + lower_ending(output) +
-                      " already; name an output that ends in " + endings);
-}
-
-void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
-  const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
-  if (is_carried(arguments, product, output)) {
-    if (!has_product_ending(product))
-      throw UnknownEnding("apply: " + product.string() + " must end in " + product_endings() +
-                          conversion_advice(product));
-    return;
-  }
-  if (keeps_kind(product, output) && !can_write_product(output)) refuse_refinement(product);
-  const bool is_known = has_product_ending(product) || can_read_product(product);
-  if (is_known && has_product_ending(output) && !can_write_product(output))
-    refuse_conversion(product, output);
-  if (has_parts)
-    throw CLI::ValidationError("apply",
-                               "parts that keep their shape are known only in a file that keeps its kind");
-  require_mesh_ending("apply", output);
-  if (!can_read_product(product))
-    throw UnknownEnding("apply: " + product.string() + " must end in " + read_product_endings() +
-                        conversion_advice(product));
-}
-
 std::vector<RigidPart> parts(const ApplyArguments& arguments) {
   std::vector<RigidPart> parts;
   for (const std::string& name : arguments.rigid) parts.push_back({name, PartMotion::rigid});
@@ -134,30 +39,11 @@ std::vector<RigidPart> parts(const ApplyArguments& arguments) {
   return parts;
 }
 
-/// One list of frames a product.
-std::vector<std::vector<fs::path>> plan_outputs(const ApplyArguments& arguments) {
-  if (arguments.output.empty() == arguments.out_dir.empty())
-    throw CLI::ValidationError("apply", "give either -o OUT or --out-dir DIR");
-  if (!arguments.output.empty() && arguments.products.size() > 1)
-    throw CLI::ValidationError("-o", "takes one product, but " + std::to_string(arguments.products.size()) +
-                                         " are given; use --out-dir DIR");
-  std::vector<std::vector<fs::path>> plan;
-  for (const std::string& product : arguments.products) {
-    const fs::path path = arguments.output.empty() ? arguments.out_dir / fs::path(product).filename()
-                                                   : fs::path(arguments.output);
-    if (arguments.frames && takes_any_kind(path))
-      throw CLI::ValidationError("--frames",
-                                 "writes several files, which " + path.string() + " is not; name a file");
-    require_known_endings(arguments, product, path);
-    plan.push_back(frame_paths(path, arguments.frames));
-  }
-  return plan;
-}
-
 std::vector<JobFile> inputs(const ApplyArguments& arguments) {
   std::vector<JobFile> files = named_files({{"map", arguments.map}});
   for (JobFile& file : inputs(arguments.catalog)) files.push_back(std::move(file));
   for (const std::string& product : arguments.products) files.push_back({"product", product});
+  if (!arguments.skeleton.empty()) files.push_back({"skeleton", arguments.skeleton});
   return files;
 }
 
@@ -219,6 +105,8 @@ ProductSummary apply_one(const ApplyArguments& arguments, const std::string& nam
     summary = convert_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
   } else {
     ApplyToProductOptions options{motion, parts(arguments), refine, measure_chords, model_box, progress};
+    options.pose = arguments.pose.value_or(ModelPose::shown);
+    if (!arguments.skeleton.empty()) options.skeleton = arguments.skeleton;
     summary =
         apply_to_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
   }
@@ -235,8 +123,12 @@ std::vector<JobFigure> figures(const std::vector<AppliedProduct>& applied) {
   return {{"products", applied.size()}, {"points", points}, {"in_band", in_band}};
 }
 
-void print_summary(const fs::path& output, const ProductSummary& summary) {
+void print_summary(const fs::path& output, const ProductSummary& summary, const std::string& skeleton) {
   std::printf("%s: %s\n", output.c_str(), to_string(summary.points).c_str());
+  if (summary.joints > 0 && skeleton.empty())
+    std::printf("%s: %zu joints carried with their skin\n", output.c_str(), summary.joints);
+  else if (summary.joints > 0)
+    std::printf("%s: bound to the %zu joints of %s\n", output.c_str(), summary.joints, skeleton.c_str());
   if (summary.chord)
     std::printf("%s: %zu edges split; %s\n", output.c_str(), summary.splits,
                 to_string(*summary.chord).c_str());
@@ -292,7 +184,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   context.findings.figures = figures(applied);
   if (!arguments.run.quiet && !map.reading().empty()) std::printf("%s\n", map.reading().c_str());
   for (std::size_t i = 0; i < applied.size(); ++i) {
-    if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary);
+    if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary, arguments.skeleton);
     if (!arguments.run.quiet && applied[i].clearance) print_clearance(plan[i].back(), *applied[i].clearance);
     for (const std::string& warning : applied[i].summary.warnings)
       context.warn(arguments.products[i] + ": " + warning, warning == penetrations[i]
@@ -326,6 +218,19 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
       apply, "--refine", arguments.refine,
       "Split edges where the map bends them, until the middle of a mapped edge is no farther than this from "
       "the mapped middle; vertex data are interpolated, all else stays (default: no edge is split)");
+}
+
+/// What becomes of skeletons.
+void add_rig_options(CLI::App& apply, ApplyArguments& arguments) {
+  add_name_option(apply, "--pose", arguments.pose, model_poses,
+                  "Of a skinned glTF product whose nodes stand in another pose than it is stored in: shown, "
+                  "as viewers have it, or stored, as in the file (default: shown)");
+  apply
+      .add_option("--skeleton", arguments.skeleton,
+                  "A skinned model (.glb, .gltf), the target for instance: the product, a .glb, is bound to "
+                  "its skeleton, with the weights of the nearest place of its skin (default: a product's own "
+                  "skeleton is carried with it)")
+      ->type_name("TARGET");
 }
 
 /// The arguments, with products in their place: where the map is found, the first stands in that of the map.
@@ -389,6 +294,7 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
                  "Carry products of the target back to the source; the map must be proved one-to-one")
       ->excludes(exact);
   add_shape_options(*apply, *arguments);
+  add_rig_options(*apply, *arguments);
   add_clearance_options(*apply, arguments->clearance);
   add_run_options(*apply, arguments->run);
   apply->footer(
@@ -397,6 +303,7 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
       "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24\n"
       "  bespoke apply map.vdb shirt.obj jacket.obj --clearance keep --layers --out-dir fitted\n"
+      "  bespoke apply map.vdb jacket.glb --skeleton avatar.glb -o jacket_on_avatar.glb\n"
       "  bespoke apply dress.obj --from season --source woman.obj -o dress_on_man.obj");
   apply->callback([arguments, handle_plan] {
     const ApplyArguments given = taken(*arguments);

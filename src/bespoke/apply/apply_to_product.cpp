@@ -110,13 +110,15 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
         require_unit_of_map(input.string(), read_product(input).vertices, elastic, *options.model_box);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
-    CarrySummary carried = carry_product(input, own_outputs, point_motion,
-                                         {options.parts, options.progress, splits ? &*splits : nullptr});
+    CarrySummary carried = carry_product(
+        input, own_outputs, point_motion,
+        {options.parts, options.progress, splits ? &*splits : nullptr, options.pose, options.skeleton});
     written.add(own_outputs);
     written.add(carried.companions);
     summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
     summary.warnings = std::move(carried.warnings);
     summary.parts = std::move(carried.parts);
+    summary.joints = carried.joints;
     summary.points.points = points;
     summary.points.in_band = in_band;
   }

@@ -7,6 +7,7 @@
 
 #include "bespoke/apply/apply_mapping.h"
 #include "bespoke/apply/chord_error.h"
+#include "bespoke/product/model_pose.h"
 #include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
 
@@ -19,6 +20,7 @@ struct ProductSummary {
   std::vector<PartSummary> parts;                 ///< that kept their shape
   std::optional<ChordError> chord;                ///< at the last time, where it was requested
   std::size_t splits = 0;                         ///< edges that were split for it
+  std::size_t joints = 0;  ///< of a skeleton that was carried, or that the product was bound to
 };
 
 struct ApplyToProductOptions {
@@ -34,6 +36,9 @@ struct ApplyToProductOptions {
   /// another unit (unit_check.h), with nothing written.
   std::optional<Box> model_box;
   Progress progress;
+  ModelPose pose = ModelPose::shown;  ///< of skinned meshes; edges are split as shown only
+  std::optional<std::filesystem::path> skeleton =
+      std::nullopt;  ///< that the product is bound to (CarryOptions)
 };
 
 /// Carries the product `input` across a mapping: one file for every time, of the kind of the input, in which

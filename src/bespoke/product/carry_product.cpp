@@ -8,6 +8,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/output_stream.h"
+#include "bespoke/product/detail/gltf_bind.h"
 #include "bespoke/product/detail/product_formats.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/strings.h"
@@ -25,14 +26,17 @@ struct Format {
                                         const Progress&) = nullptr;  ///< where the format knows parts
   /// Writes the file with edges split, where that is known.
   void (*split)(const InputFile&, const FaceSplits&, OutputFile&) = nullptr;
+  /// As `carry`, in the pose in which skinned meshes are stored, where the format knows skins.
+  CarrySummary (*carry_stored)(const InputFile&, std::vector<OutputFile>&, const PointMotion&,
+                               const Progress&) = nullptr;
 };
 
 constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj},
                              Format{".ply", carry_ply, find_ply_parts, split_ply},
                              Format{".stl", carry_stl, nullptr, split_stl},
                              Format{".off", carry_off, nullptr, split_off},
-                             Format{".gltf", carry_gltf, find_gltf_parts, split_gltf},
-                             Format{".glb", carry_gltf, find_gltf_parts, split_gltf},
+                             Format{".gltf", carry_gltf, find_gltf_parts, split_gltf, carry_stored_gltf},
+                             Format{".glb", carry_gltf, find_gltf_parts, split_gltf, carry_stored_gltf},
                              Format{".xyz", carry_xyz},
                              Format{".csv", carry_csv}};
 
@@ -41,6 +45,11 @@ const Format* find_format(const fs::path& path) {
       std::find_if(formats.begin(), formats.end(),
                    [ending = lower_ending(path)](const Format& format) { return format.ending == ending; });
   return at == formats.end() ? nullptr : at;
+}
+
+bool has_gltf_ending(const fs::path& path) {
+  const std::string ending = lower_ending(path);
+  return ending == ".glb" || ending == ".gltf";
 }
 
 const Format& known_format(const fs::path& path) {
@@ -56,6 +65,33 @@ std::vector<PartPoints> find_parts(const Format& format, const InputFile& file,
     throw InvalidInput(file.path().string() +
                        ": only OBJ, PLY and glTF files have parts that can keep their shape");
   return format.find_parts(file, parts, progress);
+}
+
+CarrySummary carry_in_pose(const Format& format, const InputFile& file, std::vector<OutputFile>& outputs,
+                           const PointMotion& motion, const CarryOptions& options) {
+  const bool is_as_stored = options.pose == ModelPose::stored && format.carry_stored;
+  return (is_as_stored ? format.carry_stored : format.carry)(file, outputs, motion, options.progress);
+}
+
+CarrySummary carry_and_bind(const Format& format, const InputFile& file, std::vector<OutputFile>& outputs,
+                            const PointMotion& motion, const CarryOptions& options) {
+  if (lower_ending(file.path()) != ".glb" || outputs.size() != 1)
+    throw InvalidInput(file.path().string() +
+                       ": only one .glb is bound to a skeleton; export the product as .glb, at one time");
+  if (!options.skeleton || !has_gltf_ending(*options.skeleton))
+    throw UnknownEnding(options.skeleton.value_or("").string() +
+                        ": a skeleton is read from a name that ends in .glb or .gltf");
+  const InputFile target(*options.skeleton);
+  CarrySummary summary;
+  const auto carried = InputFile::of_written(directory_of_temporaries(outputs.front().name()), file.path(),
+                                             [&](OutputFile& output) {
+                                               std::vector<OutputFile> one;
+                                               one.push_back(std::move(output));
+                                               summary = carry_in_pose(format, file, one, motion, options);
+                                               output = std::move(one.front());
+                                             });
+  summary.joints = bind_gltf(*carried, target, options.pose, outputs.front());
+  return summary;
 }
 
 }  // namespace
@@ -95,7 +131,8 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   if (!parts.empty()) own = with_rigid_parts(motion, parts, places, input);
   CarrySummary summary;
   write_outputs(outputs, [&](std::vector<OutputFile>& open) {
-    summary = format.carry(*file, open, own.motion, options.progress);
+    summary = options.skeleton ? carry_and_bind(format, *file, open, own.motion, options)
+                               : carry_in_pose(format, *file, open, own.motion, options);
     own.motion.accept();
   });
   summary.parts = std::move(own.parts);

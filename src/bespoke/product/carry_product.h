@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/product/face_splits.h"
+#include "bespoke/product/model_pose.h"
 #include "bespoke/product/point_motion.h"
 #include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
@@ -18,6 +20,7 @@ struct CarrySummary {
   std::vector<std::string> warnings;  ///< what the file holds that was left as it is, a sentence each
   std::vector<std::filesystem::path> companions;  ///< written besides the outputs: buffers beside a .gltf
   std::vector<PartSummary> parts;                 ///< that kept their shape
+  std::size_t joints = 0;  ///< of a skeleton that was carried, or that the product was bound to
 };
 
 struct CarryOptions {
@@ -28,13 +31,18 @@ struct CarryOptions {
   /// wherever nodes show it becomes several; strips and fans become lists. Values that nothing refers to any
   /// longer leave the buffers that are in the file.
   const FaceSplits* splits = nullptr;
+  ModelPose pose = ModelPose::shown;  ///< of skinned meshes, in which they are carried
+  /// A skinned glTF model to whose skeleton the product, a .glb, is bound where its one frame takes it: each
+  /// vertex by the weights of the nearest place of that model's skin. A skeleton of its own is left out.
+  std::optional<std::filesystem::path> skeleton = std::nullopt;
 };
 
 /// Writes the file `input` once for every frame of the motion, with positions, normals (as cof(J) n) and
 /// tangents (J t) moved, their lengths kept, and every other byte as it was; the endings must agree. Text
-/// keeps its digits. Points of the options' parts, and what lies at the same places, move with their part.
-/// Each output is complete or untouched. Throws FileError, InvalidInput (ending, unknown part, images that do
-/// not fit), FormatError naming line, byte or element, and what the motion throws.
+/// keeps its digits. The skeleton of a skinned glTF mesh goes with it: nodes, inverse binds, animations.
+/// Points of the options' parts, and what lies at the same places, move with their part. Each output is
+/// complete or untouched. Throws FileError, InvalidInput (ending, unknown part, images that do not fit),
+/// FormatError naming line, byte or element, and what the motion throws.
 CarrySummary carry_product(const std::filesystem::path& input,
                            const std::vector<std::filesystem::path>& outputs, const PointMotion& motion,
                            const CarryOptions& options = {});

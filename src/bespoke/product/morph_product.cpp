@@ -72,6 +72,10 @@ class Morpher {
   MorphSummary run(double seconds, const Progress& progress) {
     MorphSummary summary;
     summary.warnings = plan_.warnings;
+    if (!plan_.scene.poses.empty())
+      summary.warnings.emplace_back(
+          "its skeleton stays where it is at t = 0, since morph targets move no joints; `bespoke apply` "
+          "carries it");
     Additions additions(json_, file_.buffers);
     for (const GltfTask& task : plan_.tasks) {
       progress.check();

@@ -13,6 +13,7 @@ Product read_ply_faces(const InputFile& file);
 Product read_stl_faces(const InputFile& file);
 Product read_off_faces(const InputFile& file);
 Product read_gltf_faces(const InputFile& file);
+Product read_stored_gltf_faces(const InputFile& file);  ///< skinned meshes in the pose that is stored
 Product read_3mf_faces(const InputFile& file);
 
 /// What the writers are given: a product whose coordinates are finite and fit into their numbers.

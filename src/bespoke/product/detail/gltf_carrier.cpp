@@ -98,7 +98,7 @@ std::vector<Points> GltfCarrier::carry_block(const GltfTask& task, const GltfVal
 }
 
 /// With y = L x + b the scene's point and Ψ the scene's motion, x + L⁻¹ (Ψ(y) − y), which is x itself where
-/// nothing moves, and L⁻¹ ∇Ψ L.
+/// nothing moves, and L⁻¹ ∇Ψ L. With another map L' for what is carried, L'⁻¹ Ψ(y) and L'⁻¹ ∇Ψ L.
 std::vector<GltfCarrier::LocalMotion> GltfCarrier::local_motion(const Points& x, const GltfTask& task,
                                                                 std::size_t first) const {
   const GltfPlacement& place = plan_.places[task.place];
@@ -114,14 +114,16 @@ std::vector<GltfCarrier::LocalMotion> GltfCarrier::local_motion(const Points& x,
     images = task.difference ? motion_.at_other_points(y) : motion_.images(y);
   std::vector<LocalMotion> result(motion_.frames);
   for (std::size_t frame = 0; frame < motion_.frames; ++frame) {
+    const auto other = places_.empty() ? std::nullopt : places_[frame][task.place];
     if (!with_jacobians) {
-      result[frame].images = x + undone(place, images[frame] - y, first);
+      result[frame].images = other ? Points(inverse_of(*other) * images[frame])
+                                   : Points(x + undone(place, images[frame] - y, first));
       continue;
     }
     Points& local = result[frame].jacobians = std::move(jacobians[frame]);
     for (Eigen::Index i = 0; i < x.cols(); ++i)
-      if (auto jacobian = local.middleCols<3>(3 * i); jacobian != Matrix3::Identity())
-        jacobian = (linear_at(i).inverse() * jacobian * linear_at(i)).eval();
+      if (auto jacobian = local.middleCols<3>(3 * i); other || jacobian != Matrix3::Identity())
+        jacobian = ((other ? other->linear : linear_at(i)).inverse() * jacobian * linear_at(i)).eval();
   }
   return result;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "bespoke/product/detail/gltf_plan.h"
@@ -13,12 +15,17 @@ struct GltfCarried {
   bool is_changed = false;
 };
 
+/// From meshes into the scene once they are carried, where that is another map than before: one entry a place
+/// of the plan.
+using GltfCarriedPlaces = std::vector<std::optional<AffineMap>>;
+
 /// Moves what a plan names. What it is given must outlive it.
 class GltfCarrier {
  public:
+  /// `places`: one list a frame, or none where all places stay.
   GltfCarrier(const GltfFile& file, const std::vector<GltfAccessor>& accessors, const GltfPlan& plan,
-              const PointMotion& motion)
-      : file_(file), accessors_(accessors), plan_(plan), motion_(motion) {}
+              const PointMotion& motion, std::vector<GltfCarriedPlaces> places = {})
+      : file_(file), accessors_(accessors), plan_(plan), motion_(motion), places_(std::move(places)) {}
 
   /// One result a frame. Throws FormatError for vectors that are not finite, InvalidInput for those that are
   /// not afterwards.
@@ -39,6 +46,7 @@ class GltfCarrier {
   const std::vector<GltfAccessor>& accessors_;
   const GltfPlan& plan_;
   const PointMotion& motion_;
+  std::vector<GltfCarriedPlaces> places_;
 };
 
 }  // namespace bespoke

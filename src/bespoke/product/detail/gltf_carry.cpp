@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -5,6 +6,7 @@
 #include "bespoke/output_stream.h"
 #include "bespoke/product/detail/gltf_carrier.h"
 #include "bespoke/product/detail/gltf_frame.h"
+#include "bespoke/product/detail/gltf_rig_write.h"
 #include "bespoke/product/detail/product_formats.h"
 
 namespace bespoke {
@@ -69,24 +71,88 @@ void warn_of_textures(const GltfFile& file, const fs::path& output, CarrySummary
     }
 }
 
-}  // namespace
+/// One a frame; without nodes where nothing is skinned.
+std::vector<GltfCarriedRig> rigs_of(const GltfFile& file, const std::vector<GltfAccessor>& accessors,
+                                    const GltfPlan& plan, const PointMotion& motion) {
+  if (plan.scene.poses.empty()) return std::vector<GltfCarriedRig>(motion.frames);
+  return carry_rig(file, accessors, plan, motion);
+}
 
-CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs, const PointMotion& motion,
-                        const Progress& progress) {
+/// Meshes that hang on a joint without being skinned go with it, and what joints held in another pose than it
+/// is stored in is stored as it is shown: a shift of the whole, undone by the blend of each vertex, would
+/// crumple it.
+std::vector<GltfCarriedPlaces> carried_places(const GltfPlan& plan, const std::vector<GltfCarriedRig>& rigs) {
+  std::vector<GltfCarriedPlaces> result;
+  for (const GltfCarriedRig& rig : rigs) {
+    GltfCarriedPlaces& places = result.emplace_back(plan.places.size());
+    for (std::size_t i = 0; rig.is_changed && i < places.size(); ++i) {
+      if (!plan.places[i].of_vertices.empty()) places[i] = AffineMap();
+      const auto holder = plan.places[i].holder;
+      if (holder && !is_same(rig.nodes[*holder].scene_from_node, plan.places[i].scene_from_mesh))
+        places[i] = rig.nodes[*holder].scene_from_node;
+    }
+  }
+  return result;
+}
+
+/// Of one frame: what becomes of every task of the plan, and the skeleton.
+struct CarriedFrame {
+  std::vector<GltfCarried> values;
+  GltfCarriedRig rig;
+
+  bool is_changed() const {
+    return rig.is_changed ||
+           std::any_of(values.begin(), values.end(), [](const GltfCarried& own) { return own.is_changed; });
+  }
+};
+
+GltfFrame filled(const GltfFile& file, const std::vector<GltfAccessor>& accessors, const GltfPlan& plan,
+                 CarriedFrame& carried) {
+  // Where nothing moves, nothing needs copies either.
+  const bool is_changed = carried.is_changed();
+  GltfFrame frame(file, accessors, is_changed ? plan.json : file.json);
+  for (std::size_t k = 0; is_changed && k < plan.tasks.size(); ++k)
+    if (carried.values[k].is_changed || plan.tasks[k].is_copy())
+      frame.store(plan.tasks[k], std::move(carried.values[k].values));
+  if (carried.rig.is_changed) write_rig(file, accessors, plan.scene, carried.rig, frame);
+  return frame;
+}
+
+/// What is carried, a frame each, and how much that is.
+std::vector<CarriedFrame> carry_frames(const GltfFile& file, const std::vector<GltfAccessor>& accessors,
+                                       const GltfPlan& plan, const PointMotion& motion,
+                                       const Progress& progress) {
+  std::vector<GltfCarriedRig> rigs = rigs_of(file, accessors, plan, motion);
+  const GltfCarrier carrier(file, accessors, plan, motion, carried_places(plan, rigs));
+  std::vector<CarriedFrame> frames(motion.frames);
+  for (const GltfTask& task : plan.tasks) {
+    progress.check();
+    std::vector<GltfCarried> values = carrier.carry(task);
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].values.push_back(std::move(values[i]));
+  }
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].rig = std::move(rigs[i]);
+  return frames;
+}
+
+void count(const std::vector<GltfAccessor>& accessors, const GltfPlan& plan, CarrySummary& summary) {
+  for (const GltfTask& task : plan.tasks)
+    (task.role == GltfRole::position ? summary.points : summary.directions) += accessors[task.source()].count;
+  const std::vector<bool>& rigged = plan.scene.is_rigged;
+  summary.joints = static_cast<std::size_t>(std::count(rigged.begin(), rigged.end(), true));
+}
+
+CarrySummary carry_in_pose(ModelPose pose, const InputFile& input, std::vector<OutputFile>& outputs,
+                           const PointMotion& motion, const Progress& progress) {
   const GltfFile file = read_gltf(input);
   const std::vector<GltfAccessor> accessors = read_accessors(file);
-  const GltfPlan plan = plan_gltf(file, accessors);
+  const GltfPlan plan = plan_gltf(file, accessors, pose);
   if (plan.tasks.empty()) throw FormatError(input.path().string() + ": the file shows no vertices");
   CarrySummary summary;
   summary.warnings = plan.warnings;
+  for (std::string& warning : rig_warnings(file)) summary.warnings.push_back(std::move(warning));
   warn_of_textures(file, outputs.front().name(), summary);
-  const GltfCarrier carrier(file, accessors, plan, motion);
-  std::vector<std::vector<GltfCarried>> carried;
-  for (const GltfTask& task : plan.tasks) {
-    progress.check();
-    carried.push_back(carrier.carry(task));
-    (task.role == GltfRole::position ? summary.points : summary.directions) += accessors[task.source()].count;
-  }
+  std::vector<CarriedFrame> carried = carry_frames(file, accessors, plan, motion, progress);
+  count(accessors, plan, summary);
 
   motion.accept();  // buffers beside the file are written first
   const std::vector<std::size_t> beside = buffers_beside(file);
@@ -98,17 +164,23 @@ CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs
   write_outputs(summary.companions, [&](std::vector<OutputFile>& companions) {
     for (std::size_t i = 0; i < outputs.size(); ++i) {
       progress.check();
-      bool is_changed = false;
-      for (const std::vector<GltfCarried>& frames : carried) is_changed = is_changed || frames[i].is_changed;
-      // Where nothing moves, nothing needs copies either.
-      GltfFrame frame(file, accessors, is_changed ? plan.json : file.json);
-      for (std::size_t k = 0; is_changed && k < plan.tasks.size(); ++k)
-        if (carried[k][i].is_changed || plan.tasks[k].is_copy())
-          frame.store(plan.tasks[k], std::move(carried[k][i].values));
+      GltfFrame frame = filled(file, accessors, plan, carried[i]);
       write_frame(file, frame, outputs[i], companions.data() + i * beside.size());
     }
   });
   return summary;
+}
+
+}  // namespace
+
+CarrySummary carry_gltf(const InputFile& input, std::vector<OutputFile>& outputs, const PointMotion& motion,
+                        const Progress& progress) {
+  return carry_in_pose(ModelPose::shown, input, outputs, motion, progress);
+}
+
+CarrySummary carry_stored_gltf(const InputFile& input, std::vector<OutputFile>& outputs,
+                               const PointMotion& motion, const Progress& progress) {
+  return carry_in_pose(ModelPose::stored, input, outputs, motion, progress);
 }
 
 }  // namespace bespoke

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "bespoke/product/detail/gltf_additions.h"
-
 namespace bespoke {
 
 void GltfFrame::store(const GltfTask& task, GltfValues values) {
@@ -18,7 +16,7 @@ void GltfFrame::store(const GltfTask& task, GltfValues values) {
   }
   update_bounds(json, GltfComponent::real, false, values);
   if (task.is_copy() || !accessor.sparse || !is_real || !store_sparse(accessor, values))
-    append(task.result, std::move(values));
+    append(task.result, std::move(values), GltfTarget::vertices);
 }
 
 void GltfFrame::store_in(const GltfPlace& place, GltfValues values) {
@@ -39,12 +37,39 @@ bool GltfFrame::store_sparse(const GltfAccessor& accessor, const GltfValues& val
   return true;
 }
 
-void GltfFrame::append(std::size_t index, GltfValues values) {
+std::size_t GltfFrame::store_data(std::optional<std::size_t> own, const std::string& type,
+                                  GltfValues values) {
+  if (!own) return add(type, GltfComponent::real, {}, std::move(values));
+  const GltfAccessor& accessor = accessors_[*own];
+  update_bounds(json_["accessors"][*own], GltfComponent::real, false, values);
+  if (accessor.dense && !accessor.sparse && accessor.component == GltfComponent::real)
+    store_in(*accessor.dense, std::move(values));
+  else
+    append(*own, std::move(values), {});
+  return *own;
+}
+
+std::size_t GltfFrame::add(const std::string& type, GltfComponent component, std::optional<GltfTarget> target,
+                           GltfValues values) {
+  if (buffers_.empty()) file_.root().fail("has no buffer for new values");
+  GltfPlace room;
+  room.component = component;
+  room.components = static_cast<std::size_t>(values.rows());
+  room.count = static_cast<std::size_t>(values.cols());
+  store_in(add_view(json_, buffers_, room, target), std::move(values));
+  json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
+                                {"componentType", static_cast<int>(component)},
+                                {"count", room.count},
+                                {"type", type}});
+  return json_["accessors"].size() - 1;
+}
+
+void GltfFrame::append(std::size_t index, GltfValues values, std::optional<GltfTarget> target) {
   if (buffers_.empty()) file_.root().fail("has no buffer for values that change");
   GltfPlace room;
   room.components = static_cast<std::size_t>(values.rows());
   room.count = static_cast<std::size_t>(values.cols());
-  store_in(add_view(json_, buffers_, room, GltfTarget::vertices), std::move(values));
+  store_in(add_view(json_, buffers_, room, target), std::move(values));
   GltfJson& accessor = json_["accessors"][index];
   for (const char* key : {"sparse", "normalized", "byteOffset"}) accessor.erase(key);
   accessor["bufferView"] = json_["bufferViews"].size() - 1;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bespoke/product/detail/gltf_additions.h"
 #include "bespoke/product/detail/gltf_plan.h"
 
 namespace bespoke {
@@ -22,6 +24,15 @@ class GltfFrame {
   /// bits, or sparse with changes only where the file names vectors; else as floats behind the first buffer.
   void store(const GltfTask& task, GltfValues values);
 
+  /// Values that belong to no vertices, as floats: those of an accessor of the file or, without one, of a new
+  /// accessor of that type. Returns its number.
+  std::size_t store_data(std::optional<std::size_t> accessor, const std::string& type, GltfValues values);
+
+  /// A new accessor behind the first buffer.
+  std::size_t add(const std::string& type, GltfComponent component, std::optional<GltfTarget> target,
+                  GltfValues values);
+
+  GltfJson& json() { return json_; }
   const std::vector<GltfBuffer>& buffers() const { return buffers_; }
   void name_buffer(std::size_t buffer, const std::string& file_name);
 
@@ -31,7 +42,7 @@ class GltfFrame {
  private:
   void store_in(const GltfPlace& place, GltfValues values);
   bool store_sparse(const GltfAccessor& accessor, const GltfValues& values);
-  void append(std::size_t accessor, GltfValues values);
+  void append(std::size_t accessor, GltfValues values, std::optional<GltfTarget> target);
 
   const GltfFile& file_;
   const std::vector<GltfAccessor>& accessors_;

@@ -27,10 +27,13 @@ class Planner {
     plan_.json = file.json;
   }
 
-  GltfPlan run() {
-    scene_ = read_scene(file_, accessors_);
+  GltfPlan run(ModelPose pose) {
+    scene_ = read_scene(file_, accessors_, pose);
     const std::vector<GltfPart> meshes = file_.root().elements("meshes");
-    plan_.warnings = scene_.warnings;
+    if (scene_.posed > 0)
+      plan_.warnings.emplace_back(
+          "a skinned mesh was carried in the pose in which its nodes show it, which is not the one in which "
+          "it is stored");
     std::vector<std::vector<std::pair<const GltfShown*, std::size_t>>> shown(meshes.size());  // and the mesh
     for (const GltfShown& item : scene_.shown) {
       auto& own = shown[item.mesh];
@@ -51,15 +54,13 @@ class Planner {
       for (const auto& [item, result] : shown[mesh]) plan_mesh(meshes[mesh], result, *item);
     if (hidden > 0)
       plan_.warnings.push_back("meshes that no node shows were left as they are: " + std::to_string(hidden));
-    if (!file_.root().elements("animations").empty())
-      plan_.warnings.emplace_back("animations were left as they are");
+    plan_.scene = std::move(scene_);
     return std::move(plan_);
   }
 
  private:
   static bool is_same(const GltfShown& a, const GltfShown& b) {
-    return a.pose == b.pose && a.scene_from_mesh.linear == b.scene_from_mesh.linear &&
-           a.scene_from_mesh.offset == b.scene_from_mesh.offset;
+    return a.pose == b.pose && a.holder == b.holder && bespoke::is_same(a.scene_from_mesh, b.scene_from_mesh);
   }
 
   /// Of the places of what the node shows: of a mesh in a pose they depend on the vertices' joints too.
@@ -183,8 +184,8 @@ class Planner {
 
 }  // namespace
 
-GltfPlan plan_gltf(const GltfFile& file, const std::vector<GltfAccessor>& accessors) {
-  return Planner(file, accessors).run();
+GltfPlan plan_gltf(const GltfFile& file, const std::vector<GltfAccessor>& accessors, ModelPose pose) {
+  return Planner(file, accessors).run(pose);
 }
 
 }  // namespace bespoke

@@ -27,6 +27,7 @@ struct GltfTask {
 
 /// Which accessors are carried, and from where.
 struct GltfPlan {
+  GltfScene scene;
   std::vector<GltfPlacement> places;  ///< from meshes into the scene; can be undone
   std::vector<GltfTask> tasks;
   GltfJson json;  ///< with copies of meshes and accessors where one is used in several ways
@@ -34,6 +35,7 @@ struct GltfPlan {
 };
 
 /// Throws FormatError naming the JSON pointer at fault, and InvalidInput for compressed meshes.
-GltfPlan plan_gltf(const GltfFile& file, const std::vector<GltfAccessor>& accessors);
+GltfPlan plan_gltf(const GltfFile& file, const std::vector<GltfAccessor>& accessors,
+                   ModelPose pose = ModelPose::shown);
 
 }  // namespace bespoke

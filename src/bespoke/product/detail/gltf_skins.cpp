@@ -26,17 +26,6 @@ GltfValues skin_attribute(const GltfFile& file, const GltfPart& attributes, cons
 
 }  // namespace
 
-AffineMap composed(const AffineMap& a, const AffineMap& b) { return {a.linear * b.linear, a * b.offset}; }
-
-AffineMap affine_of(const Eigen::Matrix4d& matrix) {
-  return {matrix.topLeftCorner<3, 3>(), matrix.topRightCorner<3, 1>()};
-}
-
-bool is_invertible(const AffineMap& map) {
-  const double determinant = map.linear.determinant();
-  return std::abs(determinant) > 0 && std::isfinite(1 / determinant);
-}
-
 GltfPose read_pose(const GltfFile& file, const GltfPart& skin, const std::vector<AffineMap>& scene_from_node,
                    const std::vector<GltfAccessor>& accessors) {
   const std::vector<std::size_t> joints = skin.indices("joints", scene_from_node.size());
@@ -49,10 +38,12 @@ GltfPose read_pose(const GltfFile& file, const GltfPart& skin, const std::vector
     matrices = read_values(accessors[*inverse_binds], file.buffers, 0, joints.size());
   }
   GltfPose pose;
+  pose.joints = joints;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const AffineMap& joint = scene_from_node[joints[i]];
     const Eigen::Matrix4d matrix = matrices.col(static_cast<Eigen::Index>(i)).cast<double>().reshaped(4, 4);
     const AffineMap bind = affine_of(matrix);
+    pose.joint_from_mesh.push_back(bind);
     pose.scene_from_mesh.push_back(composed(joint, bind));
     const AffineMap &held = pose.scene_from_mesh.back(), &first = pose.scene_from_mesh.front();
     const double reach = joint.offset.norm() + joint.linear.norm() * bind.offset.norm();
@@ -63,8 +54,8 @@ GltfPose read_pose(const GltfFile& file, const GltfPart& skin, const std::vector
   return pose;
 }
 
-std::vector<AffineMap> skinned_vertices(const GltfFile& file, const GltfPart& primitive, const GltfPose& pose,
-                                        const std::vector<GltfAccessor>& accessors) {
+GltfWeights read_weights(const GltfFile& file, const GltfPart& primitive, std::size_t joint_count,
+                         const std::vector<GltfAccessor>& accessors) {
   const GltfPart attributes = primitive.member("attributes");
   std::vector<GltfValues> joints, weights;
   for (std::size_t set = 0;; ++set) {
@@ -73,34 +64,42 @@ std::vector<AffineMap> skinned_vertices(const GltfFile& file, const GltfPart& pr
     joints.push_back(skin_attribute(file, attributes, "JOINTS_" + number, accessors));
     weights.push_back(skin_attribute(file, attributes, "WEIGHTS_" + number, accessors));
   }
-  const Eigen::Index vertices = joints.front().cols();
-  std::vector<AffineMap> maps;
-  maps.reserve(static_cast<std::size_t>(vertices));
-  for (Eigen::Index vertex = 0; vertex < vertices; ++vertex) {
-    AffineMap sum{Matrix3::Zero(), Vector3::Zero()};
-    double total = 0;
-    const auto joint_at = [&](std::size_t set, Eigen::Index k) -> const AffineMap& {
+  GltfWeights result;
+  for (Eigen::Index vertex = 0; vertex < joints.front().cols(); ++vertex) {
+    const auto joint_at = [&](std::size_t set, Eigen::Index k) {
       const float joint = joints[set](k, vertex);
-      if (!(joint >= 0 && joint < static_cast<float>(pose.scene_from_mesh.size())))
+      if (!(joint >= 0 && joint < static_cast<float>(joint_count)))
         attributes.fail("vertex " + std::to_string(vertex) + " names a joint that the skin has not");
-      return pose.scene_from_mesh[static_cast<std::size_t>(joint)];
+      return static_cast<std::uint32_t>(joint);
     };
     for (std::size_t set = 0; set < joints.size(); ++set)
       for (Eigen::Index k = 0; k < weights[set].rows(); ++k) {
         const auto weight = static_cast<double>(weights[set](k, vertex));
         if (!(weight >= 0 && std::isfinite(weight)))
           attributes.fail("vertex " + std::to_string(vertex) + " has a weight below 0 or not finite");
-        if (weight == 0) continue;
-        const AffineMap& joint = joint_at(set, k);
-        sum.linear += weight * joint.linear;
-        sum.offset += weight * joint.offset;
-        total += weight;
+        if (weight > 0) result.weights.push_back({joint_at(set, k), weight});
       }
-    // Viewers give a vertex without weights to the first joint that it names.
-    if (total > 0)
-      maps.push_back({sum.linear / total, sum.offset / total});
-    else
-      maps.push_back(joint_at(0, 0));
+    if (result.weights.size() == result.start.back()) result.weights.push_back({joint_at(0, 0), 1});
+    result.start.push_back(result.weights.size());
+  }
+  return result;
+}
+
+std::vector<AffineMap> skinned_vertices(const GltfFile& file, const GltfPart& primitive, const GltfPose& pose,
+                                        const std::vector<GltfAccessor>& accessors) {
+  const GltfWeights all = read_weights(file, primitive, pose.scene_from_mesh.size(), accessors);
+  std::vector<AffineMap> maps;
+  maps.reserve(all.start.size() - 1);
+  for (std::size_t vertex = 0; vertex + 1 < all.start.size(); ++vertex) {
+    AffineMap sum{Matrix3::Zero(), Vector3::Zero()};
+    double total = 0;
+    for (std::size_t k = all.start[vertex]; k < all.start[vertex + 1]; ++k) {
+      const auto& [joint, weight] = all.weights[k];
+      sum.linear += weight * pose.scene_from_mesh[joint].linear;
+      sum.offset += weight * pose.scene_from_mesh[joint].offset;
+      total += weight;
+    }
+    maps.push_back({sum.linear / total, sum.offset / total});
   }
   return maps;
 }

@@ -48,7 +48,7 @@ class OutputFile {
   OutputFile(const std::filesystem::path& path, std::filesystem::path name);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
-  OutputFile& operator=(OutputFile&&) = delete;
+  OutputFile& operator=(OutputFile&& other) noexcept;
 
   const std::filesystem::path& name() const { return name_; }
   void write(std::string_view bytes);

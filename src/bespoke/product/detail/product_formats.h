@@ -25,6 +25,10 @@ CarrySummary carry_csv(const InputFile& file, std::vector<OutputFile>& outputs, 
 CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
                         const Progress& progress);
 
+/// The same of skinned meshes in the pose in which they are stored.
+CarrySummary carry_stored_gltf(const InputFile& file, std::vector<OutputFile>& outputs,
+                               const PointMotion& motion, const Progress& progress);
+
 /// Writes the file with edges split (CarryOptions::splits). Throws FileError, FormatError, and InvalidInput
 /// for what cannot be told of split faces.
 void split_obj(const InputFile& file, const FaceSplits& splits, OutputFile& output);

@@ -68,7 +68,10 @@ CarrySummary carry_binary(const InputFile& file, std::vector<OutputFile>& output
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(frames[frame]);
       },
       progress);
-  return {3 * facets, facets, {}, {}, {}};
+  CarrySummary summary;
+  summary.points = 3 * facets;
+  summary.directions = facets;
+  return summary;
 }
 
 }  // namespace
