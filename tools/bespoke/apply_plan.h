@@ -8,6 +8,7 @@
 #include "bespoke/mapping/mapping.h"
 #include "bespoke/product/model_pose.h"
 #include "catalog_option.h"
+#include "clearance_option.h"
 #include "length_option.h"
 #include "run_options.h"
 
@@ -22,6 +23,7 @@ struct ApplyArguments {
   std::string report;
   std::vector<std::string> rigid, similar;  ///< parts
   std::optional<Length> refine;
+  ClearanceOption clearance;
   std::string unit;
   std::optional<ModelPose> pose;
   std::string skeleton;
