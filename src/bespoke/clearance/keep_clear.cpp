@@ -20,6 +20,9 @@ namespace {
 constexpr int rounds_of_a_solve = 12;
 constexpr int most_looks = 4;
 
+// Faces that pass through each other are joined with their neighbours that come to do so.
+constexpr int most_partings = 4;
+
 // Of the product's diagonal: places nearer than this are one.
 constexpr double place_radius = 0.03;
 
@@ -43,11 +46,37 @@ Statistics edge_strain(const TriangleMesh& before, const Points& after) {
   return summarize(std::move(strains));
 }
 
-std::size_t new_pairs(const TriangleMesh& carried, const TriangleMesh& corrected) {
-  const auto before = self_intersections(carried), after = self_intersections(corrected);
-  std::vector<std::pair<int, int>> further;
+using FacePairs = std::vector<std::pair<int, int>>;
+
+FacePairs new_pairs(const FacePairs& before, const TriangleMesh& corrected) {
+  const FacePairs after = self_intersections(corrected);
+  FacePairs further;
   std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(further));
-  return further.size();
+  return further;
+}
+
+/// Lets faces that pass through each other only since the correction move alike, as long as fewer do then and
+/// no more samples miss. How many pairs are left.
+std::size_t part_again(const TriangleMesh& mesh, const Points& carried, Correction& correction,
+                       SampleDistances& distances, SampleDistances& checks) {
+  if (mesh.faces.cols() == 0) return 0;
+  const FacePairs before = self_intersections({carried, mesh.faces});
+  FacePairs pairs = new_pairs(before, {correction.vertices(), mesh.faces});
+  const auto breaches = [&] { return distances.count().breaches + checks.count().breaches; };
+  for (int attempt = 0; attempt < most_partings && !pairs.empty(); ++attempt) {
+    const NodeVectors u = correction.displacement();
+    checks.look(correction.vertices(), correction.moved());
+    const std::size_t breaches_before = breaches();
+    correction.move_to(correction.joined(pairs), distances);
+    checks.look(correction.vertices(), correction.moved());
+    FacePairs left = new_pairs(before, {correction.vertices(), mesh.faces});
+    if (left.size() >= pairs.size() || breaches() > breaches_before) {
+      correction.move_to(u, distances);
+      break;
+    }
+    pairs = std::move(left);
+  }
+  return pairs.size();
 }
 
 void describe_moves(const PreparedProduct& product, const Points& carried, const Correction& correction,
@@ -68,7 +97,6 @@ void describe_moves(const PreparedProduct& product, const Points& carried, const
   summary.strain_before = summary.strain_after = edge_strain(mesh, carried);
   if (summary.moved == 0) return;
   summary.strain_after = edge_strain(mesh, cleared.vertices);
-  summary.new_self_intersections = new_pairs({carried, mesh.faces}, {cleared.vertices, mesh.faces});
 }
 
 /// Vertices that moved at some time.
@@ -116,6 +144,9 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
     summary.solve_seconds += watch.seconds();
   }
   watch = {};
+  if (!correction.moved().empty())
+    summary.new_self_intersections = part_again(data.mesh, carried, correction, distances, checks);
+  unite(touched, correction.moved());
   cleared.vertices = correction.vertices();
   checks.look(cleared.vertices, touched);
   summary.after = together(distances.count(), checks.count());

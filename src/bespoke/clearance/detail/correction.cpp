@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "bespoke/mesh/disjoint_sets.h"
+
 namespace bespoke {
 namespace {
 
@@ -82,6 +84,35 @@ Points Correction::vertices() const {
   for (Eigen::Index v = 0; v < corrected.cols(); ++v)
     if (moved_[static_cast<std::size_t>(v)]) corrected.col(v) += moves.row(v).transpose();
   return corrected;
+}
+
+NodeVectors Correction::joined(const std::vector<std::pair<int, int>>& pairs) const {
+  DisjointSets sets(static_cast<int>(u_.rows()));
+  std::vector<int> nodes;
+  const auto join = [&](int face, int& first) {
+    for (const int vertex : product_.mesh.faces.col(face))
+      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
+                                                                          vertex);
+           it; ++it) {
+        const int node = static_cast<int>(it.col());
+        nodes.push_back(node);
+        if (first < 0) first = node;
+        sets.join(first, node);
+      }
+  };
+  for (const auto& [a, b] : pairs) {
+    int first = -1;
+    join(a, first);
+    join(b, first);
+  }
+  std::map<int, int> farthest;
+  for (const int node : nodes) {
+    int& at = farthest.try_emplace(sets.least(node), node).first->second;
+    if (u_.row(node).squaredNorm() > u_.row(at).squaredNorm()) at = node;
+  }
+  NodeVectors u = u_;
+  for (const int node : nodes) u.row(node) = u_.row(farthest.at(sets.least(node)));
+  return u;
 }
 
 std::vector<char> Correction::involved() const {

@@ -21,6 +21,14 @@ class Correction {
   /// Until no sample misses, or for `rounds`.
   void solve(SampleDistances& distances, int rounds);
 
+  /// The displacement of the nodes, and another one.
+  const NodeVectors& displacement() const { return u_; }
+  void move_to(NodeVectors u, SampleDistances& distances);
+
+  /// The displacement in which the nodes of each pair of faces, and of pairs that share nodes, move as the
+  /// one of them that moves farthest: what did not pass through each other as carried, does not then.
+  NodeVectors joined(const std::vector<std::pair<int, int>>& pairs) const;
+
   /// 3×n: the carried vertices where nothing moves them, to the bit.
   Points vertices() const;
   /// n flags.
@@ -36,7 +44,6 @@ class Correction {
   };
   bool choose_active(const SampleDistances& distances);
   int nearest_node(const ProductSamples& samples, int sample) const;
-  void move_to(NodeVectors u, SampleDistances& distances);
   bool count_vain_rounds(const SampleDistances& distances);
   bool is_hopeless(std::size_t obstacle, int node) const;
   void note_missing(const SampleDistances& distances, int sample);
