@@ -89,6 +89,8 @@ TEST_F(WrittenPatterns, SvgIsInMillimetres) {
   EXPECT_NEAR(length_in("test-square"), 4 * 50, drawn);
 }
 
+// ezdxf 0.18 gives the ends of polylines in blocks of R12 no owner, also in files of its own; it then fixes
+// that.
 TEST_F(WrittenPatterns, DxfPassesTheAuditOfEzdxf) {
   const char* reader =
       "import sys, ezdxf\n"
@@ -164,12 +166,12 @@ TEST(NestedSheet, HasALayerASizeWithOneCentre) {
 }
 
 TEST(WithAllowance, IsMitredOrSquared) {
-  Eigen::Matrix2Xd square(2, 4);
-  square << 0, 100, 100, 0, 0, 0, 100, 100;
-  const auto mitred = with_allowance(square, 10, AllowanceCorners::mitred);
+  Eigen::Matrix2Xd quad(2, 4);
+  quad << 0, 100, 100, 0, 0, 0, 100, 100;
+  const auto mitred = with_allowance(quad, 10, AllowanceCorners::mitred);
   ASSERT_EQ(mitred.size(), 1u);
   EXPECT_NEAR(length(mitred[0], true), 4 * 120, drawn);
-  const auto squared = with_allowance(square, 10, AllowanceCorners::squared);
+  const auto squared = with_allowance(quad, 10, AllowanceCorners::squared);
   EXPECT_EQ(squared[0].size(), 8u);
   EXPECT_LT(length(squared[0], true), length(mitred[0], true));
 }

@@ -8,6 +8,7 @@
 #include "bespoke/error.h"
 #include "clearance_option.h"
 #include "commands.h"
+#include "grade_patterns.h"
 #include "grade_sizes.h"
 #include "grade_tables.h"
 #include "help.h"
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 
 struct GradeArguments {
   GradeRequest request;
+  PatternRequest patterns;
   std::string sizes;
   std::string target;
   std::string anchors;
@@ -50,6 +52,9 @@ JobGraph graph_of(const GradeArguments& arguments, GradeSizes sizes, OpenedMaps&
   std::vector<BatchJob> jobs = plan_jobs(manifest, maps, pages);
   if (sheet && manifest.faults.empty())
     for (BatchJob& job : table_jobs(arguments.request, sizes.sizes, *sheet, maps))
+      jobs.push_back(std::move(job));
+  if (manifest.faults.empty())
+    for (BatchJob& job : pattern_jobs(arguments.request, sizes.sizes, arguments.patterns))
       jobs.push_back(std::move(job));
   JobGraph graph = make_job_graph(std::move(jobs));
   graph.faults.insert(graph.faults.end(), manifest.faults.begin(), manifest.faults.end());
@@ -133,6 +138,7 @@ void add_grade_command(CLI::App& app) {
       ->add_option("--html", arguments->html,
                    "Write a page for every map, and an index of the sizes with pictures")
       ->type_name("DIR");
+  add_pattern_options(*grade, arguments->patterns);
   begin_group(*grade, method_group);
   for (const auto& [name, parts] : {std::pair{"--rigid", &request.rigid}, {"--similar", &request.similar}})
     grade->add_option(name, *parts, "Parts that keep their shape, as for `apply`; repeatable")

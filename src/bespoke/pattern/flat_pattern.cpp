@@ -25,9 +25,12 @@ struct Attempt {
   }
 };
 
-Attempt attempt(const Garment& garment, const PatternOptions& options, const CutOptions& cut) {
+/// Cut where the source is, so that all sizes have the same pieces.
+Attempt attempt(const Garment& garment, const Garment* source, const PatternOptions& options,
+                const CutOptions& cut) {
   Attempt result;
-  result.cut = cut_pieces(garment, cut);
+  result.cut = cut_pieces(source ? *source : garment, cut);
+  result.cut.pieces = pieces_at(std::move(result.cut.pieces), garment.mesh.vertices);
   result.seams = paired_seams(result.cut.pieces);
   result.flat = flatten_pieces(result.cut.pieces, result.seams, options.flatten);
   for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {
@@ -91,7 +94,7 @@ FlatPattern flat_pattern(const Garment& garment, const Garment* source, const Pa
   if (source) require_same_faces(garment, *source);
   FlatPattern pattern;
   CutOptions cut = options.cut;
-  Attempt result = attempt(garment, options, cut);
+  Attempt result = attempt(garment, source, options, cut);
   std::vector<std::array<int, 2>> darts;
   for (; pattern.darts < options.max_darts; ++pattern.darts) {
     const std::optional<std::size_t> worst = worst_piece(result, options.strain_limit);
@@ -102,7 +105,7 @@ FlatPattern flat_pattern(const Garment& garment, const Garment* source, const Pa
     for (std::size_t k = 0; k + 1 < path.size(); ++k)
       cut.further_edges.push_back({piece.vertices[static_cast<std::size_t>(path[k])],
                                    piece.vertices[static_cast<std::size_t>(path[k + 1])]});
-    result = attempt(garment, options, cut);
+    result = attempt(garment, source, options, cut);
   }
   pattern.charts = result.cut.charts;
   pattern.auto_cut = result.cut.auto_cut;

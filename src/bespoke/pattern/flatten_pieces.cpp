@@ -8,6 +8,7 @@
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/pattern/detail/anderson.h"
+#include "bespoke/pattern/detail/barrier_descent.h"
 #include "bespoke/pattern/detail/flat_start.h"
 #include "bespoke/pattern/detail/local_global.h"
 #include "bespoke/pattern/paired_seams.h"
@@ -22,6 +23,10 @@ constexpr int seam_weights = 4;
 // Of the largest piece's diagonal, how far a vertex moves in one iteration: on a garment a ten-thousandth of
 // a millimetre, a thousandth of what a cutter repeats.
 constexpr double still = 1e-7;
+
+// Of the energy, what a round of iterations must lower it by. Below that, places move, but lengths hardly.
+constexpr double min_gain = 1e-4;
+constexpr int round_of_iterations = 10;
 
 /// A state and what the iteration needs beside it.
 struct Descent {
@@ -85,7 +90,13 @@ void descend(const LocalGlobal& problem, int max_iterations, Descent& descent, F
   descent.energy = problem.energy(descent.x);
   summary.is_converged = false;
   Anderson anderson;
+  double energy_before = descent.energy;
   for (int k = 0; k < max_iterations; ++k) {
+    if (k > 0 && k % round_of_iterations == 0) {
+      summary.is_converged = descent.energy > (1 - min_gain) * energy_before;
+      if (summary.is_converged) return;
+      energy_before = descent.energy;
+    }
     const FlatState image = problem.next(descent.x);
     ++summary.iterations;
     summary.last_move = std::sqrt((image - descent.x).colwise().squaredNorm().maxCoeff());
@@ -106,6 +117,30 @@ void descend(const LocalGlobal& problem, int max_iterations, Descent& descent, F
   }
 }
 
+/// Whether a face has hardly any area left.
+bool has_collapsed(const Piece& piece, const std::vector<RestFace>& rest, const Eigen::Matrix2Xd& flat) {
+  constexpr double collapsed = 0.02;  // of its area; cloth that loses half tears already
+  for (Eigen::Index f = 0; f < piece.mesh.faces.cols(); ++f)
+    if (face_jacobian(rest[static_cast<std::size_t>(f)], piece.mesh.faces.col(f), flat).determinant() <
+        collapsed)
+      return true;
+  return false;
+}
+
+/// Pieces whose faces collapse, from their starts.
+void hold_open(const std::vector<Piece>& pieces, const std::vector<Eigen::Matrix2Xd>& start,
+               FlatPieces& result) {
+  std::vector<char> is_held(pieces.size(), 0);
+  parallel_for(pieces.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const std::vector<RestFace> rest = rest_faces(pieces[p].mesh);
+      is_held[p] = has_collapsed(pieces[p], rest, result.places[p]);
+      if (is_held[p]) result.places[p] = barrier_descent(pieces[p], rest, start[p]);
+    }
+  });
+  result.summary.held_open = static_cast<int>(std::count(is_held.begin(), is_held.end(), 1));
+}
+
 }  // namespace
 
 std::string to_string(const FlattenSummary& summary) {
@@ -123,7 +158,8 @@ FlatPieces flatten_pieces(const std::vector<Piece>& pieces, const std::vector<Se
                           const FlattenOptions& options) {
   FlatPieces result;
   if (pieces.empty()) return result;
-  result.places = starts(pieces, result.summary);
+  const std::vector<Eigen::Matrix2Xd> start = starts(pieces, result.summary);
+  result.places = start;
   // Areas are kept in many ways: from the lengths' flattening, the nearest is found.
   std::vector<FlatteningMethod> methods{options.method};
   if (options.method == FlatteningMethod::authalic) methods.insert(methods.begin(), FlatteningMethod::rigid);
@@ -139,6 +175,7 @@ FlatPieces flatten_pieces(const std::vector<Piece>& pieces, const std::vector<Se
       if (widest_gap(seams, result.places) <= options.seam_tolerance) break;
     }
   }
+  hold_open(pieces, start, result);
   return result;
 }
 

@@ -38,6 +38,7 @@ struct FlattenSummary {
   double last_move = 0;    ///< of a vertex in the last iteration, millimetres
   double seam_weight = 0;  ///< the last one, in units of the weight of an edge inside a piece
   bool is_converged = false;
+  int held_open = 0;  ///< pieces that would have collapsed faces, and took the symmetric Dirichlet energy
 };
 
 /// "12 iterations, converged" and how pieces started, unless all did by the conformal map.

@@ -48,20 +48,20 @@ std::vector<SeamMarks> marks_of_pieces(const FlatPattern& pattern) {
 
 void add_labels(const PatternPiece& piece, const SeamMarks& marks, const SheetOptions& options,
                 SheetPiece& drawn) {
-  const RoomyPlace room = roomy_place(piece);
+  const WidePlace place = wide_place(piece);
   std::vector<std::string> rows{piece.piece.name};
   if (!options.size.empty()) rows.push_back("size " + options.size);
   rows.push_back("cut " + std::to_string(options.quantity));
-  const double height = std::clamp(room.radius / 5, 1.5, text_height);
+  const double height = std::clamp(place.radius / 5, 1.5, text_height);
   for (std::size_t k = 0; k < rows.size(); ++k)
     drawn.texts.push_back(
-        {room.at + Eigen::Vector2d(0, height * (1.6 * (1 - static_cast<double>(k)))), height, rows[k]});
-  const double inset = std::min(seam_number_inset, room.radius / 3);
+        {place.at + Eigen::Vector2d(0, height * (1.6 * (1 - static_cast<double>(k)))), height, rows[k]});
+  const double inset = std::min(seam_number_inset, place.radius / 3);
   for (const auto& [number, mark] : marks.numbers)
     drawn.texts.push_back(
         {mark.at + inset * mark.inward, std::min(small_text_height, inset / 2), std::to_string(number)});
   // The grain beside the label, where the piece is still nearly as wide.
-  const Eigen::Vector2d beside = room.at + Eigen::Vector2d(room.radius / 2, 0);
+  const Eigen::Vector2d beside = place.at + Eigen::Vector2d(place.radius / 2, 0);
   const auto [low, high] = upright_extent(drawn.outline, beside);
   drawn.lines.push_back({PatternLayer::grain,
                          {{beside.x(), beside.y() + grain_share * (low - beside.y())},

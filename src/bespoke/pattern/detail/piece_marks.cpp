@@ -64,9 +64,9 @@ Eigen::Matrix2Xd outline_places(const PatternPiece& piece) {
   return piece.flat(Eigen::all, piece.piece.outline);
 }
 
-RoomyPlace roomy_place(const PatternPiece& piece) {
+WidePlace wide_place(const PatternPiece& piece) {
   const Eigen::Matrix2Xd outline = outline_places(piece);
-  RoomyPlace best{piece.flat(Eigen::all, piece.piece.mesh.faces.col(0)).rowwise().mean(), 0};
+  WidePlace best{piece.flat(Eigen::all, piece.piece.mesh.faces.col(0)).rowwise().mean(), 0};
   best.radius = distance_to_outline(best.at, outline);
   const Eigen::Index step = std::max<Eigen::Index>(1, piece.piece.mesh.faces.cols() / searched_vertices);
   for (Eigen::Index f = 0; f < piece.piece.mesh.faces.cols(); f += step) {

@@ -22,11 +22,11 @@ std::array<std::vector<OutlineMark>, 2> seam_marks(const FlatPattern& pattern, c
 std::vector<double> notch_shares(double length);
 
 /// The vertex inside that is farthest from the outline, and how far it is: where labels go.
-struct RoomyPlace {
+struct WidePlace {
   Eigen::Vector2d at;
   double radius = 0;
 };
-RoomyPlace roomy_place(const PatternPiece& piece);
+WidePlace wide_place(const PatternPiece& piece);
 
 /// The x of an upright line about which the piece is symmetric to 1 mm.
 std::optional<double> fold_line(const PatternPiece& piece);
