@@ -19,7 +19,7 @@ html_theme = "furo"
 html_title = f"bespoke {release}"
 html_static_path = [str(out / "pages" / "static")]
 html_css_files = ["site.css"]
-html_search_scorer = "search_scores.js"
+html_search_scorer = str(root / "tools" / "site" / "search_scores.js")
 html_show_copyright = html_show_sphinx = html_copy_source = html_show_sourcelink = False
 html_last_updated_fmt = None
 
