@@ -178,5 +178,28 @@ TEST_F(SplitPly, IsTheRefinedProduct) {
   }
 }
 
+const std::string lines_header =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    "element edge 2\nproperty uchar width\nproperty int vertex1\nproperty int vertex2\nend_header\n";
+
+TEST_F(SplitPly, SplitsLinesAndKeepsTheRestOfTheirRecords) {
+  const std::string vertices = "8 0 9\n-8 2 9\n-8 3 9\n";
+  const std::string out = split("lines.ply", lines_header + vertices + "7 0 1\n9 1 2\n", 9);
+  EXPECT_THAT(out, HasSubstr("element vertex 4\n"));
+  EXPECT_THAT(out, HasSubstr("element edge 3\n"));
+  EXPECT_THAT(out, ::testing::EndsWith(vertices + "0.000000 1.000000 9.000000\n7 0 3\n7 3 1\n9 1 2\n"));
+  const Product read = read_product(file("split.ply", out));
+  EXPECT_EQ(read.line_edges, (std::vector<int>{0, 3, 3, 1, 1, 2}));
+  EXPECT_EQ(split("lines.ply", lines_header + vertices + "7 0 1\n9 1 2\n", 900),
+            lines_header + vertices + "7 0 1\n9 1 2\n");
+}
+
+TEST_F(SplitPly, NamesTheLineThatEndsNowhere) {
+  EXPECT_THAT(test::error_message<FormatError>([&] {
+                read_product(file("lines.ply", lines_header + "8 0 9\n-8 2 9\n-8 3 9\n7 0 1\n9 1 3\n"));
+              }),
+              HasSubstr("lines.ply: edge 1: "));
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -37,5 +37,17 @@ TEST(UnitCheck, LeavesWhatIsElsewhereOrPartlyNear) {
   EXPECT_EQ(refusal(Points::Constant(3, 1, 1e6)), "accepted");
 }
 
+// Of twenty factors one fits a few points by chance: they are carried, with a warning.
+TEST(UnitCheck, WarnsOfAFewPoints) {
+  const AnalyticMap map({{Vector3(0, 0, 100), 20, Vector3(1, 0, 0)}});
+  const Points few = around_model().leftCols(3) / 100;
+  std::string warning;
+  ASSERT_EQ(
+      test::error_message<InvalidInput>([&] { warning = require_unit_of_map("a.obj", few, map, model); }),
+      "accepted");
+  EXPECT_THAT(warning, HasSubstr("multiplied by 100 they would be"));
+  EXPECT_EQ(require_unit_of_map("a.obj", around_model(), map, model), "");
+}
+
 }  // namespace
 }  // namespace bespoke

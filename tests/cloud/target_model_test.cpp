@@ -86,6 +86,21 @@ TEST_F(TargetModels, OfAMeshAreTheMesh) {
       << "of a mesh normals are not asked for";
 }
 
+TEST_F(TargetModels, LeaveDegenerateFacesOut) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 3\nf 1 2 2 3\nf 1 3 4\n";
+  const TargetModel target = read_target(file("a.obj", obj));
+  const SourceModel source = read_source_model(file("a.obj", obj));
+  for (const auto& [mesh, left_out] :
+       {std::pair(target.mesh, target.left_out), {source.mesh, source.left_out}}) {
+    EXPECT_EQ(mesh.vertices.cols(), 4);
+    EXPECT_EQ(mesh.faces, (Faces(3, 3) << 0, 0, 0, 1, 1, 2, 2, 2, 3).finished())
+        << "of a quadrangle its triangle";
+    EXPECT_EQ(left_out.count, 2u);
+    EXPECT_THAT(left_out_text(left_out), HasSubstr("2 degenerate faces, which were left out ("));
+    EXPECT_THAT(left_out.first, HasSubstr("a.obj:6: a face names vertex 3 twice"));
+  }
+}
+
 TEST_F(TargetModels, WithoutFacesAndNormalsSayWhatACloudNeeds) {
   const std::string text = ply_text({cloud_.points, Points(3, 0)});
   EXPECT_THAT(

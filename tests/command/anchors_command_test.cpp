@@ -77,6 +77,16 @@ TEST(AnchorsCommand, NamesWhatIsSuspicious) {
   EXPECT_THAT(elsewhere.out, HasSubstr("as points at random would"));
 }
 
+TEST(AnchorsCommand, NamesAnchorsAtOnePlace) {
+  const ExamplePair pair;
+  const std::string one = R"({"a":[0,0,0],"b":[0,0,0],"sigma":0.1})";
+  write_text(pair.file("a.json"), "{\"pairs\":[" + one + "," + one + "," + one + "," + one + "]}");
+  const ProgramResult audit = bespoke({"anchors", "audit", pair.file("a.json")});
+  EXPECT_EQ(audit.exit_code, 0) << audit.err;
+  EXPECT_THAT(audit.out, HasSubstr("all at one place"));
+  EXPECT_THAT(audit.out, Not(HasSubstr("nothing is suspicious")));
+}
+
 TEST(AnchorsCommand, SuggestsPairsThatFitAccepts) {
   const ExamplePair pair;
   const std::vector<std::string> suggest{"anchors",

@@ -13,6 +13,7 @@
 
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/quality/distortion.h"
 #include "command/fit_command.h"
 #include "support/bent_tube.h"
 #include "support/shapes.h"
@@ -516,6 +517,54 @@ TEST_F(FitCommand, NamesAnchorsThatContradictEachOther) {
   fit = pair_.fit("map.vdb", quick);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, Not(HasSubstr("contradict")));
+}
+
+TEST_F(FitCommand, LeavesDegenerateFacesOfModelsOutAndTellsThemOnce) {
+  const std::vector<std::string> quick = {"--quiet", "--elastic", "pffd-smooth", "--voxel-size", "20%"};
+  ASSERT_EQ(pair_.fit("plain.vdb", quick).exit_code, 0);
+  const std::string hash = info("plain.vdb")["source"]["hash"];
+  write_text(pair_.file("source.obj"), read_text(pair_.file("source.obj")) + "f 5 5 7\nf 8 9 8\n");
+  write_text(pair_.file("target.obj"), read_text(pair_.file("target.obj")) + "f 1 2\n");
+  const ProgramResult fit = pair_.fit("map.vdb", quick);
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("source.obj: 2 degenerate faces, which were left out ("));
+  EXPECT_THAT(fit.err, HasSubstr("a face names vertex 5 twice"));
+  EXPECT_THAT(fit.err, HasSubstr("target.obj: 1 degenerate face, which was left out ("));
+  EXPECT_EQ(info("map.vdb")["source"]["hash"], hash) << "the same model as without them";
+  const ProgramResult measured =
+      bespoke({"measure", pair_.file("map.vdb"), "--source", pair_.file("source.obj"), "--target",
+               pair_.file("target.obj"), "-q"});
+  EXPECT_EQ(measured.exit_code, 0) << measured.err;
+  EXPECT_EQ(measured.err, "");
+}
+
+TEST_F(FitCommand, LetsAPlaceThatWasClickedTwiceShareTheBlame) {
+  json anchors = read_json("anchors.json");
+  json twin = anchors["pairs"][0];
+  twin["name"] = "twin";
+  twin["a"][0] = twin["a"][0].get<double>() + 0.001;
+  const Points target = read_obj_points(pair_.file("target.obj"));
+  const Vector3 b(twin["b"][0], twin["b"][1], twin["b"][2]);
+  Eigen::Index vertex = 0;
+  ((target.colwise() - b).colwise().norm().array() - 0.3).abs().minCoeff(&vertex);
+  twin["b"] = {target(0, vertex), target(1, vertex), target(2, vertex)};
+  anchors["pairs"].push_back(twin);
+  for (const char* given : {"estimated", "exact"}) {
+    if (given == std::string("exact"))
+      for (const std::size_t pair : {std::size_t(0), anchors["pairs"].size() - 1})
+        anchors["pairs"][pair]["sigma"] = 0;
+    write_text(pair_.file("anchors.json"), anchors.dump());
+    const ProgramResult fit = pair_.fit("map.vdb", {"--quiet", "--fitted-out", pair_.file("fitted.obj")});
+    EXPECT_EQ(fit.exit_code, 0) << given << fit.err;
+    EXPECT_THAT(fit.err, HasSubstr("\"p0\" gave way (sigma 0.1"));
+    EXPECT_THAT(fit.err, HasSubstr("\"twin\" gave way (sigma 0.1"));
+    // --max-stretch, 10, holds for the result.
+    const TriangleMesh source = read_triangle_mesh(pair_.file("source.obj")),
+                       fitted = read_triangle_mesh(pair_.file("fitted.obj"));
+    const MeshDistortion distortion = mesh_distortion(source, fitted.vertices);
+    EXPECT_LT(distortion.edge_length.max, 10) << given;
+    EXPECT_GT(distortion.edge_length.min, 0.1) << given;
+  }
 }
 
 TEST_F(FitCommand, TakesAnchorsAsCsv) {

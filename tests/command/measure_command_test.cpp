@@ -59,6 +59,40 @@ TEST(MeasureCommand, WarnsOfProductsThatPenetrateTheTargetAlone) {
   EXPECT_EQ(measure(pair, {"--product", pair.file("fitted.obj")}).err, "");
 }
 
+TEST(ProductOnPagesAndReports, WarnsOfPenetrationToo) {
+  const ExamplePair pair;
+  write_penetrating(pair);
+  for (const std::string output : {"page.html", "report.md"}) {
+    const ProgramResult result =
+        bespoke({output == "page.html" ? "view" : "report", pair.file("map.vdb"), "--source",
+                 pair.file("source.obj"), "--target", pair.file("target.obj"), "--product",
+                 pair.file("shell.obj"), "-o", pair.file(output), "-q"});
+    if (result.exit_code == 1) continue;  // built without pages
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("shell.obj: 100 % of it lies inside the target")) << output;
+  }
+}
+
+TEST(ProductOfASize, WarnsOfPenetrationToo) {
+  const ExamplePair pair;
+  write_penetrating(pair);
+  write_text(pair.file("sizes.csv"),
+             "size,target,fitted\nS," + pair.file("target.obj") + "," + pair.file("fitted.obj") + "\n");
+  const ProgramResult result = bespoke({"grade", pair.file("source.obj"), pair.file("shell.obj"), "--sizes",
+                                        pair.file("sizes.csv"), "--out-dir", pair.file("sizes"), "-q"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("shell.obj: 100 % of it lies inside the target"));
+}
+
+// What lies on a surface lies to either side of it after a fit.
+TEST(ProductAfterApply, WarnsOfNoProductOnTheSurfaceItself) {
+  const ExamplePair pair;
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const ProgramResult result = measure(pair, {"--product", pair.file("source.obj")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+}
+
 TEST(ProductAfterApply, WarnsOfProductsThatPenetrateTheTargetWhereBothModelsAreKnown) {
   const ExamplePair pair;
   write_penetrating(pair);

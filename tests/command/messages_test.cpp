@@ -106,6 +106,7 @@ TEST_F(BadAnchors, ThatDoNotFixTheMap) {
   expect_refusal(fit_with("a.json", json_of({o, x, 2 * x}, sigma)), 2,
                  "the 3 anchor points on the source are collinear");
   expect_refusal(fit_with("a.json", json_of({o, o, o})), 2, "all at one place");
+  expect_refusal(fit_with("a.json", json_of({o, o, o}, sigma)), 2, "all at one place");
   expect_refusal(fit_with("a.json", json_of({o, x, y}, sigma)), 2,
                  "needs 4 anchor pairs that are not coplanar; there are 3");
   expect_refusal(fit_with("a.json", json_of({o, x, y, z, x}, sigma)), 2,

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "bespoke/product/mesh_io.h"
@@ -12,6 +13,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// The example pair, whose anchors are in cm, in other units too.
 class UnitsCommand : public FitCommand {
@@ -107,6 +109,55 @@ TEST_F(UnitsCommand, FitsModelsOfSeveralUnitsToOneMap) {
   const ProgramResult measured = bespoke(
       {"measure", pair_.file("map.vdb"), "--source", inches, "--target", millimetres, "--product", inches});
   EXPECT_EQ(measured.exit_code, 0) << measured.err;
+}
+
+TEST_F(UnitsCommand, FindsAMapByModelsThatWereConvertedForIt) {
+  const std::string inches = scaled("source.obj", 1 / 2.54, "source_in.3mf", "in");
+  const std::string millimetres = scaled("target.obj", 10, "target_mm.3mf", "mm");
+  std::filesystem::create_directories(pair_.file("maps"));
+  ASSERT_EQ(bespoke({"fit", inches, millimetres, "--anchors", pair_.file("anchors.json"), "--unit", "cm",
+                     "--tolerance", "0.5%", "-o", pair_.file("maps/map.vdb"), "-q"})
+                .exit_code,
+            0);
+  ASSERT_EQ(bespoke({"catalog", pair_.file("maps"), "-q"}).exit_code, 0);
+  const ProgramResult found =
+      bespoke({"apply", pair_.file("product.obj"), "--from", pair_.file("maps"), "--source", inches,
+               "--target", millimetres, "-o", pair_.file("out.obj")});
+  EXPECT_EQ(found.exit_code, 0) << found.err;
+  // Products are checked against the converted models, in whatever unit they are.
+  const ProgramResult checked =
+      bespoke({"apply", pair_.file("maps/map.vdb"), scaled("product.obj", 10, "product_mm.3mf", "mm"),
+               "--source", inches, "--target", millimetres, "-o", pair_.file("out.3mf")});
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.err, Not(HasSubstr("inside the target")));
+}
+
+TEST_F(UnitsCommand, OfModelsAndAnchorsAreBroughtTogetherByAuditSuggestAndPick) {
+  const std::string inches = scaled("source.obj", 1 / 2.54, "source_in.3mf", "in");
+  const std::string millimetres = scaled("target.obj", 10, "target_mm.3mf", "mm");
+  const ProgramResult audit =
+      bespoke({"anchors", "audit", pair_.file("anchors.json"), "--source", inches, "--target", millimetres});
+  EXPECT_EQ(audit.exit_code, 0) << audit.err;
+  EXPECT_THAT(audit.out, HasSubstr("nothing is suspicious"));
+  const ProgramResult suggest =
+      bespoke({"anchors", "suggest", inches, millimetres, "--anchors", pair_.file("anchors.json"),
+               "--tolerance", "0.0001%", "--count", "1", "-o", pair_.file("more.json"), "-q"});
+  ASSERT_EQ(suggest.exit_code, 0) << suggest.err;
+  const json more = read_json("more.json");
+  ASSERT_EQ(more["pairs"].size(), 15u);
+  EXPECT_EQ(more["units"], "cm");
+  for (int axis = 0; axis < 3; ++axis) EXPECT_LT(std::abs(more["pairs"][14]["a"][axis].get<double>()), 2);
+  const ProgramResult pick = bespoke(
+      {"pick", inches, millimetres, "--anchors", pair_.file("anchors.json"), "-o", pair_.file("pick.html")});
+  if (pick.exit_code == 1 && pick.err.find("pages") != std::string::npos) GTEST_SKIP() << pick.err;
+  EXPECT_EQ(pick.exit_code, 0) << pick.err;
+}
+
+TEST_F(UnitsCommand, RefinedFacesKeepTheUnitOfTheirFile) {
+  ASSERT_EQ(pair_.fit("map.vdb").exit_code, 0);
+  const std::string inches = scaled("product.obj", 1 / 2.54, "in.3mf", "in");
+  ASSERT_EQ(apply(inches, "fine.3mf", {"--refine", "0.1%"}).exit_code, 0);
+  EXPECT_EQ(read_product(pair_.file("fine.3mf")).unit, "in");
 }
 
 TEST_F(UnitsCommand, RefusesAModelThatWasScaledWhileItsAnchorsWereNot) {

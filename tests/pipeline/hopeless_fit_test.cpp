@@ -1,9 +1,11 @@
 #include "bespoke/pipeline/hopeless_fit.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
 #include "support/analytic_map.h"
+#include "support/error_message.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -27,6 +29,36 @@ TEST(HopelessFit, IsOneOfManyStepsOrOfVolumesThatVanish) {
   EXPECT_THROW(require_hopeful(chain_of(larger, 25, ball), ball, {}), SolverError);
   EXPECT_NO_THROW(require_hopeful(chain_of(flatter, 1, ball), ball, {}));
   EXPECT_THROW(require_hopeful(chain_of(flatter, 4, ball), ball, {}), SolverError);
+}
+
+TEST(HopelessFit, IsKnownByItsStepsBeforeTheyAreFitted) {
+  EXPECT_NO_THROW(require_useful_steps(max_useful_steps, {}));
+  EXPECT_THAT(test::error_message<SolverError>([] { require_useful_steps(max_useful_steps + 1, {}); }),
+              ::testing::HasSubstr("25 steps would be needed; are the anchors right"));
+  FitOptions options;
+  options.steps = 30;
+  EXPECT_NO_THROW(require_useful_steps(30, options));
+}
+
+TEST(HopelessFit, IsKnownByItsSurfaceBeforeAMapIsFitted) {
+  const TriangleMesh ball = shapes::icosphere(3);
+  const auto moved = [&](const Matrix3& linear) -> Points { return linear * ball.vertices; };
+  EXPECT_NEAR(surface_shear(ball, 5 * ball.vertices), 1, 1e-6);
+  // A long ellipsoid is what the nearest affine map makes of a ball.
+  EXPECT_NEAR(surface_shear(ball, moved(Vector3(1, 1, 30).asDiagonal())), 1, 1e-6);
+  EXPECT_NO_THROW(require_hopeful_surface(ball, moved(Vector3(1, 1, 30).asDiagonal()), {}));
+  // Crumpled: every other vertex stays behind.
+  Points crumpled = ball.vertices;
+  for (Eigen::Index i = 0; i < crumpled.cols(); i += 2) crumpled.col(i) *= 0.05;
+  EXPECT_GT(surface_shear(ball, crumpled), 10);
+  EXPECT_THAT(test::error_message<SolverError>([&] { require_hopeful_surface(ball, crumpled, {}); }),
+              ::testing::HasSubstr("more than --max-stretch 10; are the anchors right"));
+  FitOptions options;
+  options.surface_fit.max_stretch = 1e6;
+  EXPECT_NO_THROW(require_hopeful_surface(ball, crumpled, options));
+  options = {};
+  options.steps = 2;
+  EXPECT_NO_THROW(require_hopeful_surface(ball, crumpled, options));
 }
 
 TEST(HopelessFit, IsNoneWhereStepsWereGivenOrMapsFoldByNature) {

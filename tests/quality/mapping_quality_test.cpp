@@ -62,7 +62,9 @@ TEST(ProductQuality, TellsNewPenetrationFromOld) {
   Points after = two.vertices;
   after.leftCols(shell.vertices.cols()) *= 0.9 / 1.1;
   EXPECT_NEAR(product_quality(two, after, spheres.bodies).new_penetration.share, 0.5, 0.001);
-  EXPECT_EQ(product_quality({two.vertices, Faces(3, 0)}, after, spheres.bodies).new_penetration.share, 0.5);
+  EXPECT_EQ(
+      product_quality(TriangleMesh{two.vertices, Faces(3, 0)}, after, spheres.bodies).new_penetration.share,
+      0.5);
 }
 
 TEST(ProductQuality, SeesFacesInsideWhoseVerticesAreNot) {
@@ -96,12 +98,28 @@ TEST(ProductQuality, OfAPointSetHasClearanceOnly) {
   EXPECT_EQ(quality.distortion.edge_length.count, 0u);
 }
 
+// A line through a ball of radius 1: half of its length 4 is inside, which no vertex is.
+TEST(ProductQuality, MeasuresLines) {
+  const Spheres spheres;
+  const Points line{{-2, 2}, {0, 0}, {0, 0}};
+  const MeasuredProduct before(TriangleMesh{2 * line, Faces(3, 0)}, {0, 1});
+  const ProductQuality quality = product_quality(before, line, spheres.bodies);
+  EXPECT_EQ(quality.lines, 1u);
+  EXPECT_EQ(quality.line_lengths.count, 1u);
+  EXPECT_EQ(quality.line_lengths.median, 0.5);
+  EXPECT_EQ(quality.penetration_after.vertices, 0u);
+  EXPECT_NEAR(quality.penetration_before.line_share, 0.25, 0.002);
+  EXPECT_NEAR(quality.penetration_after.line_share, 0.5, 0.002);
+  EXPECT_NEAR(quality.penetration_after.deepest, 1, 0.01);
+  EXPECT_NEAR(quality.new_penetration.share, 0.25, 0.002);
+}
+
 TEST(ProductQuality, LeavesOutVerticesBeyondABoundary) {
   const TriangleMesh square = shapes::square_grid(3);
   const SignedDistance from_square(square);
   const Points x{{0.5, 2}, {0.5, 2}, {0.25, 0.25}};
   const ProductQuality quality =
-      product_quality({x, Faces(3, 0)}, x, {square, square, from_square, from_square});
+      product_quality(TriangleMesh{x, Faces(3, 0)}, x, {square, square, from_square, from_square});
   EXPECT_EQ(quality.unsided_vertices, 1u);
   EXPECT_EQ(quality.clearance_after.count, 1u);
   EXPECT_EQ(quality.clearance_after.max, 0.25);

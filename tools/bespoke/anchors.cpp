@@ -11,11 +11,15 @@
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/anchors/anchor_placement.h"
+#include "bespoke/anchors/anchor_scale.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/output_stream.h"
 #include "bespoke/pipeline/anchor_suggestions.h"
+#include "bespoke/pipeline/model_units.h"
+#include "bespoke/product/format_unit.h"
+#include "bespoke/rigid/rigid_alignment.h"
 #include "commands.h"
 #include "help.h"
 #include "length_option.h"
@@ -47,6 +51,23 @@ Models read_models(const ModelArguments& arguments) {
   if (!arguments.source.empty()) models.source = read_source(arguments.source);
   if (!arguments.target.empty()) models.target = read_target(arguments.target).mesh;
   return models;
+}
+
+/// Models and anchors brought to one unit, as a fit takes them.
+struct InOneUnit {
+  Models models;
+  Anchors anchors;
+  UnitPlan plan;
+};
+
+InOneUnit in_one_unit(const Models& models, const Anchors& anchors, const ModelArguments& arguments) {
+  InOneUnit result{models, anchors, {}};
+  result.plan = bring_to_one_unit({anchors.unit, unit_of_format(arguments.source),
+                                   unit_of_format(arguments.target), arguments.source, arguments.target},
+                                  result.anchors);
+  if (result.models.source) result.models.source->vertices *= result.plan.source_scale;
+  if (result.models.target) result.models.target->vertices *= result.plan.target_scale;
+  return result;
 }
 
 AnchorFileOptions file_options(const Models& models, PatientSystem system = PatientSystem::lps) {
@@ -172,9 +193,22 @@ bool print_far(const char* side, const std::optional<TriangleMesh>& model, const
   return placement.is_far() && print(std::string(side) + ": " + to_string(placement) + "; another unit?");
 }
 
+/// What no fit can begin with: points on a line or at one place.
+bool print_undetermined(const Anchors& anchors) {
+  constexpr std::size_t min_pairs = 3;  // fewer may be joined by more
+  if (anchors.pairs.size() < min_pairs) return false;
+  try {
+    align_rigidly(source_points(anchors), target_points(anchors), spline_weights(anchors));
+  } catch (const InvalidInput& error) {
+    return print(error.what());
+  }
+  return false;
+}
+
 void audit(const AuditArguments& arguments) {
-  const Models models = read_models(arguments.models);
-  const Anchors anchors = read_anchor_files(as_paths(arguments.inputs), file_options(models));
+  const Models given = read_models(arguments.models);
+  const auto [models, anchors, plan] = in_one_unit(
+      given, read_anchor_files(as_paths(arguments.inputs), file_options(given)), arguments.models);
   const AnchorAudit found = audit_anchors(anchors);
   std::cout << anchors.pairs.size() << " pairs";
   if (const std::string others = lines_and_parts(anchors); !others.empty()) std::cout << " and " << others;
@@ -182,7 +216,8 @@ void audit(const AuditArguments& arguments) {
     std::cout << ", each pair within " << *found.typical_distance << " (median) of where the others put it\n";
   else
     std::cout << ", too few pairs to be judged by each other\n";
-  bool is_suspect = print(to_string(found, anchors));
+  bool is_suspect = print_undetermined(anchors);
+  is_suspect |= print(to_string(found, anchors));
   is_suspect |= print(to_string(swapped_anchors(anchors), anchors));
   is_suspect |= print(to_string(contradicting_anchors(anchors), anchors));
   is_suspect |= print_far("source", models.source, source_points(anchors));
@@ -243,18 +278,25 @@ void suggest(const SuggestArguments& arguments, const Progress& progress) {
   std::vector<std::filesystem::path> inputs = as_paths(arguments.anchors);
   inputs.insert(inputs.end(), {arguments.source, arguments.target});
   require_safe_outputs(inputs, as_paths(arguments.outputs));
-  const Models models = read_models({arguments.source, arguments.target});
+  const ModelArguments named{arguments.source, arguments.target};
+  const Models models = read_models(named);
   const AnchorFileOptions options = file_options(models);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchor_files(as_paths(arguments.anchors), options);
-  const double size = diagonal(models.target->vertices);
+  const InOneUnit fitted = in_one_unit(models, anchors, named);
+  const double size = diagonal(fitted.models.target->vertices);
   const double tolerance = arguments.tolerance ? arguments.tolerance->in_mesh_units(size) : surest * size;
-  const std::vector<SuggestedAnchor> suggestions =
-      suggest_anchors(*models.source, *models.target, anchors, {arguments.count, tolerance}, progress);
+  const std::vector<SuggestedAnchor> suggestions = suggest_anchors(
+      *fitted.models.source, *fitted.models.target, fitted.anchors, {arguments.count, tolerance}, progress);
+  Anchors suggested;
   for (const SuggestedAnchor& suggestion : suggestions) {
-    anchors.pairs.push_back(suggestion.pair);
+    suggested.pairs.push_back(suggestion.pair);
     if (!arguments.run.quiet) print(suggestion);
   }
+  // As the anchors so far: in their unit or, where they say none, in those of the models' files.
+  if (anchors.unit.empty())
+    scale_anchors(suggested, 1 / fitted.plan.source_scale, 1 / fitted.plan.target_scale);
+  anchors.pairs.insert(anchors.pairs.end(), suggested.pairs.begin(), suggested.pairs.end());
   write_anchors(arguments.outputs, anchors, options);
   if (arguments.run.quiet) return;
   if (suggestions.size() < arguments.count)

@@ -16,7 +16,6 @@
 #include "bespoke/report/report.h"
 #include "bespoke/strings.h"
 #include "bespoke/unknown_ending.h"
-#include "clearance_option.h"
 #include "commands.h"
 #include "help.h"
 #include "length_option.h"
@@ -144,16 +143,16 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
   const fs::path map_file =
       arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
-  ProductMap map(map_file, arguments.products,
-                 {map_form(arguments), arguments.untrusted, arguments.order == MappingOrder::moving_point || arguments.clearance.is_used(),
-                  arguments.unit},
-                 context);
+  ProductMap map(
+      map_file, arguments.products,
+      {map_form(arguments), arguments.untrusted,
+       arguments.order == MappingOrder::moving_point || arguments.clearance.is_used(), arguments.unit},
+      context);
   // A batch knows which jobs share a map only where they name it.
   if (arguments.catalog.is_used()) context.maps.close(map_file);
 
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
-  const PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "",
-                                         arguments.catalog.target);
+  PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "", arguments.catalog.target);
   ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit);
   OutputFiles files;
   std::vector<AppliedProduct> applied;
@@ -164,7 +163,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
       const OpenedMap cleared = keeper.corrected(name, opened);
-      penetrations[i] = new_penetration(name, cleared);
+      penetrations[i] = new_penetration(name, cleared, arguments.unit);
       summary = apply_one(arguments, name, plan[i], cleared, progress);
       if (!penetrations[i].empty()) summary.warnings.push_back(penetrations[i]);
     });
@@ -302,8 +301,8 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
       "  bespoke apply map.vdb dress.obj -o dress_on_man.obj\n"
       "  bespoke apply map.vdb dress.obj shoes.ply --out-dir fitted\n"
       "  bespoke apply map.vdb dress.obj --out-dir frames --frames 24\n"
-      "  bespoke apply map.vdb shirt.obj jacket.obj --clearance keep --layers --out-dir fitted\n"
       "  bespoke apply map.vdb jacket.glb --skeleton avatar.glb -o jacket_on_avatar.glb\n"
+      "  bespoke apply map.vdb shirt.obj jacket.obj --clearance keep --layers --out-dir fitted\n"
       "  bespoke apply dress.obj --from season --source woman.obj -o dress_on_man.obj");
   apply->callback([arguments, handle_plan] {
     const ApplyArguments given = taken(*arguments);

@@ -1,21 +1,47 @@
 #include "catalog_option.h"
 
+#include <map>
+
 #include "bespoke/catalog/catalog_file.h"
 #include "bespoke/catalog/find_map.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/sha256.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
 namespace {
 
-/// Of the model, or as it is given.
-std::string source_hash(const CatalogOption& option) {
-  return option.source.empty() ? option.source_hash : content_hash(read_source(option.source));
+/// By which the maps of the catalogue know a model: of its file or, where this says a unit, of the model in
+/// the unit of a map. Where none knows it, of the file. read(unit): the model, in that unit.
+template <class Read>
+std::string known_hash(const Catalog& catalog, ModelRecord CatalogEntry::*side, const std::string& file,
+                       const Read& read) {
+  const std::string as_given = content_hash(read(""));
+  const bool says_unit = !unit_of_format(file).empty();
+  std::map<std::string, std::string> in_unit;
+  for (const CatalogEntry& entry : catalog.assets) {
+    const std::string& known = (entry.*side).hash;
+    if (known == as_given) return known;
+    if (!says_unit) continue;
+    const auto [hash, is_new] = in_unit.try_emplace(entry.unit);
+    if (is_new) hash->second = content_hash(read(entry.unit));
+    if (hash->second == known) return known;
+  }
+  return as_given;
 }
-std::string target_hash(const CatalogOption& option) {
-  return option.target.empty() ? option.target_hash : content_hash(read_target(option.target));
+
+/// Of the model, or as it is given.
+std::string source_hash(const CatalogOption& option, const Catalog& catalog) {
+  if (option.source.empty()) return option.source_hash;
+  return known_hash(catalog, &CatalogEntry::source, option.source,
+                    [&](const std::string& unit) { return read_source(option.source, unit, ""); });
+}
+std::string target_hash(const CatalogOption& option, const Catalog& catalog) {
+  if (option.target.empty()) return option.target_hash;
+  return known_hash(catalog, &CatalogEntry::target, option.target,
+                    [&](const std::string& unit) { return read_target(option.target, unit, ""); });
 }
 
 /// With a map that is named: what products are checked against.
@@ -70,7 +96,8 @@ std::vector<JobFile> inputs(const CatalogOption& option) {
 std::filesystem::path find_map(const CatalogOption& option) {
   const std::filesystem::path index = catalog_path(option.directory);
   const Catalog catalog = read_catalog(index);
-  const CatalogEntry& entry = bespoke::find_map(catalog, {source_hash(option), target_hash(option)});
+  const CatalogEntry& entry =
+      bespoke::find_map(catalog, {source_hash(option, catalog), target_hash(option, catalog)});
   const std::filesystem::path map = std::filesystem::path(option.directory) / entry.file;
   if (sha256_of_file(map) != entry.sha256)
     throw FormatError(map.string() + ": is not the file that " + index.string() +

@@ -56,7 +56,7 @@ void run(const DiffArguments& arguments, const RunContext& context) {
   require_one_unit(arguments, a, b);
   std::vector<Points> products;
   for (const std::string& product : arguments.products)
-    products.push_back(read_product_in(product, a.record.unit).vertices);
+    products.push_back(read_product_in(product, a.record.unit).mesh.vertices);
   ComparedMaps compared{a, b, map_difference(a, b, products, context.progress), record_difference(a, b),
                         arguments.products};
   if (a.record.source.hash != b.record.source.hash)

@@ -20,6 +20,7 @@
 #include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/product/vertex_groups.h"
 #include "bespoke/report/fit_text.h"
@@ -74,10 +75,28 @@ void require_model(const TriangleMesh& mesh, const std::string& role, const std:
   if (verbose) std::printf("%-12s %s\n", role.c_str(), to_string(inspect_mesh(mesh)).c_str());
 }
 
-TriangleMesh read_model(const std::string& role, const std::string& path, bool verbose) {
-  TriangleMesh mesh = read_source(path);
-  require_model(mesh, role, path, verbose);
-  return mesh;
+/// Degenerate faces are told once, here: whatever reads the model later leaves the same ones out.
+void warn_of_left_out(const DegenerateFaces& faces, const std::string& path, const RunContext& context) {
+  if (faces.count > 0) context.warn(path + ": " + left_out_text(faces), Entry::content_left_as_it_is);
+}
+
+/// Skins are taken as viewers show them unless they are asked for as stored, which is said where it matters.
+ModelPose pose_of(const std::string& path, const FitArguments& arguments, const RunContext& context) {
+  if (!arguments.pose && has_two_poses(path))
+    context.warn(
+        path +
+            ": its skin is stored in another pose than its nodes show, which is taken as it is shown; "
+            "`--pose stored` takes the other",
+        Entry::content_left_as_it_is);
+  return arguments.pose.value_or(ModelPose::shown);
+}
+
+TriangleMesh read_model(const std::string& role, const std::string& path, const FitArguments& arguments,
+                        const RunContext& context) {
+  SourceModel model = read_source_model(path, pose_of(path, arguments, context));
+  require_model(model.mesh, role, path, arguments.verbose);
+  warn_of_left_out(model.left_out, path, context);
+  return std::move(model.mesh);
 }
 
 void print_units(const UnitPlan& units, const FitArguments& arguments) {
@@ -168,10 +187,11 @@ void run(const FitArguments& arguments, const RunContext& context) {
     throw CLI::ValidationError("--html", "shows the map from its file; give -o the name of a file");
   const std::optional<HtmlPages> pages = html_pages(arguments);
   const auto start = std::chrono::steady_clock::now();
-  TriangleMesh source = read_model("source", arguments.source, arguments.verbose);
-  TargetModel target_model = read_target(arguments.target);
+  TriangleMesh source = read_model("source", arguments.source, arguments, context);
+  TargetModel target_model = read_target(arguments.target, pose_of(arguments.target, arguments, context));
   const TriangleMesh& target = target_model.mesh;
   require_model(target, "target", arguments.target, arguments.verbose);
+  warn_of_left_out(target_model.left_out, arguments.target, context);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source, &target});
   const UnitPlan units =
@@ -183,7 +203,7 @@ void run(const FitArguments& arguments, const RunContext& context) {
   if (!arguments.run.quiet) print_units(units, arguments);
   std::optional<TriangleMesh> fitted;
   if (!arguments.fitted.empty()) {
-    fitted = read_model("fitted", arguments.fitted, arguments.verbose);
+    fitted = read_model("fitted", arguments.fitted, arguments, context);
     fitted->vertices *= scale_to_unit(arguments.fitted, units.unit);
     require_same_connectivity(source, *fitted, arguments.fitted);
   }

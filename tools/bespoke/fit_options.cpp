@@ -37,9 +37,15 @@ void add_input_options(CLI::App& fit, FitArguments& arguments) {
                  "Reference model that products are designed around: " + read_product_endings())
       ->required();
   fit.add_option("TARGET", arguments.target, "Reference model that products are to fit")->required();
+  add_name_option(
+      fit, "--pose", arguments.pose, model_poses,
+      "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
+      "viewers have it, or stored, as in the file (default: shown)");
   fit.add_option("--anchors", arguments.anchors,
-                 "Anchors (landmarks): pairs of corresponding points, JSON (also curves and patches) or CSV "
-                 "(default: none; models in similar pose are aligned by their surfaces)")
+                 "Anchors (landmarks): pairs of corresponding points in one file: .json (also curves and "
+                 "patches), .csv, or .txt of vertex numbers; .pp, .fcsv, .mrk.json, .pts and .wrap.json have "
+                 "one file a side, which `anchors convert` joins (default: none; models in similar pose are "
+                 "aligned by their surfaces)")
       ->type_name("FILE");
   add_length_option(
       fit, "--anchor-sigma", arguments.anchor_sigma,

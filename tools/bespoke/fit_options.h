@@ -1,9 +1,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "bespoke/pipeline/map_request.h"
+#include "bespoke/product/model_pose.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -19,6 +21,7 @@ struct FitArguments : MapRequest {
   std::string report;
   std::string html;
   std::string unit;  ///< of the map, where it is given
+  std::optional<ModelPose> pose;
   bool require_certified = false;
   bool add_corners = false;
   bool verbose = false;

@@ -74,8 +74,12 @@ ManifestJob apply_job(const GradeRequest& request, const GradeSize& size) {
                   "apply",
                   {{"map", {size.map.string()}}, {"product", request.products}, {"t", {digits(size.t)}}}};
   job.entries.push_back({"out-dir", {folder(request, size).string()}});
-  if (size.t == 1 && request.clearance != "off") job.entries.push_back({"clearance", {request.clearance}});
-  if (size.t == 1 && request.require_clear) job.entries.push_back({"require-clear", {}, true});
+  if (size.t == 1) {  // what the products are checked against
+    job.entries.push_back({"source", {request.source}});
+    job.entries.push_back({"target", {size.target}});
+    if (request.clearance != "off") job.entries.push_back({"clearance", {request.clearance}});
+    if (request.require_clear) job.entries.push_back({"require-clear", {}, true});
+  }
   if (!request.rigid.empty()) job.entries.push_back({"rigid", request.rigid});
   if (!request.similar.empty()) job.entries.push_back({"similar", request.similar});
   return job;

@@ -52,7 +52,7 @@ std::string free_name(const std::string& name, std::set<std::string>& taken) {
 
 std::vector<TriangleMesh> meshes_of(const std::vector<std::string>& products, const std::string& map_unit) {
   std::vector<TriangleMesh> meshes;
-  for (const std::string& path : products) meshes.push_back(read_product_in(path, map_unit));
+  for (const std::string& path : products) meshes.push_back(read_product_in(path, map_unit).mesh);
   return meshes;
 }
 

@@ -58,17 +58,18 @@ MapModels read_map_models(const MapModelArguments& arguments) {
   require_target(arguments.target, target, models.asset.record);
   models.target = std::move(target.mesh);
   for (const std::string& path : arguments.products) {
-    models.products.push_back({std::filesystem::path(path).filename().string(),
-                               read_product_in(path, record.unit, arguments.unit)});
+    models.products.push_back(read_product_in(path, record.unit, arguments.unit));
   }
   if (!arguments.confidence.empty()) models.findings.confidence = read_confidence(arguments.confidence);
   if (!arguments.fit_report.empty()) models.findings.unmet = read_unmet_vertices(arguments.fit_report);
   return models;
 }
 
-TriangleMesh read_product_in(const std::string& path, const std::string& map_unit, const std::string& given) {
+NamedProduct read_product_in(const std::string& path, const std::string& map_unit, const std::string& given) {
   const Product product = read_product(path);
-  return {product_scale(path, map_unit, given) * product.vertices, triangulated(product)};
+  return {std::filesystem::path(path).filename().string(),
+          {product_scale(path, map_unit, given) * product.vertices, triangulated(product)},
+          product.line_edges};
 }
 
 void require_source(const std::string& path, const TriangleMesh& source, const AssetRecord& record) {

@@ -28,8 +28,8 @@ struct MapModelArguments {
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments);
 void add_unit_option(CLI::App& app, std::string& unit);
 
-/// A product's triangles in the map's unit (product_scale).
-TriangleMesh read_product_in(const std::string& path, const std::string& map_unit,
+/// A product's triangles and lines in the map's unit (product_scale).
+NamedProduct read_product_in(const std::string& path, const std::string& map_unit,
                              const std::string& given = "");
 
 std::vector<JobFile> inputs_of(const MapModelArguments& arguments);

@@ -67,7 +67,9 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
       context.warn(path + ": " + to_string(product.degenerate), Entry::content_left_as_it_is);
     names.push_back(std::filesystem::path(path).filename().string());
     products.push_back(
-        {path, {product_scale(path, record.unit, arguments.unit) * product.vertices, triangulated(product)}});
+        {path,
+         {product_scale(path, record.unit, arguments.unit) * product.vertices, triangulated(product)},
+         product.line_edges});
   }
   const auto anchors = static_cast<Eigen::Index>(asset.record.anchors.size());
   Points anchor_sources(3, anchors), anchor_targets(3, anchors);
@@ -82,7 +84,10 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
     elastic = std::make_shared<ElasticChain>(baked_chain(std::move(asset.steps)));
   if (arguments.unit.empty())
     for (const NamedProduct& product : products)
-      require_unit_of_map(product.name, product.mesh.vertices, *elastic, record.source.box);
+      if (const std::string found =
+              require_unit_of_map(product.name, product.mesh.vertices, *elastic, record.source.box);
+          !found.empty())
+        context.warn(product.name + ": " + found, Entry::content_left_as_it_is);
   const MappingQuality quality = mapping_quality(
       {source, target.mesh, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       context.progress);

@@ -1,51 +1,65 @@
 #include "penetration_check.h"
 
-#include <tuple>
-
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/product_quality.h"
+#include "planned_run.h"
 
 namespace bespoke::command {
+namespace {
+
+void require_same(const std::string& path, const std::string& hash, const std::string& expected) {
+  if (hash != expected)
+    throw InvalidInput(path + ": is not the model that the map was made of (other vertices or faces)");
+}
+
+}  // namespace
 
 struct PenetrationCheck::Models {
-  Models(const std::string& source_file, const std::string& target_file)
-      : source_path(source_file),
-        target_path(target_file),
-        source(read_source(source_file)),
-        target(read_target(target_file)),
+  Models(const std::string& source_file, const std::string& target_file, const OpenedMap& map)
+      : source(read_source(source_file, map.unit, map.source_hash)),
+        target(read_target(target_file, map.unit, map.target_hash)),
         from_source(source),
-        from_target(target.mesh) {}
-
-  void require_of(const OpenedMap& map) const {
-    for (const auto& [path, hash, expected] :
-         {std::tuple(source_path, content_hash(source), map.source_hash),
-          std::tuple(target_path, content_hash(target), map.target_hash)})
-      if (hash != expected)
-        throw InvalidInput(path + ": is not the model that the map was made of (other vertices or faces)");
+        from_target(target.mesh) {
+    require_same(source_file, content_hash(source), map.source_hash);
+    require_same(target_file, content_hash(target), map.target_hash);
   }
 
-  std::string source_path, target_path;
   TriangleMesh source;
   TargetModel target;
   SignedDistance from_source, from_target;
 };
 
-PenetrationCheck::PenetrationCheck(const std::string& source, const std::string& target) {
-  if (!source.empty() && !target.empty()) models_ = std::make_unique<const Models>(source, target);
-}
+PenetrationCheck::PenetrationCheck(const std::string& source, const std::string& target)
+    : source_(source), target_(target) {}
 PenetrationCheck::~PenetrationCheck() = default;
 
-std::string PenetrationCheck::operator()(const std::string& product, const OpenedMap& map) const {
-  if (!models_ || !can_read_product(product)) return {};
-  models_->require_of(map);
-  const Product read = read_product(product);
-  const TriangleMesh before{read.vertices, triangulated(read)};
-  const Points after = map.target_from_source * (*map.elastic)(before.vertices);
+std::string PenetrationCheck::operator()(const std::string& product, const OpenedMap& map,
+                                         const std::string& unit) {
+  if (source_.empty() || target_.empty()) return {};
+  if (!models_) models_ = std::make_unique<const Models>(source_, target_, map);
+  if (!can_read_product(product)) return {};
+  const NamedProduct before = read_product_in(product, map.unit, unit);
+  const Points after = map.target_from_source * (*map.elastic)(before.mesh.vertices);
   const NewPenetration new_penetration = product_new_penetration(
-      before, after, {models_->source, models_->target.mesh, models_->from_source, models_->from_target});
+      {before.mesh, before.line_edges}, after,
+      {models_->source, models_->target.mesh, models_->from_source, models_->from_target});
   return new_penetration.is_notable() ? to_string(new_penetration) : std::string();
+}
+
+void warn_of_penetration(const RunContext& context, const MapModels& models) {
+  if (models.products.empty()) return;
+  const ElasticChain elastic = baked_chain(models.asset.steps);
+  const SignedDistance from_source(models.source), from_target(models.target);
+  for (const NamedProduct& product : models.products) {
+    context.progress.check();
+    const NewPenetration new_penetration = product_new_penetration(
+        {product.mesh, product.line_edges}, models.asset.target_from_source * elastic(product.mesh.vertices),
+        {models.source, models.target, from_source, from_target});
+    if (new_penetration.is_notable())
+      context.warn(product.name + ": " + to_string(new_penetration), Entry::product_inside_the_target);
+  }
 }
 
 }  // namespace bespoke::command

@@ -7,6 +7,8 @@
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/page/pick_scene.h"
+#include "bespoke/pipeline/model_units.h"
+#include "bespoke/product/format_unit.h"
 #include "commands.h"
 #include "help.h"
 #include "output_files.h"
@@ -22,15 +24,25 @@ struct PickArguments {
   std::string output;
 };
 
+/// Anchors without a unit are in the coordinates of the models' files, and picked so.
+void show_in_unit_of_anchors(PickModel& source, PickModel& target, Anchors& anchors) {
+  const UnitPlan plan = bring_to_one_unit(
+      {anchors.unit, unit_of_format(source.path), unit_of_format(target.path), source.path, target.path},
+      anchors);
+  source.mesh.vertices *= plan.source_scale;
+  target.mesh.vertices *= plan.target_scale;
+}
+
 void run(const PickArguments& arguments) {
   require_pages();
   std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
   if (!arguments.anchors.empty()) inputs.push_back(arguments.anchors);
   require_safe_outputs(inputs, {arguments.output});
-  const PickModel source{arguments.source, read_source(arguments.source)};
-  const PickModel target{arguments.target, read_target(arguments.target).mesh};
+  PickModel source{arguments.source, read_source(arguments.source)};
+  PickModel target{arguments.target, read_target(arguments.target).mesh};
   std::optional<Anchors> anchors;
   if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source.mesh, &target.mesh});
+  if (anchors && !anchors->unit.empty()) show_in_unit_of_anchors(source, target, *anchors);
   const auto name = [](const std::string& path) { return std::filesystem::path(path).stem().string(); };
   const std::string title = "Anchors of " + name(arguments.source) + " and " + name(arguments.target);
   OutputFiles outputs;

@@ -9,6 +9,7 @@
 #include "help.h"
 #include "map_models.h"
 #include "output_files.h"
+#include "penetration_check.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -52,6 +53,7 @@ void run(const ReportArguments& arguments, const RunContext& context) {
     files.write_text(output, report_markdown(report, prefix));
   }
   files.keep();
+  warn_of_penetration(context, models);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "map_models.h"
 #include "output_files.h"
 #include "page_output.h"
+#include "penetration_check.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -37,6 +38,7 @@ void run(const ViewArguments& arguments, const RunContext& context) {
   OutputFiles files;
   files.write_text(arguments.output, whole_page(scene));
   files.keep();
+  warn_of_penetration(context, models);
 }
 
 }  // namespace

@@ -213,7 +213,8 @@ Eigen::VectorXd spline_weights(const Anchors& anchors) {
   const double difference = typical_difference * diagonal(target_points(anchors));
   for (Eigen::Index i = 0; i < result.size(); ++i) {
     const double sigma = anchors.pairs[static_cast<std::size_t>(i)].sigma.value_or(0);
-    if (sigma > 0) result[i] = difference * difference / (sigma * sigma);
+    // Targets at one place weigh nothing against each other, and are refused as such.
+    if (sigma > 0 && difference > 0) result[i] = difference * difference / (sigma * sigma);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
+#include "bespoke/product/unsplit_lines.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -79,8 +80,10 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
   ProductSummary summary;
   const ImageOfPoints last_image = image_at(elastic, target_from_source, times.back(), options.motion);
   std::optional<FaceSplits> splits;
+  DegenerateFaces degenerate;  // of the file before its edges were split
   if (options.refine) {
     RefinedProduct found = refined(input, last_image, options);
+    degenerate = found.product.degenerate;
     summary.chord = found.chord;
     summary.splits = found.splits.vertices.size();
     if (summary.splits > 0) splits = std::move(found.splits);
@@ -105,9 +108,11 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     point_motion.jacobians = [&](const Points& x) {
       return motion_jacobian(elastic, target_from_source, x, own_times, options.motion);
     };
+    std::string other_unit;
     point_motion.accept = [&] {
       if (options.model_box && in_band == 0 && can_read_product(input))
-        require_unit_of_map(input.string(), read_product(input).vertices, elastic, *options.model_box);
+        other_unit =
+            require_unit_of_map(input.string(), read_product(input).vertices, elastic, *options.model_box);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
     CarrySummary carried = carry_product(
@@ -116,7 +121,14 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     written.add(own_outputs);
     written.add(carried.companions);
     summary.companions.insert(summary.companions.end(), carried.companions.begin(), carried.companions.end());
+    if (splits)
+      std::replace(carried.warnings.begin(), carried.warnings.end(), to_string(carried.degenerate),
+                   to_string(degenerate));
     summary.warnings = std::move(carried.warnings);
+    if (!other_unit.empty()) summary.warnings.push_back(std::move(other_unit));
+    if (const std::size_t lines = options.refine ? unsplit_line_primitives(input) : 0; lines > 0)
+      summary.warnings.push_back(std::to_string(lines) +
+                                 " primitives of lines keep their points; only edges of triangles are split");
     summary.parts = std::move(carried.parts);
     summary.joints = carried.joints;
     summary.points.points = points;

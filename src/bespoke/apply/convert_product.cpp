@@ -20,10 +20,16 @@ ProductSummary convert_product(const std::filesystem::path& input,
                        " times; the numbers must be equal, and not zero");
   const Stopwatch watch;
   Product product = read_product(input);
-  if (options.model_box) require_unit_of_map(input.string(), product.vertices, elastic, *options.model_box);
+  std::string other_unit;
+  if (options.model_box)
+    other_unit = require_unit_of_map(input.string(), product.vertices, elastic, *options.model_box);
   if (!options.unit.empty()) product.unit = options.unit;
   ProductSummary summary;
-  summary.warnings = {"only faces and texture coordinates were kept"};
+  summary.warnings = {lower_ending(input) == ".3mf"
+                          ? "only faces were kept, those of all placed objects as one: names, colours, "
+                            "materials and settings were left out"
+                          : "only faces and texture coordinates were kept"};
+  if (!other_unit.empty()) summary.warnings.push_back(std::move(other_unit));
   if (product.degenerate.count > 0) summary.warnings.push_back(to_string(product.degenerate));
   if (product.unit.empty() && lower_ending(outputs.front()) == ".3mf")
     summary.warnings.emplace_back(

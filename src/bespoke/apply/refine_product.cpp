@@ -149,6 +149,8 @@ std::vector<int> SplitProduct::split_lines(const Middles& middles) const {
 void SplitProduct::split(const Middles& middles) {
   Product next;
   next.has_normals = faces_.has_normals;
+  next.degenerate = faces_.degenerate;
+  next.unit = faces_.unit;
   const Eigen::Index before = faces_.vertices.cols();
   next.vertices.resize(3, before + static_cast<Eigen::Index>(middles.size()));
   next.vertices.leftCols(before) = faces_.vertices;

@@ -17,6 +17,8 @@ constexpr Eigen::Index max_points = 2000;  // tell as much as more
 // Of the model's diagonal: what is made around it is neither a speck nor a landscape.
 constexpr double min_size = 0.05, largest_size = 2;
 constexpr double max_of_the_points = 0.9;
+// Twenty factors are tried: so many points are hardly all near by chance.
+constexpr Eigen::Index min_points = 8;
 
 Points sample_of(const Points& points) {
   if (points.cols() <= max_points) return points;
@@ -33,22 +35,26 @@ double share_in_band(const ElasticMap& elastic, const Points& points) {
 
 }  // namespace
 
-void require_unit_of_map(const std::string& name, const Points& points, const ElasticMap& elastic,
-                         const Box& model) {
-  if (points.cols() == 0) return;
+std::string require_unit_of_map(const std::string& name, const Points& points, const ElasticMap& elastic,
+                                const Box& model) {
+  if (points.cols() == 0) return {};
   const Points sample = sample_of(points);
   const double size = diagonal(points), model_size = model.diagonal().norm();
-  if (share_in_band(elastic, sample) > 0) return;
+  if (share_in_band(elastic, sample) > 0) return {};
   for (const double ratio : unit_ratios)
     for (const double factor : {ratio, 1 / ratio}) {
       const double scaled = factor * size;
       if (!(scaled > min_size * model_size && scaled < largest_size * model_size)) continue;
       if (share_in_band(elastic, factor * sample) < max_of_the_points) continue;
-      throw InvalidInput(name + ": none of its points is near the model, but multiplied by " +
-                         format_number(factor, 4) +
-                         " they would be, as if it were in another unit than the map; name the unit of its "
-                         "coordinates (--unit mm, for instance), or --unit map to carry it as it is");
+      const std::string found = "none of its points is near the model, but multiplied by " +
+                                format_number(factor, 4) +
+                                " they would be, as if it were in another unit than the map; name the unit "
+                                "of its coordinates (--unit mm, for instance), or --unit map to carry it as "
+                                "it is";
+      if (points.cols() < min_points) return found;
+      throw InvalidInput(name + ": " + found);
     }
+  return {};
 }
 
 }  // namespace bespoke

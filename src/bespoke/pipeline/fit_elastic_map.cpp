@@ -9,6 +9,7 @@
 #include "bespoke/error.h"
 #include "bespoke/length.h"
 #include "bespoke/pipeline/elastic_pairs.h"
+#include "bespoke/pipeline/hopeless_fit.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -82,6 +83,7 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
     // Only the path knows turns beyond half a one.
     const RegionalMotion motion = result.plan->path->motion();
     if (!options.steps) result.plan->times = equal_times(std::max(count, step_count(motion)));
+    require_useful_steps(result.plan->steps(), options);
     result.summary.elastic.motion = motion;
     take_steps(result, fit_elastic_steps(source, result.pairs, *result.plan, options.elastic,
                                          elastic_options(options, true), progress));
@@ -102,7 +104,7 @@ void fit_steps(FittedMapping& result, const TriangleMesh& source, const Anchors&
 void divide_where_missed(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
                          const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= max_planned_steps) {
+  while (missed(result) > options.fit_tolerance && 2 * result.elastic->steps().size() <= max_useful_steps) {
     FittedMapping finer = result;
     fit_steps(finer, source, anchors, options, 2 * static_cast<int>(result.elastic->steps().size()),
               progress);

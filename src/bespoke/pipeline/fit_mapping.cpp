@@ -172,6 +172,7 @@ FittedMapping fit_mapping(const TriangleMesh& source, const TriangleMesh& target
 
   // IV.D, IV.E: E.
   const TriangleMesh& registered = registered_source(result, source);
+  require_hopeful_surface(registered, result.fitted_vertices, options);
   fit_elastic_map(result, registered, estimated, options, progress);
   require_hopeful(result, registered, options);
   result.anchor_residual = anchor_residuals(result, anchors);

@@ -17,6 +17,22 @@ struct MapHealth {
   bool is_hopeless() const;
 };
 
+/// More steps than these mean that no size of steps keeps a chain from folding.
+inline constexpr std::size_t max_useful_steps = 24;
+
+/// Throws SolverError with the reason where a chain is planned with more steps, before any of them is fitted.
+/// Not where the number of steps is given.
+void require_useful_steps(std::size_t steps, const FitOptions& options);
+
+/// The ratio of the singular values of a face's deformation (1: its angles are kept) that one part in twenty
+/// of the surface's area exceeds; against the source as it is or moved by the affine map nearest to the
+/// deformation, whichever is less. fitted: 3×n, the vertices of `source` after. 1 for a source without area.
+double surface_shear(const TriangleMesh& source, const Points& fitted);
+
+/// Throws SolverError with the reason where a registered source is sheared by more than the largest stretch
+/// of the surface fitting: before any map is fitted to it. For methods as require_hopeful.
+void require_hopeful_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options);
+
 /// Of an exact map, at some hundred vertices. source: as it was fitted.
 MapHealth map_health(const FittedMapping& fitted, const TriangleMesh& source);
 

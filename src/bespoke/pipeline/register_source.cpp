@@ -10,12 +10,14 @@
 #include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/alignment/placement.h"
 #include "bespoke/anchors/anchor_curves.h"
+#include "bespoke/anchors/stretching_anchors.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/anchor_outliers.h"
 #include "bespoke/pipeline/anchor_start.h"
 #include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/pipeline/matched_parts.h"
+#include "bespoke/pipeline/part_pairs.h"
 #include "bespoke/pipeline/rejected_anchors.h"
 #include "bespoke/quality/uncovered_area.h"
 #include "bespoke/rbf/global_rbf.h"
@@ -88,6 +90,7 @@ struct RegistrationInput {
   const FitPatches& patches;
   const Anchors& given;
   const FitOptions& options;
+  std::vector<AnchorPair> of_parts = {};  ///< that lead parts without anchors
 };
 
 /// Γ by anchors, those of curves included, and H'_a by these and by what is known of places far from them.
@@ -95,9 +98,10 @@ void register_by_pairs(FittedMapping& result, const RegistrationInput& input,
                        const EstimatedAnchors& estimated, const Progress& progress,
                        const std::vector<AnchorPair>& counterparts = {}) {
   FitSummary& summary = result.summary;
-  const auto& [source, target, patches, given, options] = input;
+  const auto& [source, target, patches, given, options, of_parts] = input;
   const auto count = static_cast<Eigen::Index>(estimated.anchors.pairs.size());
   Anchors all = estimated.anchors;
+  all.pairs.insert(all.pairs.end(), of_parts.begin(), of_parts.end());
   all.pairs.insert(all.pairs.end(), counterparts.begin(), counterparts.end());
   Pairs pairs = pairs_of(all);
 
@@ -270,15 +274,32 @@ void let_give_way(EstimatedAnchors& estimated, const Anchors& given,
   }
 }
 
+/// Exact pairs that no surface meets within the bound on its stretch share the blame.
+void let_contradicting_share(EstimatedAnchors& estimated, const RegistrationInput& input) {
+  const auto given = static_cast<std::size_t>(
+      std::lower_bound(estimated.kept.begin(), estimated.kept.end(), input.given.pairs.size()) -
+      estimated.kept.begin());
+  const std::vector<double> sigmas =
+      sigmas_within_stretch(estimated.anchors, given, input.options.surface_fit.max_stretch);
+  for (std::size_t k = 0; k < given; ++k) {
+    if (!(sigmas[k] > 0)) continue;
+    estimated.anchors.pairs[k].sigma = sigmas[k];
+    estimated.sigmas[estimated.kept[k]] = sigmas[k];
+    estimated.accuracy.given_way.push_back({estimated.kept[k], sigmas[k]});
+  }
+}
+
 /// Γ and H'_a by anchors, those of curves included; only given ones are tested. Returns the
 /// anchors as the fit took them.
 Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& input, const Anchors& anchors,
                             const Progress& progress) {
   EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, input.source, input.target);
+  // The printed method takes all pairs.
+  const bool doubts = input.options.surface_fit.method == SurfaceFitMethod::deformation_graph;
+  if (doubts) let_contradicting_share(estimated, input);
   register_by_pairs(result, input, estimated, progress);
   AnchorAudit audit = audit_anchors(input.given);
-  // The printed method takes all pairs.
-  if (input.options.surface_fit.method == SurfaceFitMethod::deformation_graph) {
+  if (doubts) {
     const AnchorOutlierTest outlier_test(input.source, input.target, input.given, estimated);
     const std::vector<std::size_t> suspects = outlier_test.suspects(registered_vertices(result), audit);
     if (!suspects.empty())
@@ -338,20 +359,25 @@ void register_by_surfaces(FittedMapping& result, const TriangleMesh& source, con
   summary.unanchored = std::move(fit.summary);
 }
 
-/// Patches of the parts that correspond, where anchors place the source and nobody gave patches.
-void add_matched_parts(FitPatches& patches, const TriangleMesh& source, const TriangleMesh& target,
-                       const Anchors& anchors, const FitOptions& options, FitSummary& summary) {
+/// Patches of the parts that correspond, where anchors place the source and nobody gave patches. Returns
+/// pairs of those without anchors.
+std::vector<AnchorPair> add_matched_parts(FitPatches& patches, const TriangleMesh& source,
+                                          const TriangleMesh& target, const Anchors& anchors,
+                                          const FitOptions& options, FitSummary& summary) {
   constexpr std::size_t min_pairs = 4;
   if (options.surface_fit.method != SurfaceFitMethod::deformation_graph || !patches.source.is_empty() ||
       anchors.pairs.size() < min_pairs || part_count(source) < 2 || part_count(target) < 2)
-    return;
+    return {};
   const RegularisedAlignment alignment =
       align_regularised(source_points(anchors), target_points(anchors),
                         Eigen::VectorXd::Ones(static_cast<Eigen::Index>(anchors.pairs.size())));
-  MatchedParts parts = match_parts(source, alignment.affine * source.vertices, target);
+  const Points placed = alignment.affine * source.vertices;
+  MatchedParts parts = match_parts(source, placed, target);
   summary.matched_parts = to_string(parts);
+  std::vector<AnchorPair> pairs = part_pairs({source, placed, target, parts}, source_points(anchors));
   patches.source = std::move(parts.source);
   patches.target = std::move(parts.target);
+  return pairs;
 }
 
 /// Γ and H'_a, however they are found. Returns the anchors as the fit took them.
@@ -370,8 +396,10 @@ Anchors register_source(FittedMapping& result, const TriangleMesh& source, const
                         const Anchors& anchors, const FitOptions& options, const Progress& progress) {
   FitPatches patches = fit_patches(anchors, source, target);
   result.summary.patches = patches.found;
-  add_matched_parts(patches, source, target, anchors, options, result.summary);
-  Anchors estimated = register_models(result, {source, target, patches, anchors, options}, progress);
+  const std::vector<AnchorPair> of_parts =
+      add_matched_parts(patches, source, target, anchors, options, result.summary);
+  Anchors estimated =
+      register_models(result, {source, target, patches, anchors, options, of_parts}, progress);
   constexpr double reach = 0.01;  // of the target's diagonal
   result.summary.uncovered =
       uncovered_area(without_excluded(target, patches.target).mesh,

@@ -9,6 +9,7 @@
 #include "bespoke/product/face_splits.h"
 #include "bespoke/product/model_pose.h"
 #include "bespoke/product/point_motion.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/product/rigid_part.h"
 #include "bespoke/progress.h"
 
@@ -18,6 +19,7 @@ struct CarrySummary {
   std::size_t points = 0;             ///< positions that were carried
   std::size_t directions = 0;         ///< normals and tangents that were carried
   std::vector<std::string> warnings;  ///< what the file holds that was left as it is, a sentence each
+  DegenerateFaces degenerate;         ///< of which one of these tells, by places in the file with split edges
   std::vector<std::filesystem::path> companions;  ///< written besides the outputs: buffers beside a .gltf
   std::vector<PartSummary> parts;                 ///< that kept their shape
   std::size_t joints = 0;  ///< of a skeleton that was carried, or that the product was bound to

@@ -6,7 +6,6 @@ namespace bespoke {
 
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path) {
   const Product product = read_product(path);
-  require_no_degenerate_faces(product);
   return {product.vertices, triangulated(product)};
 }
 

@@ -8,7 +8,7 @@
 namespace bespoke {
 
 /// Reads a reference model; formats, order, precision and errors as read_product. Polygons become triangle
-/// fans in place.
+/// fans in place; degenerate faces are left out.
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path);
 
 /// Formats, digits and errors as write_product. Atomic. `unit`: of the vertices, for formats that say it.

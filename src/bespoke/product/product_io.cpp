@@ -109,16 +109,19 @@ void write_product(const std::filesystem::path& path, const Product& product) {
   });
 }
 
-std::string to_string(const DegenerateFaces& faces) {
+namespace {
+
+std::string counted(const DegenerateFaces& faces, const std::string& fate) {
   return std::to_string(faces.count) +
-         (faces.count == 1 ? " degenerate face, which was" : " degenerate faces, which were") + " kept (" +
+         (faces.count == 1 ? " degenerate face, which was " : " degenerate faces, which were ") + fate + " (" +
          faces.first + ")";
 }
 
-void require_no_degenerate_faces(const Product& product) {
-  if (product.degenerate.count > 0)
-    throw FormatError(product.degenerate.first + "; of a model remove degenerate faces first");
-}
+}  // namespace
+
+std::string to_string(const DegenerateFaces& faces) { return counted(faces, "kept"); }
+
+std::string left_out_text(const DegenerateFaces& faces) { return counted(faces, "left out"); }
 
 Faces triangulated(const Product& product) {
   std::vector<int> triangles;

@@ -9,7 +9,8 @@
 
 namespace bespoke {
 
-/// Polygons of fewer than three corners, or that name a vertex twice. A product keeps them; a model has none.
+/// Polygons of fewer than three corners, or that name a vertex twice. A product keeps them; of a model they are
+/// left out.
 struct DegenerateFaces {
   std::size_t count = 0;
   std::string first;  ///< "a.obj:5: a face names vertex 2 twice"; empty without any
@@ -18,13 +19,16 @@ struct DegenerateFaces {
 /// "2 degenerate faces, which were kept (a.obj:5: a face names vertex 2 twice)".
 std::string to_string(const DegenerateFaces& faces);
 
+/// The same of a model: "2 degenerate faces, which were left out (…)".
+std::string left_out_text(const DegenerateFaces& faces);
+
 /// The faces of a model or a product. Polygons stay polygons; vertex order, face order and the corners'
 /// texture coordinates come back as they were read. Groups, materials and colours do not.
 struct Product {
   Points vertices;                 ///< 3×n, mesh units
   std::vector<int> polygon_start;  ///< p+1; polygon k is corners[start[k]] … corners[start[k+1]-1]
   std::vector<int> corners;        ///< vertex indices
-  std::vector<int> line_edges;     ///< the ends of every edge of the polylines of an OBJ file, by twos
+  std::vector<int> line_edges;     ///< the ends of the edges of polylines (OBJ, PLY), by twos
   DegenerateFaces degenerate;
   Eigen::Matrix2Xd texture;  ///< 2×(number of corners), (0, 0) where a face has none; or empty
   bool has_normals = false;  ///< the file carried normals, so the writer writes recomputed ones
@@ -59,8 +63,5 @@ std::string conversion_advice(const std::filesystem::path& path);
 
 /// Polygons as triangle fans about their first corner, in place, without triangles that name a vertex twice.
 Faces triangulated(const Product& product);
-
-/// Throws FormatError with the first degenerate face, if there is one: for models.
-void require_no_degenerate_faces(const Product& product);
 
 }  // namespace bespoke

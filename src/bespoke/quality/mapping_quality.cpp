@@ -40,7 +40,8 @@ MappingQuality mapping_quality(const MappingQualityInput& input, const MappingQu
     progress.step("products", quality.products.size(), input.products.size());
     try {
       const Points moved = input.target_from_source * input.elastic(product.mesh.vertices);
-      quality.products.push_back(product_quality(product.mesh, moved, bodies, options.products));
+      quality.products.push_back(
+          product_quality({product.mesh, product.line_edges}, moved, bodies, options.products));
     } catch (const InvalidInput& error) {
       throw InvalidInput(product.name + ": " + error.what());
     }

@@ -14,7 +14,8 @@ namespace bespoke {
 /// A product as it is designed on the source.
 struct NamedProduct {
   std::string name;
-  TriangleMesh mesh;  ///< polygons as triangles
+  TriangleMesh mesh;                 ///< polygons as triangles
+  std::vector<int> line_edges = {};  ///< the ends of the edges of its polylines, by twos
 };
 
 struct MappingQualityInput {

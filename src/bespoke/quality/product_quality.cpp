@@ -5,6 +5,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
+#include "bespoke/quality/detail/line_samples.h"
 #include "bespoke/quality/detail/surface_samples.h"
 #include "bespoke/quality/self_intersection.h"
 
@@ -13,12 +14,15 @@ namespace {
 
 struct Clearances {
   SignedDistance::Values vertices;
-  SignedDistance::Values samples;
+  SignedDistance::Values samples;  ///< on faces
+  SignedDistance::Values on_lines;
 };
 
-/// What counts as inside, mesh units.
+/// What counts as inside, mesh units, and as nearer than before.
 struct InsideTolerances {
   double source = 0, target = 0;
+  double growth = 1;  ///< of the target's size over the source's
+  double nearer = 0;  ///< mesh units, on the target
 };
 
 Penetration penetration(const Clearances& clearances, double tolerance) {
@@ -27,12 +31,16 @@ Penetration penetration(const Clearances& clearances, double tolerance) {
     for (std::size_t i = 0; i < values.distance.size(); ++i) inside += values.distance[i] < -tolerance;
     return inside;
   };
+  const auto share_inside = [&](const SignedDistance::Values& values) {
+    const std::size_t all = values.distance.size();
+    return all == 0 ? 0 : static_cast<double>(count_inside(values)) / static_cast<double>(all);
+  };
   Penetration result;
   result.vertices = count_inside(clearances.vertices);
-  if (!clearances.samples.distance.empty())
-    result.area_share = static_cast<double>(count_inside(clearances.samples)) /
-                        static_cast<double>(clearances.samples.distance.size());
-  for (const SignedDistance::Values* values : {&clearances.vertices, &clearances.samples})
+  result.area_share = share_inside(clearances.samples);
+  result.line_share = share_inside(clearances.on_lines);
+  for (const SignedDistance::Values* values :
+       {&clearances.vertices, &clearances.samples, &clearances.on_lines})
     for (const double distance : values->distance) result.deepest = std::max(result.deepest, -distance);
   return result;
 }
@@ -43,7 +51,10 @@ NewPenetration new_penetration_of(const SignedDistance::Values& before, const Si
   NewPenetration result;
   std::size_t count = 0;
   for (std::size_t i = 0; i < after.distance.size(); ++i) {
-    if (before.distance[i] < -tolerances.source || !(after.distance[i] < -tolerances.target)) continue;
+    const double nearer = tolerances.growth * before.distance[i] - after.distance[i];
+    if (before.distance[i] < -tolerances.source || !(after.distance[i] < -tolerances.target) ||
+        !(nearer > tolerances.nearer))
+      continue;
     ++count;
     result.deepest = std::max(result.deepest, -after.distance[i]);
   }
@@ -68,17 +79,20 @@ void compare_clearances(const SignedDistance::Values& before, const SignedDistan
   quality.clearance_change = summarize(std::move(change));
 }
 
-void require_product(const TriangleMesh& before, const Points& after) {
-  if (after.cols() != before.vertices.cols())
+void require_product(const MeasuredProduct& before, const Points& after) {
+  const Points& vertices = before.mesh.vertices;
+  if (after.cols() != vertices.cols())
     throw InvalidInput("product_quality got " + std::to_string(after.cols()) + " vertices after and " +
-                       std::to_string(before.vertices.cols()) + " before");
-  if (!before.vertices.allFinite() || !after.allFinite())
+                       std::to_string(vertices.cols()) + " before");
+  if (!vertices.allFinite() || !after.allFinite())
     throw InvalidInput("a vertex of the product is not finite");
 }
 
 InsideTolerances tolerances(const Bodies& bodies, const ProductQualityOptions& options) {
-  return {options.inside_tolerance * diagonal(bodies.source.vertices),
-          options.inside_tolerance * diagonal(bodies.target.vertices)};
+  constexpr double remeshing = 1e-3;  // of the target's diagonal: two meshes of one surface differ so
+  const double source = diagonal(bodies.source.vertices), target = diagonal(bodies.target.vertices);
+  return {options.inside_tolerance * source, options.inside_tolerance * target, target / source,
+          remeshing * target};
 }
 
 /// Of the same points of the product on both bodies.
@@ -86,31 +100,49 @@ struct BothClearances {
   Clearances source, target;
 
   NewPenetration new_penetration(const InsideTolerances& inside) const {
-    return source.samples.distance.empty() ? new_penetration_of(source.vertices, target.vertices, inside)
-                                           : new_penetration_of(source.samples, target.samples, inside);
+    if (!source.samples.distance.empty()) return new_penetration_of(source.samples, target.samples, inside);
+    if (!source.on_lines.distance.empty())
+      return new_penetration_of(source.on_lines, target.on_lines, inside);
+    return new_penetration_of(source.vertices, target.vertices, inside);
   }
 };
 
-BothClearances clearances(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+BothClearances clearances(const MeasuredProduct& before, const Points& after, const Bodies& bodies,
                           const ProductQualityOptions& options) {
+  const auto& [vertices, faces] = before.mesh;
   SurfaceSamples samples;
-  if (before.faces.cols() > 0) samples = sample_surface(before, options.samples);
-  return {{bodies.from_source(before.vertices), bodies.from_source(positions(samples, before))},
-          {bodies.from_target(after), bodies.from_target(positions(samples, {after, before.faces}))}};
+  if (faces.cols() > 0) samples = sample_surface(before.mesh, options.samples);
+  const LineSamples on_lines = sample_lines(vertices, before.line_edges, options.line_samples);
+  return {{bodies.from_source(vertices), bodies.from_source(positions(samples, before.mesh)),
+           bodies.from_source(positions(on_lines, vertices))},
+          {bodies.from_target(after), bodies.from_target(positions(samples, {after, faces})),
+           bodies.from_target(positions(on_lines, after))}};
+}
+
+Spread line_length_ratios(const MeasuredProduct& before, const Points& after) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k + 1 < before.line_edges.size(); k += 2) {
+    const int a = before.line_edges[k], b = before.line_edges[k + 1];
+    const double length = (before.mesh.vertices.col(a) - before.mesh.vertices.col(b)).norm();
+    if (length > 0) ratios.push_back((after.col(a) - after.col(b)).norm() / length);
+  }
+  return spread(std::move(ratios));
 }
 
 }  // namespace
 
-ProductQuality product_quality(const TriangleMesh& before, const Points& after, const Bodies& bodies,
+ProductQuality product_quality(const MeasuredProduct& before, const Points& after, const Bodies& bodies,
                                const ProductQualityOptions& options) {
   require_product(before, after);
   ProductQuality quality;
   quality.vertices = static_cast<std::size_t>(after.cols());
-  quality.faces = static_cast<std::size_t>(before.faces.cols());
-  if (before.faces.cols() > 0) {
-    quality.distortion = mesh_distortion(before, after);
-    quality.self_intersections_before = self_intersections(before).size();
-    quality.self_intersections_after = self_intersections({after, before.faces}).size();
+  quality.faces = static_cast<std::size_t>(before.mesh.faces.cols());
+  quality.lines = before.line_edges.size() / 2;
+  quality.line_lengths = line_length_ratios(before, after);
+  if (before.mesh.faces.cols() > 0) {
+    quality.distortion = mesh_distortion(before.mesh, after);
+    quality.self_intersections_before = self_intersections(before.mesh).size();
+    quality.self_intersections_after = self_intersections({after, before.mesh.faces}).size();
   }
   const BothClearances found = clearances(before, after, bodies, options);
   const InsideTolerances inside = tolerances(bodies, options);
@@ -121,8 +153,8 @@ ProductQuality product_quality(const TriangleMesh& before, const Points& after, 
   return quality;
 }
 
-NewPenetration product_new_penetration(const TriangleMesh& before, const Points& after, const Bodies& bodies,
-                                       const ProductQualityOptions& options) {
+NewPenetration product_new_penetration(const MeasuredProduct& before, const Points& after,
+                                       const Bodies& bodies, const ProductQualityOptions& options) {
   require_product(before, after);
   return clearances(before, after, bodies, options).new_penetration(tolerances(bodies, options));
 }

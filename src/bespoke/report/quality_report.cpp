@@ -16,12 +16,15 @@ Json to_json(const Spread& spread) {
 Json to_json(const Penetration& penetration) {
   return {{"vertices", penetration.vertices},
           {"area_share", penetration.area_share},
+          {"line_share", penetration.line_share},
           {"deepest", penetration.deepest}};
 }
 
 Json to_json(const ProductQuality& product) {
   return {{"vertices", product.vertices},
           {"faces", product.faces},
+          {"lines", product.lines},
+          {"line_length_ratio", to_json(product.line_lengths)},
           {"edge_length_ratio", to_json(product.distortion.edge_length)},
           {"angle_change_degrees", bespoke::to_json(product.distortion.angle)},
           {"left_out_edges", product.distortion.left_out_edges},
@@ -40,9 +43,11 @@ Json to_json(const ProductQuality& product) {
 
 std::string figure(double value) { return format_number(value, 4); }
 
-std::string penetration_text(const Penetration& penetration) {
-  return std::to_string(penetration.vertices) + " vertices, " + figure(100 * penetration.area_share) +
-         " % of the area, deepest " + figure(penetration.deepest);
+std::string penetration_text(const Penetration& penetration, const ProductQuality& product) {
+  std::string text = std::to_string(penetration.vertices) + " vertices, ";
+  if (product.faces > 0) text += figure(100 * penetration.area_share) + " % of the area, ";
+  if (product.lines > 0) text += figure(100 * penetration.line_share) + " % of the lines, ";
+  return text + "deepest " + figure(penetration.deepest);
 }
 
 /// What an engineer needs first: how near the surfaces are, and whether anything folds.
@@ -63,9 +68,14 @@ std::string headlines(const MappingQuality& quality, const std::string& unit) {
 std::string product_text(const std::string& name, const ProductQuality& product) {
   const Statistics& change = product.clearance_change;
   std::string text = name + ": " + std::to_string(product.vertices) + " vertices, " +
-                     std::to_string(product.faces) + " triangles\n";
-  text += "  edge lengths after/before: " + to_string(product.distortion.edge_length) + "\n";
-  text += "  angles change by degrees:  " + to_string(product.distortion.angle) + "\n";
+                     std::to_string(product.faces) + " triangles";
+  if (product.lines > 0) text += ", " + std::to_string(product.lines) + " line edges";
+  text += "\n";
+  if (product.faces > 0) {
+    text += "  edge lengths after/before: " + to_string(product.distortion.edge_length) + "\n";
+    text += "  angles change by degrees:  " + to_string(product.distortion.angle) + "\n";
+  }
+  if (product.lines > 0) text += "  line lengths after/before: " + to_string(product.line_lengths) + "\n";
   text += "  clearance before:          " + to_string(product.clearance_before) + "\n";
   text += "  clearance after:           " + to_string(product.clearance_after) + "\n";
   text += "  clearance kept within " + figure(change.median) + " for 50 %, " + figure(change.p95) +
@@ -73,13 +83,14 @@ std::string product_text(const std::string& name, const ProductQuality& product)
           " vertices, " + figure(change.max) + " for all";
   if (product.unsided_vertices > 0)
     text += " (" + std::to_string(product.unsided_vertices) + " lie beyond the body's boundary)";
-  text += "\n  inside the body before:    " + penetration_text(product.penetration_before) + "\n";
-  text += "  inside the body after:     " + penetration_text(product.penetration_after) + "\n";
+  text += "\n  inside the body before:    " + penetration_text(product.penetration_before, product) + "\n";
+  text += "  inside the body after:     " + penetration_text(product.penetration_after, product) + "\n";
   if (product.new_penetration.share > 0)
     text += "  newly inside:              " + figure(100 * product.new_penetration.share) + " %, deepest " +
             figure(product.new_penetration.deepest) + "\n";
-  text += "  self-intersecting pairs of faces: " + std::to_string(product.self_intersections_before) +
-          " before, " + std::to_string(product.self_intersections_after) + " after\n";
+  if (product.faces > 0)
+    text += "  self-intersecting pairs of faces: " + std::to_string(product.self_intersections_before) +
+            " before, " + std::to_string(product.self_intersections_after) + " after\n";
   return text;
 }
 
@@ -114,6 +125,8 @@ std::string quality_json(const MappingQuality& quality, const std::vector<std::s
   for (std::size_t i = 0; i < names.size(); ++i) {
     Json product = {{"name", names[i]}};
     product.update(to_json(quality.products[i]));
+    if (const NewPenetration& found = quality.products[i].new_penetration; found.is_notable())
+      product["warnings"] = {to_string(found)};
     products.push_back(std::move(product));
   }
   const Json json = {{"unit", unit},

@@ -50,6 +50,7 @@ class Map:
         target: tuple[_Points, _Faces, str],
         target_cloud: PointCloud | None,
         products: list[str],
+        unit: str,
         progress: _Progress,
     ) -> str: ...
     def info(self) -> str: ...

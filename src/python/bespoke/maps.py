@@ -73,6 +73,8 @@ class Map:
         unit: str = "",
         clearance: Length = "off",
         layers: Sequence[str | os.PathLike[str]] = (),
+        source: Mesh | None = None,
+        target: Mesh | None = None,
         progress: Progress | None = None,
     ) -> ApplySummary:
         """Carries a product's file: positions and directions move, everything else is copied through.
@@ -84,7 +86,8 @@ class Map:
         `clearance` ("keep", a length, or "off") keeps the product clear of the target at t = 1, as `bespoke apply
         --clearance` does, and clear of the products in `layers`, which lie below it, from the inside to the outside;
         what was found is in the summary's `json["products"][0]["clearance"]`.
-        With several times, `output` names as many files, and they cost one look-up. All files are written or none.
+        With both models that the map was made of, products that penetrate the target at the last time, if that is
+        1, are warned of. With several times, `output` names as many files, and they cost one look-up. All files are written or none.
         """
         times = [float(t)] if isinstance(t, (int, float)) else [float(time) for time in t]
         outputs = [output] if isinstance(output, (str, os.PathLike)) else list(output)
@@ -107,12 +110,16 @@ class Map:
             )
         )
         found = report["products"][0]
+        warnings = list(found.get("warnings", ()))
+        if source is not None and target is not None and times[-1] == 1:
+            measured = self.measure(source, target, [product], unit=unit, progress=progress)
+            warnings += [warning for each in measured.json["products"] for warning in each.get("warnings", ())]
         return ApplySummary(
             points=found["points"],
             in_band=found["in_band"],
             affine_only=found["affine_only"],
             seconds=report["seconds"],
-            warnings=tuple(found.get("warnings", ())),
+            warnings=tuple(warnings),
             json=report,
         )
 
@@ -149,9 +156,10 @@ class Map:
         target: Mesh,
         products: Sequence[str | os.PathLike[str]] = (),
         *,
+        unit: str = "",
         progress: Progress | None = None,
     ) -> Quality:
-        """Numbers for how good the map is, and for what it does to products (files).
+        """Numbers for how good the map is, and for what it does to products (files, `unit` as for `apply`).
 
         Raises InvalidInput for models that the map was not made of.
         """
@@ -162,6 +170,7 @@ class Map:
                     (*_arrays(target, "target"), target.unit),
                     target.cloud,
                     [os.fspath(product) for product in products],
+                    unit,
                     progress,
                 )
             )

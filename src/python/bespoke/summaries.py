@@ -170,7 +170,7 @@ class ApplySummary:
     in_band: int  #: points that the elastic part moved
     affine_only: int
     seconds: float
-    warnings: tuple[str, ...]  #: what the file holds that was left as it is
+    warnings: tuple[str, ...]  #: what the file holds that was left as it is; of a product inside the target
     json: Mapping[str, Any]  #: all of `bespoke apply --report`
 
 
@@ -185,6 +185,7 @@ class Quality:
     hausdorff: float
     min_determinant: float  #: of the Jacobian at the samples
     flipped_faces: int  #: of the source
+    warnings: tuple[str, ...]  #: of products that lie inside the target, though not inside the source before
     json: Mapping[str, Any]  #: all of `bespoke measure --json`, products too
 
     @classmethod
@@ -197,5 +198,10 @@ class Quality:
             hausdorff=found["hausdorff"],
             min_determinant=found["distortion"]["min_determinant"],
             flipped_faces=found["flipped_faces"],
+            warnings=tuple(
+                f"{product['name']}: {warning}"
+                for product in found["products"]
+                for warning in product.get("warnings", ())
+            ),
             json=found,
         )

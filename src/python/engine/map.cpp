@@ -178,7 +178,8 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
 
 std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
                     const std::optional<PointCloudSummary>& target_cloud,
-                    const std::vector<fs::path>& products, const py::object& callback) {
+                    const std::vector<fs::path>& products, const std::string& unit,
+                    const py::object& callback) {
   const auto model = [&](const py::tuple& arrays, const std::string& role) {
     TriangleMesh mesh = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
     require_valid(mesh, role);
@@ -199,9 +200,12 @@ std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& 
     std::vector<std::string> names;
     for (const fs::path& path : products) {
       const Product product = read_product(path);
-      named.push_back(
-          {path.string(), {scale_to_unit(path, record.unit) * product.vertices, triangulated(product)}});
-      require_unit_of_map(path.string(), named.back().mesh.vertices, map.certified_map(), record.source.box);
+      named.push_back({path.string(),
+                       {product_scale(path, record.unit, unit) * product.vertices, triangulated(product)},
+                       product.line_edges});
+      if (unit.empty())
+        require_unit_of_map(path.string(), named.back().mesh.vertices, map.certified_map(),
+                            record.source.box);
       names.push_back(path.filename().string());
     }
     const MappingQuality quality = mapping_quality(
@@ -227,7 +231,7 @@ void add_map(py::module_& engine) {
            py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("unit"),
            py::arg("clearance"), py::arg("layers"), py::arg("progress"))
       .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
-           py::arg("products"), py::arg("progress"))
+           py::arg("products"), py::arg("unit"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });
 }
 

@@ -123,6 +123,7 @@ class ObjCarrier {
     if (content_.has_free_form)
       summary.warnings.emplace_back("free-form statements (vp, curv, surf) were left as they are");
     if (content_.degenerate.count > 0) summary.warnings.push_back(to_string(content_.degenerate));
+    summary.degenerate = content_.degenerate;
     if (content_.unused_normals > 0)
       summary.warnings.push_back(std::to_string(content_.unused_normals) +
                                  " normals that no face uses were left as they are");

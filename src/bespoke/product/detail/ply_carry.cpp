@@ -117,9 +117,9 @@ CarrySummary carry_ply(const InputFile& file, std::vector<OutputFile>& outputs, 
   if (header.encoding == PlyHeader::Encoding::ascii) {
     summary = carry_text(file, outputs, PlyText(file.path(), header), motion, progress);
   } else {
-    const DegenerateFaces degenerate =
+    summary.degenerate =
         carry_binary(file, outputs, header, motion, progress).degenerate(file.path());
-    if (degenerate.count > 0) summary.warnings.push_back(to_string(degenerate));
+    if (summary.degenerate.count > 0) summary.warnings.push_back(to_string(summary.degenerate));
     summary.points = static_cast<std::size_t>(header.elements[header.vertex].count);
     summary.directions = header.normal ? summary.points : 0;
   }

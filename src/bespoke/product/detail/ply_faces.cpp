@@ -6,6 +6,7 @@
 #include "bespoke/product/detail/face_formats.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/ply_binary.h"
+#include "bespoke/product/detail/ply_records.h"
 #include "bespoke/product/detail/ply_text.h"
 
 namespace bespoke {
@@ -69,6 +70,26 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
   return gathered;
 }
 
+/// The ends of the file's lines, by twos.
+std::vector<int> line_edges(const InputFile& file, const PlyHeader& header) {
+  std::vector<int> ends;
+  const std::optional<PlyEdges> edges = ply_edges(header);
+  if (!edges) return ends;
+  const std::string text = file.content();
+  const PlyRecords records(file, text, header);
+  for (std::size_t i = 0; i < header.elements[edges->element].count; ++i) {
+    const PlyValues record = records.values(edges->element, i);
+    for (const std::size_t end : edges->ends) {
+      const double vertex = record[end][0].value;
+      const std::string fault = ply_index_fault(vertex, header.elements[header.vertex].count);
+      if (!fault.empty())
+        throw FormatError(file.path().string() + ": edge " + std::to_string(i) + ": " + fault);
+      ends.push_back(static_cast<int>(vertex));
+    }
+  }
+  return ends;
+}
+
 }  // namespace
 
 Product read_ply_faces(const InputFile& file) {
@@ -80,7 +101,9 @@ Product read_ply_faces(const InputFile& file) {
           ? gather_text(file, PlyText(file.path(), header),
                         shows_directions(header) ? GatheredNormals::of_points : GatheredNormals::none)
           : gather_binary_ply(file, header);
-  return gathered.product(header.normal.has_value());
+  Product product = gathered.product(header.normal.has_value());
+  product.line_edges = line_edges(file, header);
+  return product;
 }
 
 }  // namespace bespoke

@@ -139,6 +139,23 @@ std::string ply_index_fault(double index, std::uint64_t vertices) {
          std::to_string(vertices - 1);
 }
 
+std::optional<PlyEdges> ply_edges(const PlyHeader& header) {
+  for (std::size_t e = 0; e < header.elements.size(); ++e) {
+    const PlyElement& element = header.elements[e];
+    if (element.name != "edge" || element.count == 0) continue;
+    PlyEdges edges{e, {}};
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < element.properties.size(); ++i)
+      for (std::size_t k = 0; k < edges.ends.size(); ++k)
+        if (element.properties[i].name == (k == 0 ? "vertex1" : "vertex2") && !element.properties[i].count) {
+          edges.ends[k] = i;
+          ++found;
+        }
+    if (found == edges.ends.size()) return edges;
+  }
+  return std::nullopt;
+}
+
 bool is_face_list(const PlyElement& element, const PlyProperty& property) {
   return property.count && element.name == "face" &&
          (property.name == "vertex_indices" || property.name == "vertex_index");

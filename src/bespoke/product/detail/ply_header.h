@@ -55,4 +55,13 @@ std::string ply_index_fault(double index, std::uint64_t vertices);
 /// Whether the property is the list of a face's vertices.
 bool is_face_list(const PlyElement& element, const PlyProperty& property);
 
+/// The lines of a file: the element "edge" and its properties vertex1 and vertex2.
+struct PlyEdges {
+  std::size_t element = 0;
+  std::array<std::size_t, 2> ends{};
+};
+
+/// None where there are no such.
+std::optional<PlyEdges> ply_edges(const PlyHeader& header);
+
 }  // namespace bespoke

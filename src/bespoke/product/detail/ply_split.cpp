@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,7 +49,12 @@ class PlySplitter {
         splits_(splits),
         face_(face_element(header)),
         faces_(splits, face_ < header.elements.size() ? header.elements[face_].count : 0, file.path()),
+        edges_(ply_edges(header)),
         records_(file, text, header) {
+    for (std::size_t i = 0; i < splits.vertices.size(); ++i)
+      middles_.emplace(std::minmax(splits.vertices[i].first, splits.vertices[i].second),
+                       static_cast<int>(header.elements[header.vertex].count + i));
+    if (face_ == header.elements.size()) return;
     const std::vector<PlyProperty>& properties = header.elements[face_].properties;
     for (std::size_t i = 0; i < properties.size(); ++i) {
       if (is_face_list(header.elements[face_], properties[i])) indices_ = i;
@@ -64,6 +70,10 @@ class PlySplitter {
         append_faces(body);
         continue;
       }
+      if (edges_ && i == edges_->element) {
+        append_edges(body);
+        continue;
+      }
       body += records_.text(i, 0, header_.elements[i].count);
       if (i == header_.vertex) append_vertices(body);
     }
@@ -72,6 +82,8 @@ class PlySplitter {
 
   std::size_t vertices() const { return header_.elements[header_.vertex].count + splits_.vertices.size(); }
   std::size_t faces() const { return faces_.count(); }
+  /// Lines, once the body is there; none where the file has none.
+  std::optional<std::size_t> edges() const { return edges_ ? std::optional(edge_count_) : std::nullopt; }
 
  private:
   static std::size_t face_element(const PlyHeader& header) {
@@ -118,6 +130,34 @@ class PlySplitter {
     body += records_.text(face_, written, polygons);
   }
 
+  /// A line that is split becomes several, each with the rest of its record.
+  void append_edges(std::string& body) {
+    for (std::size_t i = 0; i < header_.elements[edges_->element].count; ++i) {
+      PlyValues record = records_.values(edges_->element, i);
+      const auto end = [&](std::size_t k) { return static_cast<int>(record[edges_->ends[k]][0].value); };
+      std::vector<int> places{end(0)};
+      append_places(end(0), end(1), places);
+      edge_count_ += places.size() - 1;
+      if (places.size() == 2) {
+        body += records_.text(edges_->element, i, i + 1);
+        continue;
+      }
+      for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+        record[edges_->ends[0]][0] = {double(places[k]), 0, {}};
+        record[edges_->ends[1]][0] = {double(places[k + 1]), 0, {}};
+        records_.append(body, edges_->element, record);
+      }
+    }
+  }
+
+  /// What lies between two vertices in their order, and the second.
+  void append_places(int a, int b, std::vector<int>& places) const {
+    const auto found = middles_.find(std::minmax(a, b));
+    if (found == middles_.end()) return places.push_back(b);
+    append_places(a, found->second, places);
+    append_places(found->second, b, places);
+  }
+
   void append_parts(std::string& body, std::size_t polygon) const {
     const PlyValues face = records_.values(face_, polygon);
     const auto middle = [&](const Corner& a, const Corner& b, int vertex) {
@@ -158,6 +198,9 @@ class PlySplitter {
   const FaceSplits& splits_;
   std::size_t face_;  // the element
   FaceParts faces_;
+  std::optional<PlyEdges> edges_;
+  std::map<std::pair<int, int>, int> middles_;  // of edges, by their ends
+  std::size_t edge_count_ = 0;
   PlyRecords records_;
   std::size_t indices_ = 0;             // its property
   std::optional<std::size_t> texture_;  // likewise
@@ -165,7 +208,7 @@ class PlySplitter {
 
 /// The header with other numbers of elements.
 std::string with_counts(std::string_view head,
-                        const std::array<std::pair<std::string, std::size_t>, 2>& counts) {
+                        const std::array<std::pair<std::string, std::size_t>, 3>& counts) {
   TextBlock block;
   block.bytes = head;
   const std::filesystem::path read_before;
@@ -189,7 +232,9 @@ void split_ply(const InputFile& file, const FaceSplits& splits, OutputFile& outp
   PlySplitter splitter(file, header, text, splits);
   const std::string body = splitter.body();
   output.write(with_counts(std::string_view(text).substr(0, header.size),
-                           {{{"vertex", splitter.vertices()}, {"face", splitter.faces()}}}));
+                           {{{"vertex", splitter.vertices()},
+                             {"face", splitter.faces()},
+                             {splitter.edges() ? "edge" : "", splitter.edges().value_or(0)}}}));
   output.write(body);
 }
 

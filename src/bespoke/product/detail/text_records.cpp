@@ -143,8 +143,8 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
   CarrySummary summary;
   summary.points = all.points;
   summary.directions = all.normals;
-  if (const DegenerateFaces degenerate = all.faults.degenerate(file.path()); degenerate.count > 0)
-    summary.warnings.push_back(to_string(degenerate));
+  summary.degenerate = all.faults.degenerate(file.path());
+  if (summary.degenerate.count > 0) summary.warnings.push_back(to_string(summary.degenerate));
   return summary;
 }
 

@@ -1,0 +1,35 @@
+#include "bespoke/anchors/stretching_anchors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/rigid/similarity_alignment.h"
+
+namespace bespoke {
+
+std::vector<double> sigmas_within_stretch(const Anchors& anchors, std::size_t count, double max_stretch) {
+  constexpr std::size_t min_pairs = 4;  // fewer tell no size
+  // Of the targets' diagonal: two places, each accurate to anchor_resolution in every coordinate.
+  constexpr double explained = std::numbers::sqrt2 * std::numbers::sqrt3 * 1e-3;
+  std::vector<double> sigmas(count, 0);
+  const Points sources = source_points(anchors), targets = target_points(anchors);
+  if (anchors.pairs.size() < min_pairs || !(diagonal(sources) > 0) || !(diagonal(targets) > 0)) return sigmas;
+  const double size = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols())).scale;
+  const double noise = explained * diagonal(targets);
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t j = i + 1; j < count && is_exact(anchors.pairs[i]); ++j) {
+      if (!is_exact(anchors.pairs[j])) continue;
+      const double apart = size * (anchors.pairs[j].a - anchors.pairs[i].a).norm();
+      const double on_target = (anchors.pairs[j].b - anchors.pairs[i].b).norm();
+      const double difference = std::abs(on_target - apart);
+      const bool stretches = std::max(apart, on_target) > max_stretch * std::min(apart, on_target);
+      if (!(difference > noise && stretches)) continue;
+      sigmas[i] = std::max(sigmas[i], difference / 2);
+      sigmas[j] = std::max(sigmas[j], difference / 2);
+    }
+  return sigmas;
+}
+
+}  // namespace bespoke
