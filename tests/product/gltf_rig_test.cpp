@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/posed_product.h"
 #include "product/rig_scene.h"
 
 namespace bespoke {
@@ -31,6 +32,11 @@ class CarryRig : public test::ProductFiles {
     return a.cols() == b.cols() ? (a - b).colwise().norm().maxCoeff() : 1e9;
   }
 };
+
+Points points_of(const std::vector<float>& values) {
+  return Eigen::Map<const Eigen::Matrix3Xf>(values.data(), 3, static_cast<Eigen::Index>(values.size() / 3))
+      .cast<double>();
+}
 
 /// x ↦ s R x + t.
 PointMotion similarity(double scale) {
@@ -234,6 +240,22 @@ TEST_F(CarryRig, CarriesTheStoredPoseOnRequest) {
       1.5 * bound);
   EXPECT_LT(difference(shown(test::read_text(directory_ / "b.glb")), motion.images(shown(posed)).front()),
             1.5 * bound);
+}
+
+TEST_F(CarryRig, ReadsEitherPoseOfAModel) {
+  RigScene rig;
+  rig.scene.root["animations"][0]["channels"].erase(1);
+  const std::string straight = file("straight.glb", rig.glb()), posed = file("posed.glb", posed_rig(rig));
+  EXPECT_FALSE(has_two_poses(straight));
+  EXPECT_TRUE(has_two_poses(posed));
+  // Its node, in the scene's root, places the sleeve as it is stored.
+  const Points stored =
+      read_product(posed, ModelPose::stored).vertices.rightCols(RigScene::rings * RigScene::corners);
+  const Points x = points_of(GlbContent(rig.glb()).floats(static_cast<std::size_t>(rig.positions)));
+  EXPECT_LT(difference(stored.rowwise().minCoeff(), x.rowwise().minCoeff()), bound);
+  EXPECT_LT(difference(stored.rowwise().maxCoeff(), x.rowwise().maxCoeff()), bound);
+  EXPECT_EQ(read_product(straight, ModelPose::stored).vertices, read_product(straight).vertices);
+  EXPECT_EQ(read_product(posed, ModelPose::shown).vertices, read_product(posed).vertices);
 }
 
 TEST_F(CarryRig, RefusesStoredPosesThatContradictEachOther) {

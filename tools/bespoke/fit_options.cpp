@@ -41,6 +41,10 @@ void add_input_options(CLI::App& fit, FitArguments& arguments) {
       fit, "--pose", arguments.pose, model_poses,
       "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
       "viewers have it, or stored, as in the file (default: shown)");
+  add_name_option(
+      fit, "--pose", arguments.pose, model_poses,
+      "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
+      "viewers have it, or stored, as in the file (default: shown)");
   fit.add_option("--anchors", arguments.anchors,
                  "Anchors (landmarks): pairs of corresponding points in one file: .json (also curves and "
                  "patches), .csv, or .txt of vertex numbers; .pp, .fcsv, .mrk.json, .pts and .wrap.json have "
