@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
@@ -77,6 +78,58 @@ void require_same_faces(const Garment& garment, const Garment& source) {
                        "; --source is the product before the map carried it");
 }
 
+/// Flattened, and while pieces are not relieved and darts are left, cut by one and flattened again.
+Attempt with_darts(const Garment& garment, const Garment* source, const PatternOptions& options, int& darts) {
+  CutOptions cut = options.cut;
+  Attempt result = attempt(garment, source, options, cut);
+  for (darts = 0; darts < options.max_darts; ++darts) {
+    const std::optional<std::size_t> worst = worst_piece(result, options.strain_limit);
+    if (!worst) break;
+    const Piece& piece = result.cut.pieces[*worst];
+    const std::vector<int> path = dart_path(piece, result.strains[*worst].of_face);
+    if (path.empty()) break;
+    for (std::size_t k = 0; k + 1 < path.size(); ++k)
+      cut.further_edges.push_back({piece.vertices[static_cast<std::size_t>(path[k])],
+                                   piece.vertices[static_cast<std::size_t>(path[k + 1])]});
+    result = attempt(garment, source, options, cut);
+  }
+  return result;
+}
+
+/// The source's pieces, flattened alike.
+struct FlatSource {
+  const Garment& garment;
+  std::vector<Piece> pieces;
+  FlatPieces flat;
+};
+
+/// Sets what comes from the source, if there is one; returns the grain.
+Eigen::Vector2d grain_of(const Garment& garment, const std::optional<FlatSource>& source,
+                         const Eigen::Matrix2Xd& flat, std::size_t p, PatternPiece& piece) {
+  if (!source) return own_grain(piece.piece, flat, garment);
+  const Eigen::Matrix2Xd& before = source->flat.places[p];
+  piece.source_strain = cloth_strain(source->pieces[p], before);
+  return carried_grain(source->pieces[p], before, own_grain(source->pieces[p], before, source->garment),
+                       flat);
+}
+
+std::optional<SuggestedDart> suggested_dart(const Piece& piece, const ClothStrain& strain) {
+  const std::vector<int> path = dart_path(piece, strain.of_face);
+  if (path.empty()) return {};
+  return SuggestedDart{piece.vertices[static_cast<std::size_t>(path.front())],
+                       piece.vertices[static_cast<std::size_t>(path.back())]};
+}
+
+PatternSeam measured_seam(Seam seam, const std::vector<PatternPiece>& pieces, double tolerance) {
+  PatternSeam measured;
+  for (std::size_t side = 0; side < 2; ++side)
+    measured.lengths[side] =
+        side_length(seam.sides[side], pieces[static_cast<std::size_t>(seam.sides[side].piece)].flat);
+  measured.differs = std::abs(measured.lengths[0] - measured.lengths[1]) > tolerance;
+  measured.seam = std::move(seam);
+  return measured;
+}
+
 std::string percent(double fraction) { return format_number(100 * fraction, 3) + " %"; }
 
 std::string seam_text(const FlatPattern& pattern, const PatternSeam& seam) {
@@ -93,63 +146,30 @@ std::string seam_text(const FlatPattern& pattern, const PatternSeam& seam) {
 FlatPattern flat_pattern(const Garment& garment, const Garment* source, const PatternOptions& options) {
   if (source) require_same_faces(garment, *source);
   FlatPattern pattern;
-  CutOptions cut = options.cut;
-  Attempt result = attempt(garment, source, options, cut);
-  std::vector<std::array<int, 2>> darts;
-  for (; pattern.darts < options.max_darts; ++pattern.darts) {
-    const std::optional<std::size_t> worst = worst_piece(result, options.strain_limit);
-    if (!worst) break;
-    const Piece& piece = result.cut.pieces[*worst];
-    const std::vector<int> path = dart_path(piece, result.strains[*worst].of_face);
-    if (path.empty()) break;
-    for (std::size_t k = 0; k + 1 < path.size(); ++k)
-      cut.further_edges.push_back({piece.vertices[static_cast<std::size_t>(path[k])],
-                                   piece.vertices[static_cast<std::size_t>(path[k + 1])]});
-    result = attempt(garment, source, options, cut);
-  }
+  Attempt result = with_darts(garment, source, options, pattern.darts);
   pattern.charts = result.cut.charts;
   pattern.auto_cut = result.cut.auto_cut;
   pattern.summary = result.flat.summary;
-  std::vector<Piece> source_pieces;
-  FlatPieces source_flat;
+  std::optional<FlatSource> flat_source;
   if (source) {
-    source_pieces = pieces_at(result.cut.pieces, source->mesh.vertices);
-    source_flat = flatten_pieces(source_pieces, result.seams, options.flatten);
+    flat_source.emplace(FlatSource{*source, pieces_at(result.cut.pieces, source->mesh.vertices), {}});
+    flat_source->flat = flatten_pieces(flat_source->pieces, result.seams, options.flatten);
   }
   for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {
     PatternPiece piece;
-    const Eigen::Matrix2Xd& flat = result.flat.places[p];
-    Eigen::Vector2d grain;
-    if (source) {
-      const Eigen::Matrix2Xd& before = source_flat.places[p];
-      piece.source_strain = cloth_strain(source_pieces[p], before);
-      grain = carried_grain(source_pieces[p], before, own_grain(source_pieces[p], before, *source), flat);
-    } else {
-      grain = own_grain(result.cut.pieces[p], flat, garment);
-    }
+    piece.piece = std::move(result.cut.pieces[p]);
     piece.strain = result.strains[p];
     piece.overlap = result.overlaps[p];
+    const Eigen::Matrix2Xd& flat = result.flat.places[p];
+    const Eigen::Vector2d grain = grain_of(garment, flat_source, flat, p, piece);
     if (options.stretch_limits)
-      piece.excess = stretch_beyond(result.cut.pieces[p], flat, grain, *options.stretch_limits);
-    if (!result.is_relieved(p, options.strain_limit)) {
-      const std::vector<int> path = dart_path(result.cut.pieces[p], piece.strain.of_face);
-      if (!path.empty())
-        piece.dart = SuggestedDart{result.cut.pieces[p].vertices[static_cast<std::size_t>(path.front())],
-                                   result.cut.pieces[p].vertices[static_cast<std::size_t>(path.back())]};
-    }
+      piece.excess = stretch_beyond(piece.piece, flat, grain, *options.stretch_limits);
+    if (!result.is_relieved(p, options.strain_limit)) piece.dart = suggested_dart(piece.piece, piece.strain);
     piece.flat = upright(flat, grain);
-    piece.piece = std::move(result.cut.pieces[p]);
     pattern.pieces.push_back(std::move(piece));
   }
-  for (Seam& seam : result.seams) {
-    PatternSeam measured;
-    for (std::size_t side = 0; side < 2; ++side)
-      measured.lengths[side] = side_length(
-          seam.sides[side], pattern.pieces[static_cast<std::size_t>(seam.sides[side].piece)].flat);
-    measured.differs = std::abs(measured.lengths[0] - measured.lengths[1]) > options.flatten.seam_tolerance;
-    measured.seam = std::move(seam);
-    pattern.seams.push_back(std::move(measured));
-  }
+  for (Seam& seam : result.seams)
+    pattern.seams.push_back(measured_seam(std::move(seam), pattern.pieces, options.flatten.seam_tolerance));
   return pattern;
 }
 
