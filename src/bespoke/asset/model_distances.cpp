@@ -42,50 +42,83 @@ struct DistanceGrid::Data {
       if (const auto* number = std::get_if<double>(&found->second)) error = *number;
   }
 
-  float value(const LatticeCoordinates& node) const {
-    const int leaf = table.find(leaf_of(node));
-    if (leaf != no_leaf)
-      return values[static_cast<std::size_t>(leaf) * leaf_nodes +
-                    static_cast<std::size_t>(number_of_place(place_in_leaf(node)))];
-    return inside.find(leaf_of(node)) == no_leaf ? background : -background;
+  /// The nodes around a cell, two to each side along every axis.
+  using Stencil = std::array<float, 64>;
+  Stencil stencil(const LatticeCoordinates& cell) const {
+    // Along an axis they lie in two leaves at most, so eight are looked up, not 64.
+    std::array<std::array<int, 4>, 3> leaf_side{}, place{};
+    LeafCoordinates low{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = (cell[axis] - 1) >> 3;
+      for (int n = 0; n < 4; ++n) {
+        const int node = cell[axis] - 1 + n;
+        leaf_side[axis][static_cast<std::size_t>(n)] = (node >> 3) - low[axis];
+        place[axis][static_cast<std::size_t>(n)] = node & 7;
+      }
+    }
+    std::array<Leaf, 8> leaves;
+    for (int corner = 0; corner < 8; ++corner) {
+      const LatticeCoordinates step = corner_step(corner);
+      if (step[0] <= leaf_side[0][3] && step[1] <= leaf_side[1][3] && step[2] <= leaf_side[2][3])
+        leaves[static_cast<std::size_t>(corner)] = leaf(moved(low, step));
+    }
+    Stencil nodes;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j)
+        for (std::size_t k = 0; k < 4; ++k) {
+          const Leaf& in =
+              leaves[static_cast<std::size_t>(4 * leaf_side[0][i] + 2 * leaf_side[1][j] + leaf_side[2][k])];
+          nodes[16 * i + 4 * j + k] =
+              in.values ? in.values[number_of_place({place[0][i], place[1][j], place[2][k]})] : in.constant;
+        }
+    return nodes;
   }
 
-  double trilinear(const LatticeCoordinates& cell, const Vector3& f) const {
-    double sum = 0;
+  struct Leaf {
+    const float* values = nullptr;  // null: the constant everywhere
+    float constant = 0;
+  };
+  Leaf leaf(const LeafCoordinates& at) const {
+    const int stored = table.find(at);
+    if (stored != no_leaf) return {values.data() + static_cast<std::size_t>(stored) * leaf_nodes, 0};
+    return {nullptr, inside.find(at) == no_leaf ? background : -background};
+  }
+
+  /// Both interpolations of a distance.
+  struct Interpolated {
+    double trilinear = 0, cubic = 0;
+  };
+  Interpolated at(const Vector3& x) const {
+    const Vector3 place = (x - lattice.origin) / lattice.voxel_size;
+    if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return {background, background};
+    const LatticeCoordinates cell = lattice.cell_of(x);
+    const Vector3 f = place - as_vector(cell);
+    const Stencil nodes = stencil(cell);
+    Interpolated found;
+    const std::array<std::array<double, 4>, 3> w = {cubic_weights(f[0]), cubic_weights(f[1]),
+                                                    cubic_weights(f[2])};
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) {
+        double row = 0;
+        for (std::size_t k = 0; k < 4; ++k) row += w[2][k] * static_cast<double>(nodes[16 * i + 4 * j + k]);
+        found.cubic += w[0][i] * w[1][j] * row;
+      }
     for (int corner = 0; corner < 8; ++corner) {
       const LatticeCoordinates step = corner_step(corner);
       double weight = 1;
       for (int axis = 0; axis < 3; ++axis)
         weight *= step[static_cast<std::size_t>(axis)] ? f[axis] : 1 - f[axis];
-      sum += weight * value(moved(cell, step));
+      found.trilinear +=
+          weight * static_cast<double>(
+                       nodes[static_cast<std::size_t>(16 * (step[0] + 1) + 4 * (step[1] + 1) + step[2] + 1)]);
     }
-    return sum;
+    return found;
   }
 
-  double cubic(const LatticeCoordinates& cell, const Vector3& f) const {
-    const std::array<std::array<double, 4>, 3> w = {cubic_weights(f[0]), cubic_weights(f[1]),
-                                                    cubic_weights(f[2])};
-    double sum = 0;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) {
-        double row = 0;
-        for (int k = 0; k < 4; ++k)
-          row += w[2][static_cast<std::size_t>(k)] * value(moved(cell, {i - 1, j - 1, k - 1}));
-        sum += w[0][static_cast<std::size_t>(i)] * w[1][static_cast<std::size_t>(j)] * row;
-      }
-    return sum;
-  }
-
-  double at(const Vector3& x) const {
-    const Vector3 place = (x - lattice.origin) / lattice.voxel_size;
-    if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return background;
-    const LatticeCoordinates cell = lattice.cell_of(x);
-    const Vector3 f = place - as_vector(cell);
-    const double coarse = trilinear(cell, f);
-    const double voxels = std::abs(coarse) / lattice.voxel_size;
-    if (voxels >= all_trilinear) return coarse;
-    const double share = std::clamp((all_trilinear - voxels) / (all_trilinear - all_cubic), 0.0, 1.0);
-    return share * cubic(cell, f) + (1 - share) * coarse;
+  /// How much of the cubic one counts.
+  double cubic_share(const Interpolated& found) const {
+    const double voxels = std::abs(found.trilinear) / lattice.voxel_size;
+    return std::clamp((all_trilinear - voxels) / (all_trilinear - all_cubic), 0.0, 1.0);
   }
 
   Lattice lattice;
@@ -104,9 +137,24 @@ double DistanceGrid::error() const { return data_->error; }
 std::vector<double> DistanceGrid::operator()(const Points& x) const {
   std::vector<double> distances(static_cast<std::size_t>(x.cols()));
   parallel_for(distances.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) distances[i] = data_->at(x.col(static_cast<Eigen::Index>(i)));
+    for (std::size_t i = begin; i < end; ++i) {
+      const Data::Interpolated found = data_->at(x.col(static_cast<Eigen::Index>(i)));
+      const double share = data_->cubic_share(found);
+      distances[i] = share * found.cubic + (1 - share) * found.trilinear;
+    }
   });
   return distances;
+}
+
+std::vector<double> DistanceGrid::uncertainty(const Points& x) const {
+  std::vector<double> amounts(static_cast<std::size_t>(x.cols()));
+  parallel_for(amounts.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Data::Interpolated found = data_->at(x.col(static_cast<Eigen::Index>(i)));
+      amounts[i] = std::abs(found.cubic - found.trilinear);
+    }
+  });
+  return amounts;
 }
 
 /// Makes look-ups of stored grids.

@@ -10,7 +10,7 @@ namespace bespoke {
 
 /// Signed distance of a model in a narrow band, as the file holds it: a look-up. Between nodes by cubic
 /// convolution (Keys 1981) near the surface, where trilinear values are off by h²/8 times the curvature,
-/// trilinear towards the rim of the band. Beyond the band it is ± band(). Queries are thread-safe.
+/// trilinear towards the edge of the band. Beyond the band it is ± band(). Queries are thread-safe.
 class DistanceGrid {
  public:
   double band() const;        ///< largest amount that is stored, mesh units
@@ -20,6 +20,10 @@ class DistanceGrid {
 
   /// At the columns of x (3×n, mesh units, the model's own frame), positive outside. Parallel inside.
   std::vector<double> operator()(const Points& x) const;
+
+  /// How far the two interpolations differ there, ≥ 0: what the value may be off by. Large where the model
+  /// has features as small as a voxel. Parallel inside.
+  std::vector<double> uncertainty(const Points& x) const;
 
  private:
   friend class StoredDistances;
