@@ -61,7 +61,7 @@ def every_page_has_contents_and_search(site, pages):
     lacking = [path for path, text in texts.items() if "sidebar-tree" not in text or 'action="' not in text]
     index = (site / "searchindex.js").read_text()
     unknown = [word for word in ("contact", "troubleshooting", "landmark") if word[:6] not in index]
-    scores = "reference/" in (site / "_static" / "searchtools.js").read_text()  # prose first
+    scores = "reference/" in (site / "_static" / "language_data.js").read_text()  # prose first
     return [str(path.relative_to(site)) for path in lacking] + unknown + ["search_scores.js"] * (not scores)
 
 
