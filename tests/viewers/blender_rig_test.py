@@ -32,6 +32,7 @@ def in_gltf(x):
 def load(name):
     bpy.ops.import_scene.gltf(filepath=str(DIRECTORY / name))
     armature = next(thing for thing in bpy.data.objects if thing.type == "ARMATURE")
+    bpy.context.scene.frame_set(0)  # where the animation begins at rest
     armature.animation_data_clear()
     for bone in armature.pose.bones:
         bone.rotation_mode = "QUATERNION"
