@@ -115,7 +115,7 @@ TEST(FitFiniteElements, DistortionIsAwayFromTheSurface) {
 
 TEST(FitFiniteElements, NoLevelIsAddedBeyondTheNodesAllowed) {
   const TriangleMesh sphere = shapes::icosphere(4);
-  FiniteElementOptions options = options_for(0.3);
+  FiniteElementOptions options = options_for(1);
   options.fit_tolerance /= 10;
   const auto nodes = [&] {
     const FiniteElementSummary summary =

@@ -30,8 +30,9 @@ namespace {
 using test::degree;
 using testing::HasSubstr;
 
-FitOptions options_of(const TriangleMesh& source) {
+FitOptions options_of(const TriangleMesh& source, ElasticMethod method = ElasticMethod::diffeomorphic) {
   FitOptions options = default_options(diagonal(source.vertices)).fit;
+  options.elastic = method;
   options.fit_tolerance *= 10;
   return options;
 }
@@ -65,6 +66,15 @@ TEST(ElasticSteps, MeetTheFittedSourceWhereALimbTurns) {
     EXPECT_LT((linear * linear.transpose() - scale * scale * Matrix3::Identity()).norm(), 1e-9)
         << "the affine part of a step is a similarity";
   }
+}
+
+TEST(ElasticSteps, OfFiniteElementsMeetItWithinWhatIsListed) {
+  const TriangleMesh source = test::tube();
+  const FitOptions options = options_of(source, ElasticMethod::finite_elements);
+  const FittedMapping fit = fit_bent(source, 150 * degree, options);
+  EXPECT_GE(fit.elastic->steps().size(), 3u);
+  EXPECT_LE(fit.summary.elastic.vertex_residuals.p99,
+            elastic_method(options.elastic).met_within * options.fit_tolerance);
 }
 
 /// A box about a centre.

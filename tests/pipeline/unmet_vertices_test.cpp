@@ -105,7 +105,7 @@ TEST(UnmetVertices, LeaveOutVerticesOfNoFace) {
 TEST(UnmetVertices, PrintOneLine) {
   const std::vector<UnmetVertex> unmet = {
       {3, 0.1, UnmetReason::folded}, {5, 0.2, UnmetReason::steep}, {8, 0.1, UnmetReason::folded}};
-  EXPECT_EQ(to_string(unmet), "3 vertices unmet: 2 fitted faces folded, 1 layer gradient limit");
+  EXPECT_EQ(to_string(unmet), "3 vertices unmet: 2 fitted faces folded, 1 too steep");
 }
 
 // A ball that is laid into its neighbour: with a gap the map is met elsewhere, and says where and why.

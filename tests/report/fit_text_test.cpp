@@ -53,6 +53,18 @@ TEST_F(FitText, SaysWhatAnEngineerAsks) {
   EXPECT_THAT(lines, Not(HasSubstr("MISSED")));
 }
 
+TEST_F(FitText, SaysThatTheFittedMapIsStoredAsItIs) {
+  made_.fit.summary.bake->error = summarize({0.0});
+  EXPECT_THAT(text(), HasSubstr("error        the stored map is the fitted one; "));
+}
+
+TEST_F(FitText, SaysHowMuchAMapThatIsProvedSqueezes) {
+  EXPECT_THAT(text(), Not(HasSubstr("volumes shrink")));
+  Certificate& certificate = made_.asset.steps.front().certificate;
+  certificate.min_determinant = certificate.affine_determinant / 400;
+  EXPECT_THAT(text(), HasSubstr("folds nowhere; where it is tightest volumes shrink 400 times"));
+}
+
 TEST_F(FitText, SaysFirstThatAMapIsNotProved) {
   Certificate& certificate = made_.asset.steps.front().certificate;
   certificate.folded = 202;

@@ -41,10 +41,6 @@ void add_input_options(CLI::App& fit, FitArguments& arguments) {
       fit, "--pose", arguments.pose, model_poses,
       "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
       "viewers have it, or stored, as in the file (default: shown)");
-  add_name_option(
-      fit, "--pose", arguments.pose, model_poses,
-      "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
-      "viewers have it, or stored, as in the file (default: shown)");
   fit.add_option("--anchors", arguments.anchors,
                  "Anchors (landmarks): pairs of corresponding points in one file: .json (also curves and "
                  "patches), .csv, or .txt of vertex numbers; .pp, .fcsv, .mrk.json, .pts and .wrap.json have "
@@ -105,20 +101,25 @@ void add_quality_options(CLI::App& fit, FitArguments& arguments) {
       fit, "--tolerance", arguments.tolerance,
       target_length("Largest difference between the stored and the exact map", default_tolerance));
   add_length_option(fit, "--lambda", arguments.lambda,
-                    source_length("Effective distance: the elastic part reaches as far from the source, and "
-                                  "1.4 times as far with guides",
+                    source_length("Effective distance: the elastic part reaches as far from the source "
+                                  "(1.4 times with --guides and --elastic diffeomorphic or multiscale)",
                                   default_lambda));
   fit.add_flag("--require-certified", arguments.require_certified,
                "Write nothing unless the map is proved to be one-to-one (a bijection of space)");
   fit.add_flag("--strict", arguments.strict,
-               "Meet the tolerance everywhere, or refuse where memory does not suffice; by default a map "
-               "keeps to 4.2 M voxels, and regions where it misses the tolerance are listed (implied by "
-               "--tolerance)");
-  add_length_option(
-      fit, "--fit-tolerance", arguments.fit_tolerance,
-      target_length("multiscale, diffeomorphic: refine where the registered source is missed by "
-                    "more",
-                    default_fit_tolerance));
+               "Meet every vertex to --fit-tolerance and the map to --tolerance, however much that squeezes "
+               "space, or refuse where memory does not suffice: --elastic diffeomorphic without a limit of "
+               "voxels. By default vertices give way where space would be squeezed more than --max-squeeze, "
+               "and are listed");
+  fit.add_option("--max-squeeze", arguments.max_squeeze,
+                 defaulted("finite-elements: largest factor by which a volume may shrink against the affine "
+                           "part, in each step of a map; vertices that need more are missed and listed",
+                           CLI::detail::to_string(default_options(1).fit.max_squeeze)))
+      ->check(CLI::Range(1.01, 1e9))
+      ->type_name("FACTOR");
+  add_length_option(fit, "--fit-tolerance", arguments.fit_tolerance,
+                    target_length("How far the map may miss the registered source before it is refined there",
+                                  default_fit_tolerance));
   add_length_option(fit, "--voxel-size", arguments.voxel_size,
                     "Bake one uniform level of this voxel size, mesh units or % of the diagonal (default: "
                     "nested levels that meet --tolerance)");
@@ -154,11 +155,10 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   add_name_option(
       fit, "--elastic", arguments.elastic, elastic_methods,
       defaulted("How the registration is extended to space", elastic_methods, defaults.fit.elastic));
-  add_name_option(
-      fit, "--guides", arguments.guides, guided_maps,
-      defaulted("multiscale, diffeomorphic: maps that move space off the surface along with it as a rigid "
-                "body, so that a loose sleeve turns with its arm; steps are those of chains",
-                guided_maps, defaults.fit.guides));
+  add_name_option(fit, "--guides", arguments.guides, guided_maps,
+                  defaulted("Maps that move space off the surface along with it as a rigid "
+                            "body, so that a loose sleeve turns with its arm; steps are those of chains",
+                            guided_maps, defaults.fit.guides));
   fit.add_option(
          "--steps", arguments.steps,
          "Steps of the chain of maps (default: 1 for models in about the same pose, else by the largest turn "
@@ -170,8 +170,9 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
                   "How the motion goes with t; stored in the map (default: flow for a map of several steps, "
                   "else geodesic)");
   add_name_option(fit, "--nodes", arguments.nodes, node_values,
-                  defaulted("Values at the nodes of nested levels: the map's own, or values between which "
-                            "interpolation errs equally to either side, in a third fewer voxels",
+                  defaulted("Methods that are baked: values at the nodes of nested levels, the map's own, or "
+                            "values between which interpolation errs equally to either side, in a third "
+                            "fewer voxels",
                             node_values, defaults.bake.nodes));
   fit.add_flag(
       "--paper", arguments.paper,

@@ -47,6 +47,7 @@ struct ElasticOptions {
   /// Finite elements: largest factor by which a volume may shrink relative to the affine part, > 1, no unit.
   double max_squeeze = 50;
   std::size_t max_nodes = 180'000;  ///< of finite elements, > 0
+  bool give_up_blocked = false;     ///< finite elements: see FiniteElementOptions
   /// How many times as large lambda is around the fitted source, > 0: there the layers of a composition act.
   double growth = 1;
 };

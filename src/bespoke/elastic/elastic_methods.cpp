@@ -25,6 +25,7 @@ ElasticFit finite_elements(const ElasticInput& input, const ElasticOptions& opti
   elements.affine_part = options.affine_part;
   elements.max_squeeze = options.max_squeeze;
   elements.max_nodes = options.max_nodes;
+  elements.give_up_blocked = options.give_up_blocked;
   if (options.guided) elements.guides = space_guides(input.source, input.fitted, options.lambda);
   FiniteElementFit fit = fit_finite_elements(input.sources, input.targets, input.source, elements, progress);
   return {std::move(fit.map), std::move(fit.summary)};

@@ -22,7 +22,7 @@ namespace bespoke {
 namespace {
 
 // Of the fit tolerance: how far a vertex gives way under unit stress, and what halves the cells around it.
-constexpr double compliance = 0.25, refined_beyond = 3;
+constexpr double compliance = 0.1, refined_beyond = 3;
 // Of λ: the coarsest voxel.
 constexpr double coarsest_voxel = 0.25;
 // Of a finer voxel, along each axis: nodes around a vertex that is missed.
@@ -37,10 +37,14 @@ constexpr int max_iterations = 60, max_evaluations = 3 * max_iterations;
 // Of the bounds on squeeze: where the barriers are. Nearer ones trap the minimiser on its way.
 constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
 // Of the weight of a place at a cell beyond the bounds, and rounds of it.
-constexpr double loosening = 0.1;
+constexpr double loosening = 0.03;
 constexpr int max_loosenings = 3;
+// Evaluations of the energy an iteration on the coarsest level: a minimiser that takes more is blocked.
+constexpr std::size_t blocked_beyond = 2;
 // Of the bounds on squeeze: those on levels that are yet to be refined.
 constexpr double unrefined_beyond = 10;
+// Of a vertex's weight: that of a point farther from the surface than a share of λ, which stands alone.
+constexpr double share_of_a_lone_point = 300, lone_beyond = 0.01;
 // Of the barriers, fourfold each.
 constexpr int max_widenings = 20;
 
@@ -111,6 +115,11 @@ class Solver {
         source_(source),
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
+    const ClosestPointTree tree(source);
+    for (std::size_t i = 0; i < vertices; ++i)
+      if (!tree.closest(sources_.col(static_cast<Eigen::Index>(i)),
+                        {.max_distance = lone_beyond * options.lambda}))
+        shares_[i] = share_of_a_lone_point;
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
     elements_ = std::make_unique<NestedElements>(
         coarsest_,
@@ -124,11 +133,13 @@ class Solver {
       progress_.step("elastic", static_cast<std::size_t>(level - 1),
                      static_cast<std::size_t>(options_.max_levels));
       std::vector<double> residuals = minimised(level);
+      if (summary_.blocked && options_.give_up_blocked) break;
       for (int round = 0; round < max_loosenings && loosen(unrefined_beyond); ++round)
         residuals = minimised(level);
       if (level == options_.max_levels || !refine(residuals)) break;
     }
-    for (int round = 0; round < max_loosenings && loosen(1); ++round) minimised(options_.max_levels);
+    const int rounds = summary_.blocked && options_.give_up_blocked ? 0 : max_loosenings;
+    for (int round = 0; round < rounds && loosen(1); ++round) minimised(options_.max_levels);
     for (const ElementLevel& level : elements_->levels()) {
       summary_.voxel_sizes.push_back(level.voxel_size);
       summary_.nodes.push_back(level.nodes.size());
@@ -144,8 +155,10 @@ class Solver {
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
     ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
+    std::size_t iterations = 0, evaluations = 0;
     const Objective of_coefficients{[&](const Points& x, Points& gradient) {
                                       progress_.check();
+                                      ++evaluations;
                                       return objective(x, gradient);
                                     },
                                     [&] { return objective.inverse_diagonal(); },
@@ -158,7 +171,6 @@ class Solver {
       barriers_.min_determinant /= 4;
       objective.set_bounds(barriers_);
     }
-    std::size_t iterations = 0;
     const auto run = [&](double soft, double decrease) {
       objective.set_weight(weighted_area_ / soft);
       iterations += static_cast<std::size_t>(
@@ -170,6 +182,7 @@ class Solver {
       for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
         run(soft, soft_decrease);
     run(stiff, std::ldexp(last_decrease, level - options_.max_levels));
+    if (level == 1) summary_.blocked = evaluations > blocked_beyond * iterations;
     const double volume = weighted_volume();
     objective(coefficients_, unused);
     summary_.iterations.push_back(iterations);
@@ -186,7 +199,7 @@ class Solver {
         objective.squeezed(coefficients_, {1 / (times * options_.max_squeeze),
                                            std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
-      summary_.loosened += place < vertices_ && shares_[place] == 1;
+      summary_.loosened += place < vertices_ && shares_[place] >= 1;
       shares_[place] *= loosening;
     }
     return !squeezed.empty();
@@ -218,7 +231,7 @@ class Solver {
     std::vector<LatticeCoordinates> nodes;
     for (std::size_t i = 0; i < vertices_; ++i) {
       const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
-      if (shares_[i] == 1 && residuals[i] > distance && !elements_->places(x).empty())
+      if (shares_[i] >= 1 && residuals[i] > distance && !elements_->places(x).empty())
         add_nodes_around(finer, x, nodes);
     }
     return unique_leaves(std::move(nodes));
@@ -283,6 +296,7 @@ std::vector<Figure> figures(const FiniteElementSummary& summary) {
           {"distortion", summary.distortion},
           {"min_determinant", summary.min_determinant},
           {"loosened", summary.loosened},
+          {"blocked", std::size_t{summary.blocked}},
           {"outside", summary.outside}};
 }
 

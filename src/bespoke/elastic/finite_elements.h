@@ -27,6 +27,7 @@ struct FiniteElementOptions {
   std::size_t max_nodes = 180'000;  ///< no level is added beyond, > 0; about 30 bytes each in a file
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
+  bool give_up_blocked = false;  ///< on the coarsest level where the minimiser is blocked (summary)
   /// They count as vertices do, so that space turns with the surface beneath it, but change neither the
   /// affine part nor what the summary says, and halve no cell.
   SpaceGuides guides = {};
@@ -41,6 +42,7 @@ struct FiniteElementSummary {
   double min_determinant = 0;  ///< at the nodes of cells, relative to the affine part, no unit
   Statistics residuals;        ///< |E(vᵢ) − v'ᵢ|, mesh units of the targets
   std::size_t loosened = 0;    ///< places that gave way to the bounds
+  bool blocked = false;        ///< on the coarsest level cells at their bounds held the minimiser up
   std::size_t outside = 0;     ///< places too far from the source for any cell
   double seconds = 0;
 };
@@ -56,7 +58,7 @@ struct FiniteElementFit {
 
 /// E = affine ∘ (id + u), sources to targets (3×n, mesh units), with least ∫ κ ψ(I + ∇u) dx + Σ_i w/2 |u(vᵢ)
 /// − uᵢ|², ψ the symmetric Dirichlet energy (Smith, Schaefer 2015) and barriers (element_distortion.h), κ as
-/// in element_weights.h, w = (mean area of a vertex) / (a quarter of the fit tolerance), by limited-memory
+/// in element_weights.h, w = (mean area of a vertex) / (a tenth of the fit tolerance), by limited-memory
 /// BFGS. u is trilinear on nested cells, zero beyond λ and one coarse cell. No iterate flips a cell. Throws
 /// InvalidInput (sizes, values, affine part with det ≤ 0), SolverError, MemoryLimitError, Interrupted.
 FiniteElementFit fit_finite_elements(const Points& sources, const Points& targets, const TriangleMesh& source,

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bespoke/error.h"
@@ -63,7 +64,10 @@ void measure_residuals(FittedMapping& result, const TriangleMesh& source, const 
 /// Of a map that is all there is, or of the steps of a chain.
 ElasticOptions elastic_options(const FitOptions& options, bool of_steps) {
   const bool guided = options.guides == GuidedMaps::all || (of_steps && options.guides == GuidedMaps::steps);
-  return {options.lambda, options.fit_tolerance, options.max_memory, AffinePart::least_squares, guided};
+  ElasticOptions elastic{options.lambda, options.fit_tolerance, options.max_memory, AffinePart::least_squares,
+                         guided,         options.max_squeeze};
+  elastic.give_up_blocked = options.give_up_blocked;
+  return elastic;
 }
 
 void take_steps(FittedMapping& result, ElasticSteps steps) {
@@ -117,6 +121,36 @@ void divide_where_missed(FittedMapping& result, const TriangleMesh& source, cons
   }
 }
 
+std::size_t blocked_steps(const FittedMapping& fitted) {
+  const auto is_blocked = [](const ElasticFindings& found) {
+    const auto* elements = std::get_if<FiniteElementSummary>(&found);
+    return elements != nullptr && elements->blocked;
+  };
+  const ElasticSummary& summary = fitted.summary.elastic;
+  return static_cast<std::size_t>(
+             std::count_if(summary.later_steps.begin(), summary.later_steps.end(), is_blocked)) +
+         (is_blocked(summary.found) ? 1 : 0);
+}
+
+/// Where cells at their bounds hold finite elements up, motion is too large for a step: twice as many steps
+/// take its place, for as long as fewer of them are held up. Where they are not, places give way.
+void fit_unblocked(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
+                   const FitOptions& options, int count, const Progress& progress) {
+  FitOptions giving_up = options;
+  giving_up.give_up_blocked = true;
+  std::size_t before = 0;
+  for (int steps = count; static_cast<std::size_t>(steps) <= max_useful_steps; steps *= 2) {
+    fit_steps(result, source, anchors, giving_up, steps, progress);
+    const std::size_t blocked = blocked_steps(result);
+    if (blocked == 0) return;
+    if (steps > count && 2 * blocked > before) break;
+    before = blocked;
+    count = static_cast<int>(result.elastic->steps().size());
+    steps = count;
+  }
+  fit_steps(result, source, anchors, options, count, progress);
+}
+
 /// One map or a chain of as many steps as the motion requires, more where they miss vertices. Takes the place
 /// of one that there is.
 void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Anchors& anchors,
@@ -125,7 +159,10 @@ void fit_as_asked(FittedMapping& result, const TriangleMesh& source, const Ancho
   summary.motion = regional_motion(source, result.fitted_vertices);
   summary.divided_where_missed = false;
   result.plan.reset();
-  fit_steps(result, source, anchors, options, options.steps.value_or(step_count(summary.motion)), progress);
+  const int count = options.steps.value_or(step_count(summary.motion));
+  if (options.elastic == ElasticMethod::finite_elements && !options.steps)
+    return fit_unblocked(result, source, anchors, options, count, progress);
+  fit_steps(result, source, anchors, options, count, progress);
   const bool follows = elastic_method(options.elastic).composition && options.fit_tolerance > 0;
   if (follows && !options.steps) divide_where_missed(result, source, anchors, options, progress);
 }
@@ -144,7 +181,7 @@ bool is_guided(const FittedMapping& fitted, const FitOptions& options) {
 void leave_guides_that_harm(FittedMapping& fitted, const TriangleMesh& source, const Anchors& anchors,
                             const FitOptions& options, const Progress& progress) {
   const auto missed = [](const FittedMapping& fit) { return fit.summary.elastic.vertex_residuals.p99; };
-  if (!(missed(fitted) > met_within(options))) return;
+  if (elastic_method(options.elastic).weighs_guides || !(missed(fitted) > met_within(options))) return;
   std::optional<FittedMapping> unguided = refitted_without_guides(fitted, source, anchors, options, progress);
   if (unguided && missed(*unguided) < missed(fitted)) fitted = std::move(*unguided);
 }

@@ -50,7 +50,7 @@ const char* to_string(UnmetReason reason) {
     case UnmetReason::folded:
       return "fitted faces folded";
     case UnmetReason::steep:
-      return "layer gradient limit";
+      return "too steep";
   }
   return "";
 }

@@ -13,10 +13,11 @@ enum class UnmetReason {
   shared_place,  ///< another vertex at the same place was fitted elsewhere
   touching,      ///< the target touches itself here: the vertex was released (contact.h)
   folded,        ///< a fitted face at the vertex is flipped, or has no area left: the data folds there
-  steep,         ///< neighbours part faster than the gradient limit of the layers allows
+  steep,  ///< neighbours part faster than the bounds of the map allow: on squeeze, or on the gradient of
+          ///< layers
 };
 
-/// "shared place", "the target touches itself", "fitted faces folded", "layer gradient limit".
+/// "shared place", "the target touches itself", "fitted faces folded", "too steep".
 const char* to_string(UnmetReason reason);
 
 struct UnmetVertex {

@@ -124,10 +124,22 @@ std::string unproved(const Certificate& certificate) {
 
 std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
   const BakeSummary& bake = *outcome.made.fit.summary.bake;
-  return "the stored map is within " + lengths(bake.error.max) + " of the exact one; tolerance " +
-         lengths(outcome.made.asset.record.tolerance) + (bake.tolerance_met ? "" : " MISSED") +
-         "; vertices are taken to their places within " +
-         lengths(outcome.made.fit.summary.elastic.vertex_residuals.max);
+  const std::string stored =
+      bake.error.max > 0
+          ? "the stored map is within " + lengths(bake.error.max) + " of the exact one; tolerance " +
+                lengths(outcome.made.asset.record.tolerance) + (bake.tolerance_met ? "" : " MISSED")
+          : "the stored map is the fitted one";
+  const Statistics& vertices = outcome.made.fit.summary.elastic.vertex_residuals;
+  return stored + "; 99 % of the vertices are taken to their places within " + lengths(vertices.p99) +
+         ", all within " + lengths(vertices.max);
+}
+
+std::string proved_text(const Certificate& certificate) {
+  constexpr double notable = 0.01;  // of the affine part's determinant
+  const double least = certificate.min_determinant / certificate.affine_determinant;
+  const std::string text = "the map is one-to-one in all of space: it folds nowhere";
+  if (least >= notable) return text;
+  return text + "; where it is tightest volumes shrink " + format_number(1 / least, 2) + " times";
 }
 
 std::string file_text(const FitOutcome& outcome) {
@@ -158,7 +170,7 @@ std::string fit_text(const FitOutcome& outcome) {
   }
   if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));
   if (!outcome.input.anchors.pairs.empty()) add("anchors", anchor_text(outcome, lengths));
-  if (certificate.is_bijection()) add("proved", "the map is one-to-one in all of space: it folds nowhere");
+  if (certificate.is_bijection()) add("proved", proved_text(certificate));
   if (summary.bake) add("error", bake_text(outcome, lengths));
   add("written", file_text(outcome));
   add("next", outcome.next);
