@@ -102,5 +102,23 @@ TEST_F(FlattenCommand, HasTheSameBytesAtAnyThreadCount) {
   EXPECT_EQ(read_text(file("1.svg")), read_text(file("3.svg")));
 }
 
+TEST(GradeFlatten, NestsTheSizesOfAProduct) {
+  const ExamplePair pair;
+  write_text(pair.file("tube.obj"), tube_obj(false));
+  const ProgramResult result =
+      bespoke({"grade", pair.file("source.obj"), pair.file("tube.obj"), "--target", pair.file("target.obj"),
+               "--anchors", pair.file("anchors.json"), "--between", "1", "--out-dir", pair.file("sizes"),
+               "--flatten", pair.file("tube.obj"), "--flatten-unit", "cm", "--auto-cut"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read_text(pair.file("sizes/tube_pattern.csv")),
+              AllOf(HasSubstr("piece,measure,unit,source,1_of_2,2_of_2\n"), HasSubstr(",area,cm2,")));
+  EXPECT_THAT(read_text(pair.file("sizes/tube_pattern.svg")), HasSubstr("inkscape:label=\"size 1_of_2\""));
+  EXPECT_THAT(read_text(pair.file("sizes/tube_pattern.dxf")), HasSubstr("SIZE_SOURCE"));
+  expect_refusal(bespoke({"grade", pair.file("source.obj"), pair.file("tube.obj"), "--target",
+                          pair.file("target.obj"), "--anchors", pair.file("anchors.json"), "--out-dir",
+                          pair.file("sizes"), "--flatten", pair.file("other.obj")}),
+                 1, "is none of the products that are carried");
+}
+
 }  // namespace
 }  // namespace bespoke::test
