@@ -50,7 +50,7 @@ TEST_F(BadModels, Obj) {
       {"a.obj", corners + "f 1/1 2/1 3/2\n", "a.obj:6: a face names texture coordinate 2 of 1"},
       {"a.obj", corners + "f 1//1 2//1 3//1\n", "a.obj:6: a face names normal 1 of 0"},
       {"a.obj", corners + "f 1 2 0\n", "a.obj:6: a face has the corner '0'"},
-      {"a.obj", corners + "f 1 2\n", "has no faces"},
+      {"a.obj", corners + "f 1 2\n", "a.obj:6: a face of 2 corners"},
       {"a.obj", corners + "f 1 2 2\n", "has no faces"},
       {"a.obj", corners + "f 1 2 x\n", "a.obj:6: a face has the corner 'x'"},
       {"a.obj", corners + "f 1 2 3///\n", "a.obj:6: a face has the corner '3///'"},

@@ -524,7 +524,7 @@ TEST_F(FitCommand, LeavesDegenerateFacesOfModelsOutAndTellsThemOnce) {
   ASSERT_EQ(pair_.fit("plain.vdb", quick).exit_code, 0);
   const std::string hash = info("plain.vdb")["source"]["hash"];
   write_text(pair_.file("source.obj"), read_text(pair_.file("source.obj")) + "f 5 5 7\nf 8 9 8\n");
-  write_text(pair_.file("target.obj"), read_text(pair_.file("target.obj")) + "f 1 2\n");
+  write_text(pair_.file("target.obj"), read_text(pair_.file("target.obj")) + "f 1 2 2\n");
   const ProgramResult fit = pair_.fit("map.vdb", quick);
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   EXPECT_THAT(fit.err, HasSubstr("source.obj: 2 degenerate faces, which were left out ("));

@@ -87,7 +87,17 @@ TEST(ProductOfASize, WarnsOfPenetrationToo) {
 // What lies on a surface lies to either side of it after a fit.
 TEST(ProductAfterApply, WarnsOfNoProductOnTheSurfaceItself) {
   const ExamplePair pair;
-  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const TriangleMesh sphere = shapes::icosphere(3);
+  const auto write = [&](const char* name, double size) {
+    write_triangle_mesh(pair.file(name), {size * sphere.vertices, sphere.faces});
+  };
+  write("source.obj", 1);
+  write("target.obj", 1);
+  write("fitted.obj", 0.999);  // 0.03 % of the diagonal inside
+  ASSERT_EQ(bespoke({"fit", pair.file("source.obj"), pair.file("target.obj"), "--fitted",
+                     pair.file("fitted.obj"), "-o", pair.file("map.vdb"), "--quiet"})
+                .exit_code,
+            0);
   const ProgramResult result = measure(pair, {"--product", pair.file("source.obj")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
