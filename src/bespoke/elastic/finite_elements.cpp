@@ -182,7 +182,7 @@ class Solver {
       for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
         run(soft, soft_decrease);
     run(stiff, std::ldexp(last_decrease, level - options_.max_levels));
-    if (level == 1) summary_.blocked = evaluations > blocked_beyond * iterations;
+    if (summary_.iterations.empty()) summary_.blocked = evaluations > blocked_beyond * iterations;
     const double volume = weighted_volume();
     objective(coefficients_, unused);
     summary_.iterations.push_back(iterations);

@@ -34,10 +34,11 @@ struct FiniteElementOptions {
 };
 
 struct FiniteElementSummary {
-  std::vector<double> voxel_sizes;      ///< mesh units, one per level
-  std::vector<std::size_t> nodes;       ///< with an unknown, one per level
-  std::vector<std::size_t> cells;       ///< finest cells, one per level
-  std::vector<std::size_t> iterations;  ///< of the minimiser when the level was added
+  std::vector<double> voxel_sizes;  ///< mesh units, one per level
+  std::vector<std::size_t> nodes;   ///< with an unknown, one per level
+  std::vector<std::size_t> cells;   ///< finest cells, one per level
+  std::vector<std::size_t>
+      iterations;              ///< of the minimiser, one per run: when a level was added, or places loosened
   double distortion = 0;       ///< weighted mean of the symmetric Dirichlet energy, 0 for an affine map
   double min_determinant = 0;  ///< at the nodes of cells, relative to the affine part, no unit
   Statistics residuals;        ///< |E(vᵢ) − v'ᵢ|, mesh units of the targets

@@ -1,6 +1,7 @@
 #include "bespoke/report/fit_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -139,7 +140,7 @@ std::string proved_text(const Certificate& certificate) {
   const double least = certificate.min_determinant / certificate.affine_determinant;
   const std::string text = "the map is one-to-one in all of space: it folds nowhere";
   if (least >= notable) return text;
-  return text + "; where it is tightest volumes shrink " + format_number(1 / least, 2) + " times";
+  return text + "; where it is tightest volumes shrink " + std::to_string(std::llround(1 / least)) + " times";
 }
 
 std::string file_text(const FitOutcome& outcome) {
