@@ -142,7 +142,7 @@ def test_progress_is_told_and_may_stop(pair):
     bespoke.fit(
         pair.source, pair.target, pair.anchors, tolerance="2%", progress=lambda stage, done, total: stages.append(stage)
     )
-    assert {"bake", "certify"} <= set(stages)
+    assert {"elastic", "certify"} <= set(stages)
 
     class Enough(Exception):
         pass
