@@ -16,8 +16,8 @@ using testing::IsEmpty;
 class DiffCommand : public testing::Test {
  protected:
   DiffCommand() {
-    EXPECT_EQ(pair_.fit("coarse.vdb", {"--tolerance", "0.5%"}).exit_code, 0);
-    EXPECT_EQ(pair_.fit("fine.vdb", {"--tolerance", "0.1%"}).exit_code, 0);
+    EXPECT_EQ(pair_.fit("coarse.vdb", {"--strict", "--tolerance", "0.5%"}).exit_code, 0);
+    EXPECT_EQ(pair_.fit("fine.vdb", {"--strict", "--tolerance", "0.1%"}).exit_code, 0);
   }
   std::string file(const std::string& name) const { return pair_.file(name); }
   ProgramResult diff(const std::string& a, const std::string& b,

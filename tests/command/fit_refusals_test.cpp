@@ -186,7 +186,7 @@ TEST_F(FitRefusals, AdvisesAVoxelSizeAndAToleranceThatFitTheMemory) {
 
 TEST_F(FitRefusals, AdvisesAToleranceThatFitsTheMemory) {
   const auto fit_with = [&](const std::string& tolerance, const char* memory) {
-    return pair_.fit("map.vdb", {"--tolerance", tolerance, "--max-memory", memory});
+    return pair_.fit("map.vdb", {"--strict", "--tolerance", tolerance, "--max-memory", memory});
   };
   const ProgramResult refused = fit_with("0.001%", "100MB");
   expect_refusal(refused, 4, "the limit is 100 MB; a tolerance of ");

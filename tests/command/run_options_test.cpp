@@ -134,7 +134,8 @@ TEST_F(EverySubcommand, LeavesNothingWhenMemoryRunsOut) {
 TEST_F(EverySubcommand, DrawsABarOnATerminal) {
   // `script` gives the command a terminal for its standard error.
   std::string line = BESPOKE_COMMAND;
-  for (const std::string& argument : fit("x.vdb", {"--lambda", "20%"})) line += " '" + argument + "'";
+  for (const std::string& argument : fit("x.vdb", {"--strict", "--lambda", "20%"}))
+    line += " '" + argument + "'";
   const ProgramResult result = run_program({"script", "--quiet", "--return", "--command", line, "/dev/null"});
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_THAT(result.out,

@@ -30,6 +30,13 @@ namespace {
 using test::degree;
 using testing::HasSubstr;
 
+/// Of the layers, which are baked and come apart.
+MakeMapOptions layered_options(const TriangleMesh& source) {
+  MakeMapOptions options = default_options(diagonal(source.vertices));
+  options.fit.elastic = ElasticMethod::diffeomorphic;
+  return options;
+}
+
 FitOptions options_of(const TriangleMesh& source, ElasticMethod method = ElasticMethod::diffeomorphic) {
   FitOptions options = default_options(diagonal(source.vertices)).fit;
   options.elastic = method;
@@ -195,7 +202,7 @@ TEST(ElasticStepsSharedCase, FollowAPoseThatFiveAnchorsTell) {
   const std::set<std::string> kept{"crown", "bigtoe_tip_l", "middle_tip_l", "middle_tip_r", "sacrum"};
   std::erase_if(anchors.pairs, [&](const AnchorPair& pair) { return !kept.contains(pair.name); });
   ASSERT_EQ(anchors.pairs.size(), kept.size());
-  const FitOptions options = default_options(diagonal(source.vertices)).fit;
+  const FitOptions options = layered_options(source).fit;
   const FittedMapping fit = fit_mapping(source, target, anchors, options);
   EXPECT_TRUE(fit.summary.surface->posed_by_anchors);
   EXPECT_GT(fit.elastic->steps().size(), 1u);
@@ -219,7 +226,7 @@ TriangleMesh tubes(double slide) {
 // Between tubes that slide along each other space is sheared too steeply for the voxels of one step.
 TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   const TriangleMesh source = tubes(0), fitted = tubes(0.08);
-  MakeMapOptions options = default_options(diagonal(source.vertices));
+  MakeMapOptions options = layered_options(source);
   options.bake.max_leaves = 1500;
   options.fit.steps = 1;
   const MadeMap one = make_map({source, fitted, {}, &fitted}, options);
@@ -245,7 +252,7 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
 // that it folds, takes longer than all the steps that take its place.
 TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
   const TriangleMesh source = tubes(0), fitted = tubes(0.16);
-  MakeMapOptions options = default_options(diagonal(source.vertices));
+  MakeMapOptions options = layered_options(source);
   std::vector<std::string> stages;
   Progress progress;
   progress.report = [&](std::string_view stage, std::size_t, std::size_t) { stages.emplace_back(stage); };
@@ -271,7 +278,7 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
 // Halves of a step share what it had to say, and the voxels that the steps after them have left.
 TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
   const TriangleMesh source = tubes(0), fitted = tubes(0.2);
-  MakeMapOptions options = default_options(diagonal(source.vertices));
+  MakeMapOptions options = layered_options(source);
   options.bake.max_leaves = 2500;
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options);
   ASSERT_EQ(step_count(made.fit.summary.elastic.motion), 1);
@@ -287,7 +294,7 @@ TEST(ElasticSteps, LeaveGuidesThatTakeOneBeyondItsVoxels) {
   TriangleMesh fitted = source;
   for (auto x : fitted.vertices.colwise())
     x = Vector3(1.1 * x[0], 0.9 * x[1] + 0.05 * x[0] * x[0], 1.2 * x[2]);
-  MakeMapOptions options = default_options(diagonal(source.vertices));
+  MakeMapOptions options = layered_options(source);
   const auto make = [&] { return make_map({source, fitted, {}, &fitted}, options); };
   const auto leaves = [](const MadeMap& made) {
     std::size_t sum = 0;
