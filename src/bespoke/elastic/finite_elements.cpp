@@ -355,6 +355,7 @@ std::shared_ptr<const BakedMap> read_baked(ExactMapReader& reader) {
     for (float& value : level.values) value = static_cast<float>(reader.number("a node"));
     pyramid.levels.push_back(std::move(level));
   }
+  reader.end();
   try {
     return std::make_shared<const BakedMap>(affine, std::move(pyramid));
   } catch (const InvalidInput& invalid) {
