@@ -176,7 +176,7 @@ TEST(MeasureCommand, RefusesOtherModelsThanTheMaps) {
 
 TEST(MeasureCommand, ExactDiffersFromTheGridsByNoMoreThanTheTolerance) {
   const ExamplePair pair;
-  ASSERT_EQ(pair.fit("map.vdb", {"--keep-exact", "--tolerance", "0.02"}).exit_code, 0);
+  ASSERT_EQ(pair.fit("map.vdb", {"--strict", "--keep-exact", "--tolerance", "0.02"}).exit_code, 0);
   const auto largest_residual = [&](const std::vector<std::string>& extra) {
     const ProgramResult result = measure(pair, extra);
     EXPECT_EQ(result.exit_code, 0) << result.err;
