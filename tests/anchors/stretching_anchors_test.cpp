@@ -43,6 +43,10 @@ TEST(StretchingAnchors, ShareTheBlame) {
   EXPECT_EQ(squeezed[8], squeezed[7]);
 }
 
+TEST(StretchingAnchors, OneThatIsAstrayLeavesTheOthersExact) {
+  for (const double sigma : found_sigmas(cube_and({pair_of({0, 0, 1}, {0, 1000, 2})}))) EXPECT_EQ(sigma, 0);
+}
+
 TEST(StretchingAnchors, AreNoneWithinTheBoundOrTheNoiseOfMeshes) {
   EXPECT_EQ(found_sigmas(cube_and({pair_of({1, 1, 1.05}, {2, 2.4, 2})}))[8], 0);      // four times
   EXPECT_EQ(found_sigmas(cube_and({pair_of({1, 1, 1.0001}, {2, 2.005, 2})}))[8], 0);  // remeshing

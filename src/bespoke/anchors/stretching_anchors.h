@@ -10,7 +10,8 @@ namespace bespoke {
 /// each other, than their sources by more than the factor `max_stretch` (> 1, beside the ratio of the sizes
 /// of all pairs), each half of the difference, as σ, mesh units on the target. Differences below 0.1 % of the
 /// targets' diagonal in every coordinate are remeshing. One a pair, 0 for pairs that contradict none, and for
-/// those that are not exact. Of the first `count` pairs.
+/// those that are not exact. Of the first `count` pairs. One that contradicts half of the others
+/// is astray, and nobody shares its blame.
 std::vector<double> sigmas_within_stretch(const Anchors& anchors, std::size_t count, double max_stretch);
 
 }  // namespace bespoke

@@ -69,6 +69,17 @@ std::vector<LatticeCoordinates> band_nodes(const TriangleMesh& surface, const La
   return nodes;
 }
 
+/// Those within lambda of a point.
+void add_nodes_within(const Lattice& lattice, const Vector3& x, double lambda,
+                      std::vector<LatticeCoordinates>& nodes) {
+  const LatticeCoordinates low = lattice.cell_of(x - Vector3::Constant(lambda)),
+                           high = lattice.cell_of(x + Vector3::Constant(lambda));
+  for (int i = low[0]; i <= high[0] + 1; ++i)
+    for (int j = low[1]; j <= high[1] + 1; ++j)
+      for (int k = low[2]; k <= high[2] + 1; ++k)
+        if ((lattice({i, j, k}) - x).norm() <= lambda) nodes.push_back({i, j, k});
+}
+
 void add_nodes_around(const Lattice& lattice, const Vector3& x, std::vector<LatticeCoordinates>& nodes) {
   const Vector3 at = (x - lattice.origin) / lattice.voxel_size;
   const Eigen::Vector3i low = (at.array() - refined_reach).ceil().cast<int>(),
@@ -115,15 +126,17 @@ class Solver {
         source_(source),
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
-    const ClosestPointTree tree(source);
-    for (std::size_t i = 0; i < vertices; ++i)
-      if (!tree.closest(sources_.col(static_cast<Eigen::Index>(i)),
-                        {.max_distance = lone_beyond * options.lambda}))
-        shares_[i] = share_of_a_lone_point;
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
+    std::vector<LatticeCoordinates> nodes = band_nodes(source, coarsest_, options.lambda);
+    const ClosestPointTree tree(source);
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
+      if (tree.closest(x, {.max_distance = lone_beyond * options.lambda})) continue;
+      shares_[i] = share_of_a_lone_point;
+      add_nodes_within(coarsest_, x, options.lambda, nodes);
+    }
     elements_ = std::make_unique<NestedElements>(
-        coarsest_,
-        std::vector<std::vector<LatticeCoordinates>>{band_nodes(source, coarsest_, options.lambda)});
+        coarsest_, std::vector<std::vector<LatticeCoordinates>>{unique_leaves(std::move(nodes))});
     elements_->weigh(element_weights(*elements_, source, options.lambda));
     coefficients_ = Points::Zero(3, static_cast<Eigen::Index>(elements_->unknowns()));
   }
