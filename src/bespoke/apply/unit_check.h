@@ -12,6 +12,6 @@ namespace bespoke {
 /// box this is. Throws InvalidInput naming the factor; `name` is that of the product. A few points lie so by
 /// chance: the same is returned as a warning, otherwise nothing.
 std::string require_unit_of_map(const std::string& name, const Points& points, const ElasticMap& elastic,
-                         const Box& model);
+                                const Box& model);
 
 }  // namespace bespoke

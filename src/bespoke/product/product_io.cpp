@@ -113,8 +113,8 @@ namespace {
 
 std::string counted(const DegenerateFaces& faces, const std::string& fate) {
   return std::to_string(faces.count) +
-         (faces.count == 1 ? " degenerate face, which was " : " degenerate faces, which were ") + fate + " (" +
-         faces.first + ")";
+         (faces.count == 1 ? " degenerate face, which was " : " degenerate faces, which were ") + fate +
+         " (" + faces.first + ")";
 }
 
 }  // namespace

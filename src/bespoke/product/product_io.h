@@ -9,8 +9,8 @@
 
 namespace bespoke {
 
-/// Polygons of fewer than three corners, or that name a vertex twice. A product keeps them; of a model they are
-/// left out.
+/// Polygons of fewer than three corners, or that name a vertex twice. A product keeps them; of a model they
+/// are left out.
 struct DegenerateFaces {
   std::size_t count = 0;
   std::string first;  ///< "a.obj:5: a face names vertex 2 twice"; empty without any

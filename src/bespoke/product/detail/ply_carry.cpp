@@ -117,8 +117,7 @@ CarrySummary carry_ply(const InputFile& file, std::vector<OutputFile>& outputs, 
   if (header.encoding == PlyHeader::Encoding::ascii) {
     summary = carry_text(file, outputs, PlyText(file.path(), header), motion, progress);
   } else {
-    summary.degenerate =
-        carry_binary(file, outputs, header, motion, progress).degenerate(file.path());
+    summary.degenerate = carry_binary(file, outputs, header, motion, progress).degenerate(file.path());
     if (summary.degenerate.count > 0) summary.warnings.push_back(to_string(summary.degenerate));
     summary.points = static_cast<std::size_t>(header.elements[header.vertex].count);
     summary.directions = header.normal ? summary.points : 0;
