@@ -53,4 +53,16 @@ std::vector<double> sigmas_within_stretch(const Anchors& anchors, std::size_t co
   return sigmas;
 }
 
+void let_contradicting_share(EstimatedAnchors& estimated, std::size_t given, double max_stretch) {
+  const auto kept = static_cast<std::size_t>(
+      std::lower_bound(estimated.kept.begin(), estimated.kept.end(), given) - estimated.kept.begin());
+  const std::vector<double> sigmas = sigmas_within_stretch(estimated.anchors, kept, max_stretch);
+  for (std::size_t k = 0; k < kept; ++k) {
+    if (!(sigmas[k] > 0)) continue;
+    estimated.anchors.pairs[k].sigma = sigmas[k];
+    estimated.sigmas[estimated.kept[k]] = sigmas[k];
+    estimated.accuracy.given_way.push_back({estimated.kept[k], sigmas[k]});
+  }
+}
+
 }  // namespace bespoke

@@ -18,10 +18,10 @@ namespace {
 
 // Corrections of garments take three to five rounds, after each look at 16 samples a face one or two more.
 constexpr int rounds_of_a_solve = 12;
-constexpr int most_looks = 4;
+constexpr int max_checks = 4;
 
 // Faces that pass through each other are joined with their neighbours that come to do so.
-constexpr int most_partings = 4;
+constexpr int max_partings = 4;
 
 // Of the product's diagonal: places nearer than this are one.
 constexpr double place_radius = 0.03;
@@ -63,7 +63,7 @@ std::size_t part_again(const TriangleMesh& mesh, const Points& carried, Correcti
   const FacePairs before = self_intersections({carried, mesh.faces});
   FacePairs pairs = new_pairs(before, {correction.vertices(), mesh.faces});
   const auto breaches = [&] { return distances.count().breaches + checks.count().breaches; };
-  for (int attempt = 0; attempt < most_partings && !pairs.empty(); ++attempt) {
+  for (int attempt = 0; attempt < max_partings && !pairs.empty(); ++attempt) {
     const NodeVectors u = correction.displacement();
     checks.look(correction.vertices(), correction.moved());
     const std::size_t breaches_before = breaches();
@@ -131,7 +131,7 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   correction.solve(distances, rounds_of_a_solve);
   summary.solve_seconds = watch.seconds();
   std::vector<char> touched = correction.moved();
-  for (int look = 0; look < most_looks; ++look) {
+  for (int look = 0; look < max_checks; ++look) {
     watch = {};
     checks.look(correction.vertices(), touched);
     const std::vector<int> missed = checks.missed();

@@ -274,21 +274,6 @@ void let_give_way(EstimatedAnchors& estimated, const Anchors& given,
   }
 }
 
-/// Exact pairs that no surface meets within the bound on its stretch share the blame.
-void let_contradicting_share(EstimatedAnchors& estimated, const RegistrationInput& input) {
-  const auto given = static_cast<std::size_t>(
-      std::lower_bound(estimated.kept.begin(), estimated.kept.end(), input.given.pairs.size()) -
-      estimated.kept.begin());
-  const std::vector<double> sigmas =
-      sigmas_within_stretch(estimated.anchors, given, input.options.surface_fit.max_stretch);
-  for (std::size_t k = 0; k < given; ++k) {
-    if (!(sigmas[k] > 0)) continue;
-    estimated.anchors.pairs[k].sigma = sigmas[k];
-    estimated.sigmas[estimated.kept[k]] = sigmas[k];
-    estimated.accuracy.given_way.push_back({estimated.kept[k], sigmas[k]});
-  }
-}
-
 /// Γ and H'_a by anchors, those of curves included; only given ones are tested. Returns the
 /// anchors as the fit took them.
 Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& input, const Anchors& anchors,
@@ -296,7 +281,8 @@ Anchors register_by_anchors(FittedMapping& result, const RegistrationInput& inpu
   EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, input.source, input.target);
   // The printed method takes all pairs.
   const bool doubts = input.options.surface_fit.method == SurfaceFitMethod::deformation_graph;
-  if (doubts) let_contradicting_share(estimated, input);
+  if (doubts)
+    let_contradicting_share(estimated, input.given.pairs.size(), input.options.surface_fit.max_stretch);
   register_by_pairs(result, input, estimated, progress);
   AnchorAudit audit = audit_anchors(input.given);
   if (doubts) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double band_voxels_along_diagonal = 128;
 constexpr double band_half_width = 3;
 
-constexpr Eigen::Index most_probes = 10000;
+constexpr Eigen::Index max_probes = 10000;
 
 LatticeCoordinates leaf_at(const Lattice& lattice, const Vector3& x) { return leaf_of(lattice.cell_of(x)); }
 
@@ -180,7 +180,7 @@ std::vector<LeafCoordinates> enclosed_leaves(const StoredGrid& band) {
 
 Points surface_probes(const TriangleMesh& mesh) {
   const Eigen::Index faces = mesh.faces.cols(), all = faces + mesh.vertices.cols();
-  const Eigen::Index step = std::max<Eigen::Index>(1, all / most_probes);
+  const Eigen::Index step = std::max<Eigen::Index>(1, all / max_probes);
   Points probes(3, (all + step - 1) / step);
   for (Eigen::Index i = 0; i < probes.cols(); ++i) {
     const Eigen::Index at = i * step;

@@ -29,7 +29,7 @@ constexpr double push_a_round = 0.02;
 
 // A round that brings a sample less than this share of the way that it was pushed was in vain, and after so
 // many there is no space for it.
-constexpr double least_gain = 0.3;
+constexpr double min_gain = 0.3;
 constexpr int most_vain_rounds = 2;
 
 // Of the tolerance: how exactly a round meets its linear constraints, and what is aimed for beyond what is
@@ -59,8 +59,8 @@ void Correction::solve(SampleDistances& distances, int rounds) {
   for (int round = 0; round < rounds && (choose_active(distances) || let_go); ++round) {
     NodeVectors u = NodeVectors::Zero(u_.rows(), 3);
     if (!active_.empty())
-      u = least_energy(product_.energy, linearised(distances), solved_share * tolerance, iterations_a_round,
-                       multipliers_);
+      u = minimised_energy(product_.energy, linearised(distances), solved_share * tolerance,
+                           iterations_a_round, multipliers_);
     limit(u);
     move_to(std::move(u), distances);
     let_go = count_vain_rounds(distances);
@@ -172,7 +172,7 @@ bool Correction::count_vain_rounds(const SampleDistances& distances) {
   for (const Active& active : active_) {
     const double expected = std::min(active.missing, push_a_round * size_);
     const double gained = active.missing - distances.missing(active.obstacle, active.sample);
-    if (!distances.misses(active.obstacle, active.sample) || gained > least_gain * expected) continue;
+    if (!distances.misses(active.obstacle, active.sample) || gained > min_gain * expected) continue;
     int& rounds = vain_rounds_[{active.obstacle, nearest_node(distances.samples(), active.sample)}];
     let_go = ++rounds == most_vain_rounds || let_go;
   }

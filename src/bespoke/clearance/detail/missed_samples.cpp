@@ -7,7 +7,7 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t most_places = 10;
+constexpr std::size_t max_places = 10;
 
 constexpr double nothing_needed = -std::numeric_limits<double>::infinity();
 
@@ -128,7 +128,7 @@ std::vector<MissedPlace> worst_places(const SampleDistances& distances, const Po
     });
     if (near != worst.end())
       ++near->samples;
-    else if (worst.size() < most_places)
+    else if (worst.size() < max_places)
       worst.push_back({obstacles[miss.obstacle].name, place, miss.missing, 1});
   }
   return worst;

@@ -10,7 +10,7 @@ namespace bespoke {
 namespace {
 
 // 16 places a face, and of a face that spans many voxels as many as find what pokes through between them.
-constexpr int least_divisions = 4, most_divisions = 16;
+constexpr int min_divisions = 4, max_divisions = 16;
 constexpr double spacings_a_division = 2;
 
 constexpr std::size_t samples_per_range = 4096;
@@ -84,7 +84,7 @@ ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi
     const double divisions = std::ceil(longest_edge(product, face) / (spacings_a_division * spacing));
     add_parts(
         product.faces.col(face),
-        divisions < most_divisions ? std::max(least_divisions, static_cast<int>(divisions)) : most_divisions,
+        divisions < max_divisions ? std::max(min_divisions, static_cast<int>(divisions)) : max_divisions,
         list);
   }
   return list.samples();

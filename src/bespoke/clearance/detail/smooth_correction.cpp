@@ -63,8 +63,8 @@ Eigen::VectorXd SmoothCorrection::operator()(const Eigen::VectorXd& forces) cons
   return factor_->solve(degree_.cwiseProduct(factor_->solve(forces)));
 }
 
-NodeVectors least_energy(const SmoothCorrection& energy, const LinearConstraints& constraints,
-                         double tolerance, int iterations, Eigen::VectorXd& multipliers) {
+NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstraints& constraints,
+                             double tolerance, int iterations, Eigen::VectorXd& multipliers) {
   const auto& [places, gradients, amounts] = constraints;
   const Eigen::SparseMatrix<double, Eigen::RowMajor> to_nodes = places.transpose();
   const auto displacement = [&](const Eigen::VectorXd& at) {

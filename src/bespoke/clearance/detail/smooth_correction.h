@@ -46,7 +46,7 @@ struct LinearConstraints {
 /// 1983; restarts of O'Donoghue and Candès 2015), a step a constraint from the sum of its row (Gershgorin).
 /// `multipliers`: where to start, k; and where it ended. Stops when none is missed by more than `tolerance`,
 /// or after `iterations`, so that constraints that contradict each other end in a compromise.
-NodeVectors least_energy(const SmoothCorrection& energy, const LinearConstraints& constraints,
-                         double tolerance, int iterations, Eigen::VectorXd& multipliers);
+NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstraints& constraints,
+                             double tolerance, int iterations, Eigen::VectorXd& multipliers);
 
 }  // namespace bespoke
