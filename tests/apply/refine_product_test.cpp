@@ -1,4 +1,4 @@
-#include "bespoke/apply/refine_product.h"
+#include "bespoke/apply/detail/refine_product.h"
 #include "apply/motions.h"
 
 #include <gmock/gmock.h>

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apply/motions.h"
-#include "bespoke/apply/refine_product.h"
+#include "bespoke/apply/detail/refine_product.h"
 #include "bespoke/product/carry_product.h"
 #include "product/product_files.h"
 

@@ -1,4 +1,4 @@
-#include "bespoke/grading/surface_line.h"
+#include "bespoke/grading/detail/surface_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

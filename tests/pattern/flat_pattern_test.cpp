@@ -5,8 +5,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/pattern/detail/grain.h"
 #include "bespoke/pattern/detail/sheet_formats.h"
-#include "bespoke/pattern/grain.h"
 #include "bespoke/pattern/write_pattern.h"
 #include "pattern/tubes.h"
 #include "support/error_message.h"

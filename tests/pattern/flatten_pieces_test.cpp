@@ -8,7 +8,7 @@
 #include "bespoke/error.h"
 #include "bespoke/pattern/detail/flat_faces.h"
 #include "bespoke/pattern/detail/flat_start.h"
-#include "bespoke/pattern/paired_seams.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 #include "bespoke/pattern/self_overlap.h"
 #include "pattern/bent_cloth.h"
 #include "support/error_message.h"

@@ -14,7 +14,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/asset/asset_part.h"
 #include "bespoke/lattice/baked_map.h"
-#include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/lattice/detail/brick_lookup.h"
 #include "bespoke/parallel.h"
 #include "lookup_rivals.h"
 

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/anchor_outliers.h"
+#include "bespoke/pipeline/detail/anchor_outliers.h"
 
 #include <gmock/gmock.h>
 

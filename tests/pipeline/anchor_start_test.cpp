@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/anchor_start.h"
+#include "bespoke/pipeline/detail/anchor_start.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,8 +12,8 @@
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/error.h"
+#include "bespoke/pipeline/detail/fit_elastic_map.h"
 #include "bespoke/pipeline/elastic_pairs.h"
-#include "bespoke/pipeline/fit_elastic_map.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/rigid/affine_alignment.h"

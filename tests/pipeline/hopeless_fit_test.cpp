@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/hopeless_fit.h"
+#include "bespoke/pipeline/detail/hopeless_fit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/matched_parts.h"
+#include "bespoke/pipeline/detail/matched_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/part_pairs.h"
+#include "bespoke/pipeline/detail/part_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/two_way_points.h"
+#include "bespoke/pipeline/detail/two_way_points.h"
 
 #include <gtest/gtest.h>
 

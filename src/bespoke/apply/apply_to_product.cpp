@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "bespoke/apply/detail/refine_product.h"
 #include "bespoke/apply/motion_jacobian.h"
-#include "bespoke/apply/refine_product.h"
 #include "bespoke/apply/unit_check.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"

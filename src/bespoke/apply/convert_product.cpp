@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "bespoke/apply/refine_product.h"
+#include "bespoke/apply/detail/refine_product.h"
 #include "bespoke/apply/unit_check.h"
 #include "bespoke/error.h"
 #include "bespoke/stopwatch.h"

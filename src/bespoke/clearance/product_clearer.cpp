@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "bespoke/clearance/corrected_map.h"
+#include "bespoke/clearance/detail/corrected_map.h"
 #include "bespoke/error.h"
 
 namespace bespoke {

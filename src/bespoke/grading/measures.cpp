@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/grading/surface_line.h"
+#include "bespoke/grading/detail/surface_line.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/text_lines.h"

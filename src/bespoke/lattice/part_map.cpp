@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bespoke/lattice/baked_map.h"
-#include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/lattice/detail/brick_lookup.h"
 #include "bespoke/lattice/detail/looked_up_points.h"
 #include "bespoke/lattice/pyramid_lookup.h"
 

@@ -7,8 +7,8 @@
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pattern/detail/dart.h"
-#include "bespoke/pattern/grain.h"
-#include "bespoke/pattern/paired_seams.h"
+#include "bespoke/pattern/detail/grain.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 
 namespace bespoke {
 namespace {

@@ -11,7 +11,7 @@
 #include "bespoke/pattern/detail/barrier_descent.h"
 #include "bespoke/pattern/detail/flat_start.h"
 #include "bespoke/pattern/detail/local_global.h"
-#include "bespoke/pattern/paired_seams.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 
 namespace bespoke {
 namespace {

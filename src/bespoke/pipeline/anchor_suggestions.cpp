@@ -12,8 +12,8 @@
 #include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/spread_points.h"
+#include "bespoke/pipeline/detail/two_way_points.h"
 #include "bespoke/pipeline/fit_mapping.h"
-#include "bespoke/pipeline/two_way_points.h"
 
 namespace bespoke {
 namespace {

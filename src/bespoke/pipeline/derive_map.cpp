@@ -14,7 +14,7 @@
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/affine_map.h"
 #include "bespoke/mapping/composed_map.h"
-#include "bespoke/pipeline/bake_steps.h"
+#include "bespoke/pipeline/detail/bake_steps.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/pipeline/summary_json.h"
 

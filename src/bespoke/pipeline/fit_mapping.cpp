@@ -16,10 +16,10 @@
 #include "bespoke/length.h"
 #include "bespoke/mesh/seams.h"
 #include "bespoke/number_format.h"
+#include "bespoke/pipeline/detail/fit_elastic_map.h"
+#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/pipeline/detail/register_source.h"
 #include "bespoke/pipeline/elastic_pairs.h"
-#include "bespoke/pipeline/fit_elastic_map.h"
-#include "bespoke/pipeline/hopeless_fit.h"
-#include "bespoke/pipeline/register_source.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/stopwatch.h"
 

@@ -7,7 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/spread_points.h"
-#include "bespoke/pipeline/two_way_points.h"
+#include "bespoke/pipeline/detail/two_way_points.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "bespoke/statistics.h"
 #include "bespoke/stopwatch.h"

@@ -4,7 +4,7 @@
 
 #include "bespoke/clearance/model_sides.h"
 #include "bespoke/elastic/exact_map_io.h"
-#include "bespoke/pipeline/bake_fitted_map.h"
+#include "bespoke/pipeline/detail/bake_fitted_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
 

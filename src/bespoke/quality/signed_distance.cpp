@@ -9,7 +9,7 @@
 #include "bespoke/mesh/equal_positions.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
-#include "bespoke/quality/winding_number.h"
+#include "bespoke/quality/detail/winding_number.h"
 
 namespace bespoke {
 namespace {

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "bespoke/bake/leaf_samples.h"
+#include "bespoke/bake/detail/leaf_samples.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {

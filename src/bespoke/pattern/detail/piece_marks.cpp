@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bespoke/pattern/paired_seams.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 
 namespace bespoke {
 namespace {

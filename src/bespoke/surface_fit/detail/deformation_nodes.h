@@ -6,7 +6,7 @@
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
 
 namespace bespoke {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bespoke/progress.h"
-#include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/anchor_limits.h"
 #include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/node_system.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 #include "bespoke/surface_fit/detail/unmatched_cavities.h"

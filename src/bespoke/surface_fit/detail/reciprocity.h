@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bespoke/rigid/similarity_alignment.h"
-#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
 #include "bespoke/surface_fit/detail/target_surface.h"
 
 namespace bespoke {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bespoke/anchors/anchors.h"
-#include "bespoke/pipeline/matched_parts.h"
+#include "bespoke/pipeline/detail/matched_parts.h"
 
 namespace bespoke {
 

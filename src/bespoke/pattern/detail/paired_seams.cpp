@@ -1,4 +1,4 @@
-#include "bespoke/pattern/paired_seams.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/rejected_anchors.h"
+#include "bespoke/pipeline/detail/rejected_anchors.h"
 
 #include <algorithm>
 

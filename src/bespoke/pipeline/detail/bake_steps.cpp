@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/bake_steps.h"
+#include "bespoke/pipeline/detail/bake_steps.h"
 
 #include <algorithm>
 #include <memory>

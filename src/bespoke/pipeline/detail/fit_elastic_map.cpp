@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/fit_elastic_map.h"
+#include "bespoke/pipeline/detail/fit_elastic_map.h"
 
 #include <algorithm>
 #include <iterator>
@@ -9,8 +9,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/length.h"
+#include "bespoke/pipeline/detail/hopeless_fit.h"
 #include "bespoke/pipeline/elastic_pairs.h"
-#include "bespoke/pipeline/hopeless_fit.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {

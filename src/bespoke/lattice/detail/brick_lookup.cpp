@@ -1,4 +1,4 @@
-#include "bespoke/lattice/brick_lookup.h"
+#include "bespoke/lattice/detail/brick_lookup.h"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/register_source.h"
+#include "bespoke/pipeline/detail/register_source.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -13,12 +13,12 @@
 #include "bespoke/anchors/stretching_anchors.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/pipeline/anchor_outliers.h"
-#include "bespoke/pipeline/anchor_start.h"
+#include "bespoke/pipeline/detail/anchor_outliers.h"
+#include "bespoke/pipeline/detail/anchor_start.h"
+#include "bespoke/pipeline/detail/matched_parts.h"
+#include "bespoke/pipeline/detail/part_pairs.h"
+#include "bespoke/pipeline/detail/rejected_anchors.h"
 #include "bespoke/pipeline/fit_patches.h"
-#include "bespoke/pipeline/matched_parts.h"
-#include "bespoke/pipeline/part_pairs.h"
-#include "bespoke/pipeline/rejected_anchors.h"
 #include "bespoke/quality/uncovered_area.h"
 #include "bespoke/rbf/global_rbf.h"
 #include "bespoke/stopwatch.h"

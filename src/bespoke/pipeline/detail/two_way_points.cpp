@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/two_way_points.h"
+#include "bespoke/pipeline/detail/two_way_points.h"
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/parallel.h"

@@ -1,4 +1,4 @@
-#include "bespoke/pattern/grain.h"
+#include "bespoke/pattern/detail/grain.h"
 
 #include <vector>
 

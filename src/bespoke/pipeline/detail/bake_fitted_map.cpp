@@ -1,11 +1,11 @@
-#include "bespoke/pipeline/bake_fitted_map.h"
+#include "bespoke/pipeline/detail/bake_fitted_map.h"
 
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "bespoke/pipeline/fit_elastic_map.h"
-#include "bespoke/pipeline/hopeless_fit.h"
+#include "bespoke/pipeline/detail/fit_elastic_map.h"
+#include "bespoke/pipeline/detail/hopeless_fit.h"
 
 namespace bespoke {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bespoke/bake/bake.h"
-#include "bespoke/pipeline/bake_steps.h"
+#include "bespoke/pipeline/detail/bake_steps.h"
 #include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {

@@ -1,4 +1,4 @@
-#include "bespoke/bake/leaf_samples.h"
+#include "bespoke/bake/detail/leaf_samples.h"
 
 #include <algorithm>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "bespoke/quality/winding_number.h"
+#include "bespoke/quality/detail/winding_number.h"
 
 #include <algorithm>
 #include <array>
