@@ -72,8 +72,13 @@ TEST_F(GltfFaces, NameThePlaceOfWhatIsWrong) {
       scene.accessor(std::vector<std::uint8_t>{0, 1}, "SCALAR", 5121);
   EXPECT_THAT(complaint("a.glb", scene.glb()), HasSubstr("no whole number of triangles"));
   scene = seamed_square();
-  scene.root["meshes"][0]["primitives"][0]["mode"] = 1;
-  EXPECT_THAT(complaint("a.glb", scene.glb()), HasSubstr("the scene shows no triangles"));
+  scene.root["meshes"][0]["primitives"][0]["mode"] = 0;
+  EXPECT_THAT(complaint("a.glb", scene.glb()), HasSubstr("the scene shows neither triangles nor lines"));
+  scene = seamed_square();
+  Json& lines = scene.root["meshes"][0]["primitives"][0];
+  lines["mode"] = 1;
+  lines["indices"] = scene.accessor(std::vector<std::uint8_t>{0, 1, 2}, "SCALAR", 5121);
+  EXPECT_THAT(complaint("a.glb", scene.glb()), HasSubstr("3 indices are no whole number of lines"));
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
 #include "bespoke/product/product_io.h"
-#include "bespoke/product/unsplit_lines.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -126,9 +125,6 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
                    to_string(degenerate));
     summary.warnings = std::move(carried.warnings);
     if (!other_unit.empty()) summary.warnings.push_back(std::move(other_unit));
-    if (const std::size_t lines = options.refine ? unsplit_line_primitives(input) : 0; lines > 0)
-      summary.warnings.push_back(std::to_string(lines) +
-                                 " primitives of lines keep their points; only edges of triangles are split");
     summary.parts = std::move(carried.parts);
     summary.joints = carried.joints;
     summary.points.points = points;

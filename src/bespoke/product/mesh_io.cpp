@@ -1,11 +1,11 @@
 #include "bespoke/product/mesh_io.h"
 
-#include "bespoke/product/product_io.h"
+#include "bespoke/product/posed_product.h"
 
 namespace bespoke {
 
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path) {
-  const Product product = read_product(path);
+  const Product product = read_product(path, ModelPose::shown);
   return {product.vertices, triangulated(product)};
 }
 

@@ -28,7 +28,7 @@ struct Product {
   Points vertices;                 ///< 3×n, mesh units
   std::vector<int> polygon_start;  ///< p+1; polygon k is corners[start[k]] … corners[start[k+1]-1]
   std::vector<int> corners;        ///< vertex indices
-  std::vector<int> line_edges;     ///< the ends of the edges of polylines (OBJ, PLY), by twos
+  std::vector<int> line_edges;     ///< the ends of the edges of polylines (OBJ, PLY, glTF), by twos
   DegenerateFaces degenerate;
   Eigen::Matrix2Xd texture;  ///< 2×(number of corners), (0, 0) where a face has none; or empty
   bool has_normals = false;  ///< the file carried normals, so the writer writes recomputed ones

@@ -3,6 +3,7 @@
 #include <iosfwd>
 
 #include "bespoke/product/detail/product_file.h"
+#include "bespoke/product/model_pose.h"
 #include "bespoke/product/product_io.h"
 
 namespace bespoke {
@@ -13,7 +14,7 @@ Product read_ply_faces(const InputFile& file);
 Product read_stl_faces(const InputFile& file);
 Product read_off_faces(const InputFile& file);
 Product read_gltf_faces(const InputFile& file);
-Product read_stored_gltf_faces(const InputFile& file);  ///< skinned meshes in the pose that is stored
+Product read_gltf_model_faces(const InputFile& file, ModelPose pose);  ///< of a model: without lines
 Product read_3mf_faces(const InputFile& file);
 
 /// What the writers are given: a product whose coordinates are finite and fit into their numbers.

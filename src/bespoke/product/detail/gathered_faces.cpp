@@ -126,25 +126,29 @@ std::vector<std::size_t> kept_triangles(const Points& corners) {
   return kept;
 }
 
-Product joined_triangles(const Points& corners) {
-  const std::vector<int> first = first_at_equal_position(corners);
+Product joined_triangles(const Points& corners, const Points& line_ends) {
+  Points all(3, corners.cols() + line_ends.cols());
+  all << corners, line_ends;
+  const std::vector<int> first = first_at_equal_position(all);
   Product product;
   product.polygon_start.push_back(0);
   std::vector<int> vertex(first.size(), -1);
   std::vector<int> used;
-  for (const std::size_t triangle : kept_triangles(corners)) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int corner = first[3 * triangle + k];
-      int& number = vertex[static_cast<std::size_t>(corner)];
-      if (number < 0) {
-        number = static_cast<int>(used.size());
-        used.push_back(corner);
-      }
-      product.corners.push_back(number);
+  const auto number_of = [&](std::size_t corner) {
+    int& number = vertex[static_cast<std::size_t>(first[corner])];
+    if (number < 0) {
+      number = static_cast<int>(used.size());
+      used.push_back(first[corner]);
     }
+    return number;
+  };
+  for (const std::size_t triangle : kept_triangles(corners)) {
+    for (std::size_t k = 0; k < 3; ++k) product.corners.push_back(number_of(3 * triangle + k));
     product.polygon_start.push_back(static_cast<int>(product.corners.size()));
   }
-  product.vertices = corners(Eigen::all, used);
+  for (auto end = static_cast<std::size_t>(corners.cols()); end < first.size(); ++end)
+    product.line_edges.push_back(number_of(end));
+  product.vertices = all(Eigen::all, used);
   return product;
 }
 

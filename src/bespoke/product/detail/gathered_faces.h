@@ -55,8 +55,9 @@ GatheredFaces gather_text(const InputFile& file, const TextFormat& format,
 
 /// Triangles of formats without shared vertices, or that share them only where all else is equal too: three
 /// corners each, 3×3m. One vertex for all corners at exactly one place, in the order of their first use;
-/// triangles of which two corners coincide are left out.
-Product joined_triangles(const Points& corners);
+/// triangles of which two corners coincide are left out. Lines, two ends an edge, are all kept; their
+/// vertices follow those of the triangles.
+Product joined_triangles(const Points& corners, const Points& line_ends = Points(3, 0));
 
 /// The numbers of the triangles that joined_triangles keeps, ascending.
 std::vector<std::size_t> kept_triangles(const Points& corners);

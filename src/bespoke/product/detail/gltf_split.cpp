@@ -9,49 +9,33 @@
 #include "bespoke/product/detail/face_parts.h"
 #include "bespoke/product/detail/gathered_faces.h"
 #include "bespoke/product/detail/gltf_additions.h"
-#include "bespoke/product/detail/gltf_middles.h"
 #include "bespoke/product/detail/gltf_plan.h"
-#include "bespoke/product/detail/gltf_triangles.h"
+#include "bespoke/product/detail/gltf_split_lines.h"
 #include "bespoke/product/detail/product_formats.h"
 
 namespace bespoke {
 namespace {
 
 constexpr const char* uri_of_added_buffer = "data:application/gltf-buffer;base64,";
-constexpr int list_of_triangles = 4;  // a primitive's `mode`
+// A primitive's `mode`.
+constexpr std::uint64_t list_of_lines = 1, loop_of_lines = 2, list_of_triangles = 4;
 
-/// Vertices that primitives of a mesh share, and those between them.
-struct SplitVertices {
-  std::size_t primitive = 0;  ///< the first one
-  GltfMiddles middles;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> between = {};  ///< by their ends
-
-  std::uint32_t middle(std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] =
-        between.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(middles.count()));
-    if (is_new) middles.ends.push_back(found->first);
-    return found->second;
-  }
-  bool operator==(const SplitVertices& other) const {
-    return primitive == other.primitive && middles == other.middles;
-  }
-};
-
-/// The triangles of a primitive that has some that are split.
-struct SplitTriangles {
+/// A primitive that has triangles or lines that are split.
+struct SplitPrimitive {
   std::size_t primitive = 0;
   std::size_t vertices = 0;            ///< in the mesh
-  std::vector<std::uint32_t> corners;  ///< three a triangle, as the primitive has its front
-  bool operator==(const SplitTriangles&) const = default;
+  std::vector<std::uint32_t> corners;  ///< three a triangle, as the primitive has its front; lines by `mode`
+  std::uint64_t mode = list_of_triangles;
+  bool operator==(const SplitPrimitive&) const = default;
 };
 
 struct SplitMesh {
   std::vector<SplitVertices> vertices;
-  std::vector<SplitTriangles> triangles;
+  std::vector<SplitPrimitive> primitives;
   std::size_t result = 0;  ///< the mesh that is written
 
   bool operator==(const SplitMesh& other) const {
-    return vertices == other.vertices && triangles == other.triangles;
+    return vertices == other.vertices && primitives == other.primitives;
   }
 };
 
@@ -103,6 +87,8 @@ class GltfSplitter {
         accessors_(read_accessors(file)),
         scene_(read_scene(file, accessors_)),
         triangles_(shown_triangles(file, accessors_, scene_)),
+        lines_(shown_lines(file, accessors_, scene_)),
+        split_lines_(triangles_, lines_, splits),
         parts_(splits, count_polygons(), file.path),
         meshes_(file.root().elements("meshes")),
         uses_(file),
@@ -124,7 +110,7 @@ class GltfSplitter {
       if (found->result != mesh) json_["nodes"][scene_.shown[shown].node]["mesh"] = found->result;
     }
     for (std::size_t mesh = 0; mesh < meshes_.size(); ++mesh) {
-      if (known[mesh].size() == 1) claim(known[mesh].front(), mesh);
+      if (known[mesh].size() == 1) note_own_accessors(known[mesh].front(), mesh);
       for (const SplitMesh& split : known[mesh]) write(split, mesh);
     }
     if (buffer_) drop_bytes_without_view(file_, json_, *buffer_);
@@ -156,13 +142,39 @@ class GltfSplitter {
       for (std::size_t p = begin; p < polygon_; ++p) is_split = is_split || parts_.is_split(p);
       if (is_split) split(triangles_[at_], kept_[at_], begin, mesh);
     }
+    for (; line_at_ < lines_.size() && lines_[line_at_].shown == shown; ++line_at_) {
+      const std::size_t begin = edge_;
+      edge_ += lines_[line_at_].ends.size() / 2;
+      bool is_split = false;
+      for (std::size_t edge = begin; edge < edge_; ++edge) is_split = is_split || split_lines_.is_split(edge);
+      if (is_split) split(lines_[line_at_], begin, mesh);
+    }
     return mesh;
+  }
+
+  /// Loops and strips stay such.
+  void split(const GltfLines& lines, std::size_t edge, SplitMesh& mesh) const {
+    const std::size_t of_mesh = scene_.shown[lines.shown].mesh;
+    const GltfPart primitive = meshes_[of_mesh].elements("primitives")[lines.primitive];
+    SplitPrimitive result{lines.primitive, vertices_of(lines.primitive, of_mesh, mesh), {}};
+    result.mode = primitive.whole_or("mode", list_of_lines);
+    for (std::size_t i = 0; i < lines.ends.size(); i += 2, ++edge) {
+      std::uint32_t before = lines.ends[i];
+      if (result.mode != list_of_lines && i == 0) result.corners.push_back(before);
+      for (const std::uint32_t behind :
+           split_lines_.chain(edge, before, lines.ends[i + 1], mesh.vertices[result.vertices])) {
+        if (result.mode == list_of_lines) result.corners.push_back(before);
+        result.corners.push_back(before = behind);
+      }
+    }
+    if (result.mode == loop_of_lines) result.corners.pop_back();
+    mesh.primitives.push_back(std::move(result));
   }
 
   void split(const GltfTriangles& triangles, const std::vector<std::size_t>& kept, std::size_t polygon,
              SplitMesh& mesh) const {
     const GltfShown& shown = scene_.shown[triangles.shown];
-    SplitTriangles result{triangles.primitive, vertices_of(triangles.primitive, shown.mesh, mesh), {}};
+    SplitPrimitive result{triangles.primitive, vertices_of(triangles.primitive, shown.mesh, mesh), {}};
     SplitVertices& vertices = mesh.vertices[result.vertices];
     const auto middle = [&](std::uint32_t a, std::uint32_t b, int) { return vertices.middle(a, b); };
     auto next = kept.begin();
@@ -178,7 +190,7 @@ class GltfSplitter {
           result.corners.insert(result.corners.end(), part.begin(), part.end());
     }
     if (triangles.is_mirrored) turn_over(result.corners);
-    mesh.triangles.push_back(std::move(result));
+    mesh.primitives.push_back(std::move(result));
   }
 
   /// The vertices in the mesh, new ones unless a primitive with the same lists has some.
@@ -204,19 +216,19 @@ class GltfSplitter {
   }
 
   /// Notes the accessors that nothing but the split primitives of the mesh uses.
-  void claim(const SplitMesh& split, std::size_t mesh) {
+  void note_own_accessors(const SplitMesh& split, std::size_t mesh) {
     const std::vector<GltfPart> primitives = meshes_[mesh].elements("primitives");
-    const auto claim_of = [&](const GltfPart& part, const std::string& key, std::size_t uses) {
+    const auto note = [&](const GltfPart& part, const std::string& key, std::size_t uses) {
       const auto index = part.index(key.c_str(), accessors_.size());
       if (index && uses_.accessors[*index] == uses) is_ours_[*index] = true;
     };
-    for (const SplitTriangles& triangles : split.triangles) {
-      const auto shares = [&](const SplitTriangles& other) { return other.vertices == triangles.vertices; };
-      const auto users = std::count_if(split.triangles.begin(), split.triangles.end(), shares);
-      const GltfPart& primitive = primitives[triangles.primitive];
-      claim_of(primitive, "indices", 1);
+    for (const SplitPrimitive& own : split.primitives) {
+      const auto shares = [&](const SplitPrimitive& other) { return other.vertices == own.vertices; };
+      const auto users = std::count_if(split.primitives.begin(), split.primitives.end(), shares);
+      const GltfPart& primitive = primitives[own.primitive];
+      note(primitive, "indices", 1);
       for (const GltfPart& list : GltfUses::lists_of(primitive))
-        for (const std::string& name : list.names()) claim_of(list, name, static_cast<std::size_t>(users));
+        for (const std::string& name : list.names()) note(list, name, static_cast<std::size_t>(users));
     }
   }
 
@@ -225,13 +237,13 @@ class GltfSplitter {
     std::vector<GltfJson> lists;
     for (const SplitVertices& vertices : split.vertices)
       lists.push_back(stored_lists(primitives[vertices.primitive], vertices.middles));
-    for (const SplitTriangles& triangles : split.triangles) {
-      GltfJson now = file_.json["meshes"][mesh]["primitives"][triangles.primitive];
-      now.update(lists[triangles.vertices]);
-      now["indices"] = store_indices(primitives[triangles.primitive].index("indices", accessors_.size()),
-                                     triangles.corners);
-      if (now.contains("mode")) now["mode"] = list_of_triangles;
-      json_["meshes"][split.result]["primitives"][triangles.primitive] = std::move(now);
+    for (const SplitPrimitive& own : split.primitives) {
+      GltfJson now = file_.json["meshes"][mesh]["primitives"][own.primitive];
+      now.update(lists[own.vertices]);
+      now["indices"] =
+          store_indices(primitives[own.primitive].index("indices", accessors_.size()), own.corners);
+      if (now.contains("mode")) now["mode"] = own.mode;
+      json_["meshes"][split.result]["primitives"][own.primitive] = std::move(now);
     }
   }
 
@@ -335,14 +347,17 @@ class GltfSplitter {
   std::vector<GltfAccessor> accessors_;
   GltfScene scene_;
   std::vector<GltfTriangles> triangles_;
+  std::vector<GltfLines> lines_;
+  SplitLines split_lines_;
   std::vector<std::vector<std::size_t>> kept_;  ///< of these, by their places, those that are polygons
   FaceParts parts_;
   std::vector<GltfPart> meshes_;
   GltfUses uses_;
   std::vector<bool> is_ours_;  ///< of every accessor: whether what is written now is its only use
   GltfJson json_;
-  std::size_t at_ = 0, polygon_ = 0;   ///< the next of the triangles and of the polygons
-  std::optional<std::size_t> buffer_;  ///< once there are new values
+  std::size_t at_ = 0, polygon_ = 0;    ///< the next of the triangles and of the polygons
+  std::size_t line_at_ = 0, edge_ = 0;  ///< the next of the lines and of their edges
+  std::optional<std::size_t> buffer_;   ///< once there are new values
 };
 
 }  // namespace
