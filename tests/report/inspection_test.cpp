@@ -34,7 +34,7 @@ TEST(InspectionText, ListsEveryAnchorWithItsResidual) {
 
 TEST(InspectionText, SaysWhyTheMapIsABijection) {
   Asset asset = test::small_asset();
-  EXPECT_THAT(inspection_text(asset), HasSubstr("proved to be one-to-one"));
+  EXPECT_THAT(inspection_text(asset), HasSubstr("proved to be a bijection of all of space"));
   EXPECT_THAT(inspection_text(asset), HasSubstr("at least 0.0625 in all 12345"));
   asset.steps.front().certificate.undecided = 1;
   // What matters most comes first.

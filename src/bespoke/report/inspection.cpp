@@ -50,13 +50,13 @@ Json embedded(const std::string& json) { return json.empty() ? Json() : Json::pa
 std::string certificate_text(const Certificate& certificate, std::size_t steps) {
   std::ostringstream text;
   if (certificate.is_bijection() && steps > 1) {
-    text << "proved to be one-to-one (a bijection) in all of space: each of its " << steps
+    text << "proved to be a bijection of all of space (one-to-one): each of its " << steps
          << " steps is one, continuous, trilinear in every finest cell with positive det of its gradient in "
             "all "
          << certificate.certified << " of them, and affine outside; det of the whole at least "
          << number(certificate.min_determinant);
   } else if (certificate.is_bijection()) {
-    text << "proved to be one-to-one (a bijection) in all of space: continuous, trilinear in every finest "
+    text << "proved to be a bijection of all of space (one-to-one): continuous, trilinear in every finest "
             "cell with det of "
             "its gradient at least "
          << number(certificate.min_determinant) << " in all " << certificate.certified
