@@ -60,11 +60,22 @@ void hold_parts_apart(FittedMapping& result, const TriangleMesh& source, const F
   result.summary.contact = std::move(apart.summary);
 }
 
+/// Anchors that may lie off their models know the sizes once they are multiplied to lie on them.
+void require_one_unit(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
+                      const FitOptions& options) {
+  const double ratio = size_ratio(anchors, source, target);
+  require_one_unit(ratio, measured_by(anchors));
+  if (!options.any_anchors) return;
+  const double off = anchor_scale(target, target_points(anchors)).value_or(1) /
+                     anchor_scale(source, source_points(anchors)).value_or(1);
+  require_one_unit(off * ratio, "their anchors, if these lay on both");
+}
+
 void require_models(const TriangleMesh& source, const TriangleMesh& target, const Anchors& anchors,
                     const FitOptions& options) {
   require_usable(source, anchors, options);
   require_valid(target, "target");
-  if (!options.any_size) require_one_unit(size_ratio(anchors, source, target), measured_by(anchors));
+  if (!options.any_size) require_one_unit(source, target, anchors, options);
   if (const std::string mistake = exchanged_sides(anchors, source, target); !mistake.empty())
     throw InvalidInput(mistake);
   if (!options.any_anchors) require_anchors_at_scale(anchors, source, target);
