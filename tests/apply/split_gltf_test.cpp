@@ -5,7 +5,7 @@
 #include <random>
 
 #include "apply/split_files.h"
-#include "bespoke/product/detail/gltf_file.h"
+#include "bespoke/product/gltf/document/gltf_file.h"
 #include "product/gltf_scene.h"
 #include "support/run_program.h"
 

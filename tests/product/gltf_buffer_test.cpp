@@ -1,4 +1,4 @@
-#include "bespoke/product/detail/gltf_buffer.h"
+#include "bespoke/product/gltf/document/gltf_buffer.h"
 
 #include <gtest/gtest.h>
 

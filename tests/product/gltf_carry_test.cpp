@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "bespoke/product/detail/gltf_file.h"
+#include "bespoke/product/gltf/document/gltf_file.h"
 #include "bespoke/product/product_io.h"
 #include "product/gltf_scene.h"
 

@@ -1,4 +1,4 @@
-#include "bespoke/product/detail/gltf_json.h"
+#include "bespoke/product/gltf/document/gltf_json.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "bespoke/product/detail/gltf_file.h"
+#include "bespoke/product/gltf/document/gltf_file.h"
 #include "product/rig_scene.h"
 
 namespace bespoke {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bespoke/product/detail/gltf_file.h"
+#include "bespoke/product/gltf/document/gltf_file.h"
 #include "product/gltf_scene.h"
 
 namespace bespoke::test {

@@ -1,4 +1,4 @@
-#include "bespoke/product/detail/obj_statements.h"
+#include "bespoke/product/obj/obj_statements.h"
 
 #include <gtest/gtest.h>
 

@@ -38,6 +38,18 @@ std::set<std::string> directories() {
   return names;
 }
 
+bool is_source(const fs::path& path) { return path.extension() == ".h" || path.extension() == ".cpp"; }
+
+/// Of modules that have named ones, such as "product/gltf/scene"; `detail` is none.
+std::set<std::string> subfolders() {
+  std::set<std::string> names;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library)) {
+    const fs::path name = fs::relative(entry.path(), library);
+    if (entry.is_directory() && name.has_parent_path() && name.filename() != "detail") names.insert(name);
+  }
+  return names;
+}
+
 /// The modules that the files of a module include, other than itself.
 std::set<std::string> included_modules(const std::string& module) {
   std::set<std::string> modules;
@@ -91,7 +103,49 @@ TEST(ModulePages, ModulesIncludeOnlyThoseAboveThemInTheTable) {
   }
 }
 
-// A header in MODULE/detail/ may be named by the files of MODULE and by the tests alone.
+TEST(ModulePages, SubfoldersHavePages) {
+  for (const std::string& folder : subfolders()) {
+    const std::string page = test::read_text(library / folder / "README.md");
+    EXPECT_EQ(page.rfind("# " + folder + "\n", 0), 0u) << folder;
+    EXPECT_LE(std::count(page.begin(), page.end(), '\n'), max_lines) << folder;
+  }
+}
+
+TEST(ModulePages, SubfoldersAndTheirModulesHoldAtMostTwelveUnits) {
+  std::set<std::string> folders = subfolders();
+  for (const std::string& folder : subfolders()) folders.insert(folder.substr(0, folder.find('/')));
+  for (const std::string& folder : folders) {
+    std::set<std::string> units;
+    for (const fs::directory_entry& entry : fs::directory_iterator(library / folder))
+      if (is_source(entry.path())) units.insert(entry.path().stem());
+    EXPECT_LE(units.size(), 12u) << folder;
+  }
+}
+
+// The module's page lists them in their order; each may include those above it and the module's own headers.
+TEST(ModulePages, SubfoldersIncludeOnlyThoseAboveThemInTheirModulesTable) {
+  for (const std::string& module : directories()) {
+    const std::vector<std::string> listed = matches(test::read_text(library / module / "README.md"),
+                                                    "\n\\| \\[`([a-z0-9_/]+)`\\]\\(\\1/README\\.md\\) \\|");
+    std::set<std::string> above;
+    for (const std::string& folder : listed) {
+      above.insert(module + "/" + folder);
+      for (const fs::directory_entry& entry : fs::directory_iterator(library / module / folder)) {
+        if (!is_source(entry.path())) continue;
+        for (const std::string& header :
+             matches(test::read_text(entry.path()),
+                     "#include \"bespoke/(" + module + "/[a-z0-9_/]+)/[a-z0-9_]+\\.h"))
+          EXPECT_TRUE(above.contains(header)) << entry.path() << ": " << header;
+      }
+    }
+    for (const std::string& folder : subfolders())
+      if (folder.rfind(module + "/", 0) == 0) {
+        EXPECT_TRUE(above.contains(folder)) << folder;
+      }
+  }
+}
+
+// A header in a folder of MODULE may be named by the files of MODULE and by the tests alone.
 TEST(ModulePages, DetailsStayInTheirModules) {
   for (const char* tree : {"src", "samples", "tools"})
     for (const fs::directory_entry& entry :
@@ -99,15 +153,15 @@ TEST(ModulePages, DetailsStayInTheirModules) {
       if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
       const std::string from = fs::relative(entry.path(), library).begin()->string();
       for (const std::string& module :
-           matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"))
+           matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/[a-z0-9_]+/"))
         EXPECT_EQ(module, from) << entry.path();
     }
 }
 
 TEST(ModulePages, PublicHeadersNameNoDetails) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library))
-    if (entry.path().extension() == ".h" && entry.path().parent_path().filename() != "detail") {
-      EXPECT_THAT(matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/detail/"), IsEmpty())
+    if (entry.path().extension() == ".h" && entry.path().parent_path().parent_path() == library) {
+      EXPECT_THAT(matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/[a-z0-9_]+/"), IsEmpty())
           << entry.path();
     }
 }
@@ -126,7 +180,7 @@ TEST(ModulePages, LibrariesAreIncludedInTheirPlacesOnly) {
        {"anchors/anchor_files.cpp", "anchors/detail/anchor_json.cpp", "anchors/detail/point_files.cpp",
         "anchors/detail/slicer_markups.cpp", "asset/detail/record_json.cpp", "exchange/glb_file.cpp",
         "pattern/detail/pattern_json.cpp", "pattern/seam_file.cpp", "pipeline/summary_json.h",
-        "product/detail/gltf_json.h"}}};
+        "product/gltf/document/gltf_json.h"}}};
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library)) {
     if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
     const std::string text = test::read_text(entry.path());

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bespoke/product/detail/face_group_formats.h"
+#include "bespoke/product/faces/face_group_formats.h"
 #include "bespoke/strings.h"
 
 namespace bespoke {

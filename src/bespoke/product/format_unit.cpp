@@ -6,7 +6,7 @@
 #include "bespoke/enum_names.h"
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
-#include "bespoke/product/detail/threemf_model.h"
+#include "bespoke/product/threemf/threemf_model.h"
 #include "bespoke/strings.h"
 
 namespace bespoke {

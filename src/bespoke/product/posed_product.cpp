@@ -1,8 +1,8 @@
 #include "bespoke/product/posed_product.h"
 
-#include "bespoke/product/detail/face_formats.h"
-#include "bespoke/product/detail/gltf_nodes.h"
+#include "bespoke/product/faces/face_formats.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/gltf/scene/gltf_nodes.h"
 #include "bespoke/strings.h"
 
 namespace bespoke {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "bespoke/product/detail/product_formats.h"
+#include "bespoke/product/carry/product_formats.h"
 #include "bespoke/strings.h"
 
 namespace bespoke {
