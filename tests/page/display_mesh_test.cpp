@@ -25,7 +25,7 @@ TEST(DisplayMesh, ThinsALargeMeshToVerticesOfItsOwn) {
   const DisplayMesh display = display_mesh(sphere, most);
   EXPECT_FALSE(display.is_whole);
   EXPECT_LE(display.faces.cols(), static_cast<Eigen::Index>(most));
-  EXPECT_GT(display.faces.cols(), static_cast<Eigen::Index>(most / 3));
+  EXPECT_GT(display.faces.cols(), static_cast<Eigen::Index>(most - 3));
   EXPECT_TRUE(std::is_sorted(display.original.begin(), display.original.end()));
   const TriangleMesh shown{display.shown(sphere.vertices), display.faces};
   EXPECT_LT((shown.vertices.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
@@ -47,6 +47,19 @@ TEST(DisplayMesh, ThinsPointsWithoutFaces) {
   EXPECT_LE(display.original.size(), 500u);
   EXPECT_GT(display.original.size(), 100u);
   EXPECT_EQ(display.faces.cols(), 0);
+}
+
+TEST(DisplayMesh, ThinsTrianglesThatShareNoVertices) {
+  TriangleMesh scattered = shapes::soup(shapes::icosphere(4));
+  // Each about its first corner half as large, so that none meets another.
+  for (Eigen::Index f = 0; f < scattered.faces.cols(); ++f)
+    for (int k = 1; k < 3; ++k)
+      scattered.vertices.col(3 * f + k) =
+          0.5 * (scattered.vertices.col(3 * f + k) + scattered.vertices.col(3 * f)).eval();
+  const DisplayMesh display = display_mesh(scattered, 1000);
+  EXPECT_FALSE(display.is_whole);
+  EXPECT_LE(display.faces.cols(), 1000);
+  EXPECT_GT(display.faces.cols(), 100);
 }
 
 TEST(DisplayMesh, RefusesFacesWithoutVertices) {

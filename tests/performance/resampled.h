@@ -5,8 +5,7 @@
 namespace bespoke {
 
 /// The same surface with about `vertices` vertices: edges are halved until there are enough, then collapsed
-/// in the order of their quadric error (OpenMesh's decimater). `mesh`: manifold. Throws InvalidInput when it
-/// is not.
+/// in the order of their quadric error (mesh/decimation.h).
 TriangleMesh resampled(const TriangleMesh& mesh, Eigen::Index vertices);
 
 }  // namespace bespoke

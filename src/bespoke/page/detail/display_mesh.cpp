@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "bespoke/error.h"
+#include "bespoke/mesh/decimation.h"
 
 namespace bespoke {
 namespace {
@@ -105,8 +106,12 @@ DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t max_faces) {
     std::iota(whole.original.begin(), whole.original.end(), 0);
     return whole;
   }
-  // A surface of n triangles crosses about n / 2 cubes. From there the grid gets coarser until few enough are
-  // left.
+  if (has_faces)
+    if (const DecimatedMesh fewer = decimated(mesh, {.max_faces = max_faces});
+        static_cast<std::size_t>(fewer.mesh.faces.cols()) <= max_faces)
+      return {fewer.vertices, fewer.mesh.faces, false};
+  // Points, or triangles that share too few edges to collapse. A surface of n triangles crosses about n / 2
+  // cubes. From there the grid gets coarser until few enough are left.
   const double extent = diagonal(mesh.vertices);
   double edge = extent / std::sqrt(static_cast<double>(max_faces));
   constexpr double coarser = 1.08;
