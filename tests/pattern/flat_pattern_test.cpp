@@ -8,9 +8,9 @@
 #include "bespoke/pattern/detail/grain.h"
 #include "bespoke/pattern/detail/sheet_formats.h"
 #include "bespoke/pattern/write_pattern.h"
+#include "pattern/mesh_parts.h"
 #include "pattern/tubes.h"
 #include "support/error_message.h"
-#include "support/shapes.h"
 
 namespace bespoke {
 namespace {
@@ -19,22 +19,7 @@ using ::testing::HasSubstr;
 
 /// Half of a ball of radius 100 mm, open below.
 Garment hemisphere() {
-  TriangleMesh ball = shapes::icosphere(4);
-  std::vector<int> kept;
-  for (Eigen::Index f = 0; f < ball.faces.cols(); ++f)
-    if (ball.vertices(1, ball.faces.col(f)).mean() > 0) kept.push_back(static_cast<int>(f));
-  std::vector<int> number(static_cast<std::size_t>(ball.vertices.cols()), -1), vertices;
-  TriangleMesh mesh{{}, ball.faces(Eigen::all, kept)};
-  for (int& v : mesh.faces.reshaped()) {
-    int& known = number[static_cast<std::size_t>(v)];
-    if (known < 0) {
-      known = static_cast<int>(vertices.size());
-      vertices.push_back(v);
-    }
-    v = known;
-  }
-  mesh.vertices = 100 * ball.vertices(Eigen::all, vertices);
-  return test::garment_of(std::move(mesh));
+  return test::garment_of(test::part_of(test::ball(), [](const Vector3& x) { return x.y() > 0; }).mesh);
 }
 
 TEST(FlatPattern, OfATubeIsARectangleWithItsGrainUpright) {

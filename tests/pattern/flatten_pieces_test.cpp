@@ -11,6 +11,7 @@
 #include "bespoke/pattern/detail/paired_seams.h"
 #include "bespoke/pattern/self_overlap.h"
 #include "pattern/bent_cloth.h"
+#include "pattern/mesh_parts.h"
 #include "support/error_message.h"
 #include "support/shapes.h"
 
@@ -22,39 +23,17 @@ using ::testing::HasSubstr;
 
 constexpr double of_the_diagonal = 1e-6;
 
-/// The faces of a mesh whose centres are kept, as a piece.
 template <class IsKept>
-Piece part_of(const TriangleMesh& whole, const IsKept& is_kept) {
-  std::vector<int> kept;
-  for (Eigen::Index f = 0; f < whole.faces.cols(); ++f)
-    if (is_kept(Vector3(whole.vertices(Eigen::all, whole.faces.col(f)).rowwise().mean())))
-      kept.push_back(static_cast<int>(f));
-  TriangleMesh mesh{whole.vertices, whole.faces(Eigen::all, kept)};
-  std::vector<int> number(static_cast<std::size_t>(whole.vertices.cols()), -1), vertices;
-  for (int& v : mesh.faces.reshaped()) {
-    int& known = number[static_cast<std::size_t>(v)];
-    if (known < 0) {
-      known = static_cast<int>(vertices.size());
-      vertices.push_back(v);
-    }
-    v = known;
-  }
-  mesh.vertices = whole.vertices(Eigen::all, vertices);
-  Piece piece = test::piece_of(std::move(mesh));
-  piece.vertices = vertices;
+Piece piece_where(const IsKept& is_kept) {
+  test::MeshPart part = test::part_of(test::ball(), is_kept);
+  Piece piece = test::piece_of(std::move(part.mesh));
+  piece.vertices = std::move(part.vertices);
   return piece;
 }
 
-/// A ball of radius 100 mm.
-TriangleMesh ball() {
-  TriangleMesh mesh = shapes::icosphere(4);
-  mesh.vertices *= 100;
-  return mesh;
-}
-
-/// What of it lies above a height, radii.
+/// What of a ball lies above a height, radii.
 Piece cap(double height) {
-  return part_of(ball(), [&](const Vector3& x) { return x.y() > 100 * height; });
+  return piece_where([&](const Vector3& x) { return x.y() > 100 * height; });
 }
 
 TEST(FlattenPieces, UnrollsBentClothExactly) {
@@ -109,7 +88,7 @@ TEST(FlattenPieces, MethodsKeepWhatTheySay) {
 // A ball's cap in two unequal parts, which alone would become of different lengths along the cut.
 TEST(FlattenPieces, PairedSeamsHaveOneLength) {
   const auto part = [](double side) {
-    return part_of(ball(), [&](const Vector3& x) { return x.y() > -20 && side * (x.x() - 40) > 0; });
+    return piece_where([&](const Vector3& x) { return x.y() > -20 && side * (x.x() - 40) > 0; });
   };
   const std::vector<Piece> pieces{part(1), part(-1)};
   const std::vector<Seam> seams = paired_seams(pieces);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
+#include "bespoke/exchange/glb_file.h"
+#include "bespoke/pattern/cut_pieces.h"
 #include "support/error_message.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
@@ -47,6 +49,23 @@ TEST_F(Garments, TakeTheFirstRuleThatTheFileHas) {
       read_garment(file(square + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n"), {PieceRule::automatic, "mm"});
   EXPECT_EQ(charted.rule, PieceRule::charts);
   EXPECT_EQ(charted.texture.col(2), Eigen::Vector2d(1, 1));
+}
+
+// glTF has one texture coordinate a vertex: its corners are apart along the edges of charts, and joined again.
+TEST_F(Garments, OfGltfHaveCharts) {
+  MorphingMesh mesh;
+  mesh.product.vertices.resize(3, 4);
+  mesh.product.vertices << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0;
+  mesh.product.polygon_start = {0, 3, 6};
+  mesh.product.corners = {0, 1, 2, 0, 2, 3};
+  mesh.product.texture.resize(2, 6);
+  mesh.product.texture << 0, 0.25, 0.25, 0.5, 0.75, 0.5, 0, 0, 0.25, 0, 0.25, 0.25;
+  write_glb(directory_ / "garment.glb", mesh, {});
+  const Garment garment = read_garment(directory_ / "garment.glb", {});
+  EXPECT_EQ(garment.rule, PieceRule::charts);
+  EXPECT_EQ(garment.mesh.vertices.cols(), 4);
+  EXPECT_LT((garment.texture - mesh.product.texture).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_EQ(cut_pieces(garment).pieces.size(), 2u);
 }
 
 TEST_F(Garments, AreRefusedWithWhatToDo) {

@@ -31,11 +31,24 @@ class SeamFiles : public ::testing::Test {
 TEST_F(SeamFiles, HaveEdgesPathsAndNames) {
   const SeamFile file = read(
       R"({"seams":[{"edges":[[1,2]]},{"name":"side","path":[1,5]}],"pieces":[{"name":"front","vertex":7}]})");
-  EXPECT_EQ(file.edges.size(), 1u + 4u);
-  EXPECT_EQ(file.edges.front(), (std::array<int, 2>{0, 1}));
+  EXPECT_EQ(file.edges().size(), 1u + 4u);
+  EXPECT_EQ(file.edges().front(), (std::array<int, 2>{0, 1}));
   ASSERT_EQ(file.names.size(), 1u);
   EXPECT_EQ(file.names[0].name, "front");
   EXPECT_EQ(file.names[0].vertex, 6);
+}
+
+TEST_F(SeamFiles, HaveLinesEaseAndWidths) {
+  const SeamFile file = read(
+      R"({"seams":[{"line":[1,[2,7,0.25],12],"ease":8,"longer":"sleeve"}],"widths":[{"name":"waist","vertex":3}]})");
+  ASSERT_EQ(file.cuts.size(), 1u);
+  ASSERT_EQ(file.cuts[0].line.size(), 3u);
+  EXPECT_EQ(file.cuts[0].line[1].b, 6);
+  EXPECT_EQ(file.cuts[0].line[1].share, 0.25);
+  EXPECT_EQ(file.cuts[0].ease, 8);
+  EXPECT_EQ(file.cuts[0].longer, "sleeve");
+  ASSERT_EQ(file.widths.size(), 1u);
+  EXPECT_EQ(file.widths[0].vertex, 2);
 }
 
 TEST_F(SeamFiles, AreRefusedWithWhatIsWrong) {
@@ -48,6 +61,11 @@ TEST_F(SeamFiles, AreRefusedWithWhatIsWrong) {
   EXPECT_THAT(complaint(R"({"seams":[{"edges":[[1,2,3]]}]})"), HasSubstr("pair of vertices"));
   EXPECT_THAT(complaint(R"({"seams":[{"way":[1,2]}]})"), HasSubstr("\"way\""));
   EXPECT_THAT(complaint(R"({"seams":[],"pieces":[{"vertex":2}]})"), HasSubstr("piece 1 needs"));
+  EXPECT_THAT(complaint(R"({"seams":[{"line":[1,[1,2]]}]})"), HasSubstr("the share of the way"));
+  EXPECT_THAT(complaint(R"({"seams":[{"line":[1,[1,2,1.5]]}]})"), HasSubstr("share 1.5 is not in 0 … 1"));
+  EXPECT_THAT(complaint(R"({"seams":[{"path":[1,2],"line":[1,2]}]})"), HasSubstr("needs one of"));
+  EXPECT_THAT(complaint(R"({"seams":[{"path":[1,2],"ease":3}]})"), HasSubstr("both, or neither"));
+  EXPECT_THAT(complaint(R"({"seams":[],"widths":[{"vertex":2}]})"), HasSubstr("width 1 needs"));
   EXPECT_THROW(read_seam_file(directory_ / "none.json", grid_), FileError);
 }
 

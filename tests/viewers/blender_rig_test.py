@@ -6,12 +6,14 @@ Prints the name of every property that holds.
 
 import math
 import sys
-import traceback
 from pathlib import Path
 
 import bpy
 import numpy as np
 from mathutils import Quaternion
+
+sys.path.insert(0, str(Path(__file__).parent))
+from held_properties import run
 
 DIRECTORY = Path(sys.argv[sys.argv.index("--") + 1])
 np.bool = bool  # Blender 3.4's importer names it, and NumPy has it no longer
@@ -108,14 +110,4 @@ PROPERTIES = (
     elbow_of_the_targets_skeleton_bends_the_bound_sleeve,
 )
 
-broken = 0
-for prop in PROPERTIES:
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    try:
-        prop()
-        print("held:", prop.__name__)
-    except Exception:
-        traceback.print_exc()
-        print("broken:", prop.__name__)
-        broken += 1
-sys.exit(1 if broken else 0)
+run(PROPERTIES)

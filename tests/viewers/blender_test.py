@@ -7,7 +7,6 @@ import json
 import math
 import subprocess
 import sys
-import traceback
 from pathlib import Path
 
 import addon_utils
@@ -17,7 +16,9 @@ from mathutils import Matrix
 
 DIRECTORY, COMMAND, ADD_ONS = sys.argv[sys.argv.index("--") + 1 :]
 DIRECTORY = Path(DIRECTORY)
-sys.path.insert(0, ADD_ONS)
+sys.path[:0] = [ADD_ONS, str(Path(__file__).parent)]
+from held_properties import run
+
 FLOAT_ROUNDING = 2.0**-23  # of the largest coordinate: one rounding by the add-on, one by Blender
 
 
@@ -377,15 +378,4 @@ PROPERTIES = (
 )
 
 enable()
-broken = 0
-for prop in PROPERTIES:
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    enable()
-    try:
-        prop()
-        print("held:", prop.__name__)
-    except Exception:
-        traceback.print_exc()
-        print("broken:", prop.__name__)
-        broken += 1
-sys.exit(1 if broken else 0)
+run(PROPERTIES, enable)

@@ -10,11 +10,13 @@
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pattern/write_pattern.h"
+#include "bespoke/product/format_unit.h"
 #include "bespoke/unknown_ending.h"
 #include "commands.h"
 #include "help.h"
 #include "name_option.h"
 #include "output_files.h"
+#include "pattern_options.h"
 
 namespace bespoke::command {
 namespace {
@@ -24,7 +26,9 @@ struct FlattenArguments {
   std::string output;
   std::string source;
   std::string seams;
+  std::string anchors;
   std::string stretch_limit;
+  std::vector<std::string> eases;
   std::optional<PieceRule> pieces;
   std::optional<FlatteningMethod> method;
   std::optional<AllowanceCorners> corners;
@@ -48,8 +52,10 @@ StretchLimits stretch_limits(const std::string& text) {
 }
 
 std::vector<JobFile> flatten_inputs(const FlattenArguments& arguments) {
-  return named_files(
-      {{"product", arguments.product}, {"source", arguments.source}, {"seams", arguments.seams}});
+  return named_files({{"product", arguments.product},
+                      {"source", arguments.source},
+                      {"seams", arguments.seams},
+                      {"anchors", arguments.anchors}});
 }
 
 std::vector<JobFile> flatten_outputs(const FlattenArguments& arguments) {
@@ -60,13 +66,19 @@ std::vector<JobFigure> figures(const FlatPattern& pattern) {
   double strain = 0, gap = 0;
   for (const PatternPiece& piece : pattern.pieces) strain = std::max(strain, piece.strain.strain_p95);
   for (const PatternSeam& seam : pattern.seams)
-    gap = std::max(gap, std::abs(seam.lengths[0] - seam.lengths[1]));
+    gap = std::max(gap, std::abs(seam.lengths[0] - seam.lengths[1] - seam.seam.ease));
   return {{"pieces", pattern.pieces.size()}, {"strain_p95", strain}, {"seam_difference_mm", gap}};
 }
 
 PatternOptions pattern_options(const FlattenArguments& arguments, const Garment& garment) {
   PatternOptions options = arguments.pattern;
   options.flatten.method = arguments.method.value_or(options.flatten.method);
+  set_eases(arguments.eases, options);
+  if (!arguments.anchors.empty()) {
+    const std::string& unit = arguments.garment.unit;
+    options.marks =
+        marks_of_anchors(arguments.anchors, unit.empty() ? unit_of_format(arguments.product) : unit);
+  }
   if (!arguments.stretch_limit.empty()) options.stretch_limits = stretch_limits(arguments.stretch_limit);
   if (!arguments.seams.empty()) options.cut.seams = read_seam_file(arguments.seams, garment.mesh);
   return options;
@@ -114,8 +126,13 @@ void add_input(CLI::App& flatten, FlattenArguments& arguments) {
       "what shares no vertex (default: auto, the first that the file has)");
   flatten
       .add_option("--seams", arguments.seams,
-                  "Cut along edges and paths between vertices instead, by numbers from 1; pieces get names")
+                  "Cut along edges, paths and lines between vertices instead, by numbers from 1, as `pick "
+                  "--seams` writes them; pieces get names")
       ->type_name("SEAMS.json");
+  flatten
+      .add_option("--anchors", arguments.anchors,
+                  "Notches where seams pass the anchors of the source, and the ends of its curves")
+      ->type_name("ANCHORS");
   flatten.add_flag("--auto-cut", arguments.pattern.cut.auto_cut,
                    "Cut a piece that is no disk along shortest loops, instead of refusing it");
 }
@@ -125,10 +142,11 @@ void add_method(CLI::App& flatten, FlattenArguments& arguments) {
   add_name_option(flatten, "--method", arguments.method, flattening_methods,
                   "Keep lengths as well as can be, angles, or areas (default: rigid)");
   flatten
-      .add_option("--ease", arguments.pattern.flatten.seam_tolerance,
-                  "Millimetres that the sides of a seam may differ by; more is named (default: 1)")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("MM");
+      .add_option("--ease", arguments.eases,
+                  "Millimetres that the sides of a seam may differ by; more is named (default: 1). Or of one "
+                  "seam, by its number, what the first side that is printed is longer by (repeatable)")
+      ->allow_extra_args(false)
+      ->type_name("MM|SEAM=MM");
   flatten
       .add_option(
           "--darts", arguments.pattern.max_darts,
@@ -149,16 +167,11 @@ void add_output(CLI::App& flatten, FlattenArguments& arguments) {
   flatten.add_option("-o,--output", arguments.output, "Pattern to write: " + pattern_endings())
       ->required()
       ->type_name("FILE");
-  flatten
-      .add_option("--seam-allowance", arguments.sheet.seam_allowance,
-                  "Millimetres outside the sew line (default: 0)")
-      ->check(CLI::Range(0.0, 200.0))
-      ->type_name("MM");
+  add_seam_allowance(flatten, arguments.sheet.seam_allowance);
   add_name_option(flatten, "--corners", arguments.corners, allowance_corners,
                   "Corners of the seam allowance (default: mitred)");
-  flatten.add_option("--width", arguments.sheet.width, "Of cloth or roll, millimetres (default: 1500)")
-      ->check(CLI::Range(200.0, 20000.0))
-      ->type_name("MM");
+  add_millimetres(flatten, "--width", arguments.sheet.width, CLI::Range(200.0, 20000.0),
+                  "Of cloth or roll, millimetres (default: 1500)");
   flatten.add_option("--size", arguments.sheet.size, "Size that the labels name")->type_name("NAME");
   flatten
       .add_option("--quantity", arguments.sheet.quantity,
@@ -182,11 +195,12 @@ void add_flatten_command(CLI::App& app, const PlanHandler& handle_plan) {
   add_method(*flatten, *arguments);
   add_output(*flatten, *arguments);
   flatten->footer(
-      "A seam file cuts along edges or shortest paths, and names pieces by a vertex; a path that ends inside "
-      "is a "
-      "dart:\n"
-      "  {\"seams\":[{\"path\":[12,80,301]},{\"edges\":[[4,5],[5,9]]}],\n"
-      "   \"pieces\":[{\"name\":\"front\",\"vertex\":77}]}\n\n"
+      "A seam file cuts along edges, shortest paths, or lines through vertices and shares of edges, and "
+      "names "
+      "pieces by a vertex; what ends inside is a dart. The side of the piece \"longer\" eases in:\n"
+      "  {\"seams\":[{\"path\":[12,80,301],\"ease\":15,\"longer\":\"sleeve\"},\n"
+      "            {\"edges\":[[4,5],[5,9]]},{\"line\":[9,[12,80,0.4],77]}],\n"
+      "   \"pieces\":[{\"name\":\"front\",\"vertex\":77}],\"widths\":[{\"name\":\"waist\",\"vertex\":9}]}\n\n"
       "Examples:\n"
       "  bespoke flatten skirt.obj --unit cm --auto-cut -o skirt.svg\n"
       "  bespoke flatten carried.obj --source dress.obj --unit cm --seams seams.json --seam-allowance 10 -o "
@@ -197,6 +211,8 @@ void add_flatten_command(CLI::App& app, const PlanHandler& handle_plan) {
     if (!can_write_pattern(given.output))
       throw UnknownEnding(given.output + ": its name must end in " + pattern_endings());
     if (!given.stretch_limit.empty()) stretch_limits(given.stretch_limit);
+    PatternOptions checked;
+    set_eases(given.eases, checked);
     require_safe_outputs(flatten_inputs(given), flatten_outputs(given));
     handle_plan(
         {given.run, flatten_inputs(given), flatten_outputs(given), {}, [given](const RunContext& context) {

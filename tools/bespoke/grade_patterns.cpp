@@ -7,6 +7,7 @@
 #include "bespoke/pattern/size_table.h"
 #include "bespoke/pattern/write_pattern.h"
 #include "output_files.h"
+#include "pattern_options.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
@@ -58,10 +59,7 @@ void add_pattern_options(CLI::App& grade, PatternRequest& request) {
       ->type_name("UNIT");
   grade.add_option("--seams", request.seams, "Where they are cut, as for `flatten`")->type_name("SEAMS.json");
   grade.add_flag("--auto-cut", request.auto_cut, "Cut pieces that are no disks along shortest loops");
-  grade
-      .add_option("--seam-allowance", request.seam_allowance, "Millimetres outside the sew line (default: 0)")
-      ->check(CLI::Range(0.0, 200.0))
-      ->type_name("MM");
+  add_seam_allowance(grade, request.seam_allowance);
 }
 
 std::vector<BatchJob> pattern_jobs(const GradeRequest& request, const std::vector<GradeSize>& sizes,

@@ -42,7 +42,7 @@ class CutEdges {
         cut.push_back(
             {joined_.of_vertex[static_cast<std::size_t>(a)], joined_.of_vertex[static_cast<std::size_t>(b)]});
     };
-    if (options_.seams) add(options_.seams->edges);
+    if (options_.seams) add(options_.seams->edges());
     add(options_.further_edges);
     return cut;
   }
@@ -168,7 +168,7 @@ class PieceCutter {
       if (piece.name.empty()) piece.name = "piece";
     }
     if (options_.seams)
-      for (const PieceName& wanted : options_.seams->names) {
+      for (const VertexName& wanted : options_.seams->names) {
         const int vertex =
             joined_
                 .first[static_cast<std::size_t>(joined_.of_vertex[static_cast<std::size_t>(wanted.vertex)])];

@@ -1,5 +1,6 @@
 #include "bespoke/pattern/flat_pattern.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -9,6 +10,8 @@
 #include "bespoke/pattern/detail/dart.h"
 #include "bespoke/pattern/detail/grain.h"
 #include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/detail/seam_lines.h"
+#include "bespoke/pattern/detail/seam_places.h"
 
 namespace bespoke {
 namespace {
@@ -33,6 +36,7 @@ Attempt attempt(const Garment& garment, const Garment* source, const PatternOpti
   result.cut = cut_pieces(source ? *source : garment, cut);
   result.cut.pieces = pieces_at(std::move(result.cut.pieces), garment.mesh.vertices);
   result.seams = paired_seams(result.cut.pieces);
+  set_eases(garment, result.cut.pieces, options, result.seams);
   result.flat = flatten_pieces(result.cut.pieces, result.seams, options.flatten);
   for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {
     const Piece& piece = result.cut.pieces[p];
@@ -125,7 +129,7 @@ PatternSeam measured_seam(Seam seam, const std::vector<PatternPiece>& pieces, do
   for (std::size_t side = 0; side < 2; ++side)
     measured.lengths[side] =
         side_length(seam.sides[side], pieces[static_cast<std::size_t>(seam.sides[side].piece)].flat);
-  measured.differs = std::abs(measured.lengths[0] - measured.lengths[1]) > tolerance;
+  measured.differs = std::abs(measured.lengths[0] - measured.lengths[1] - seam.ease) > tolerance;
   measured.seam = std::move(seam);
   return measured;
 }
@@ -138,13 +142,35 @@ std::string seam_text(const FlatPattern& pattern, const PatternSeam& seam) {
   };
   char text[64];
   std::snprintf(text, sizeof text, "%.1f mm and %.1f mm", seam.lengths[0], seam.lengths[1]);
-  return "'" + name(0) + "' to '" + name(1) + "': " + text;
+  std::string whole = "'" + name(0) + "' to '" + name(1) + "': " + text;
+  if (seam.seam.ease != 0) whole += ", ease " + format_number(std::abs(seam.seam.ease), 3) + " mm";
+  return whole;
 }
 
-}  // namespace
+/// From 1; of a vertex that was added, which has none in the file, that of the nearest one of its face.
+std::string own_vertex(const FlatPattern& pattern, int vertex) {
+  if (pattern.added.empty() || vertex < pattern.own_vertices) return std::to_string(vertex + 1);
+  const AddedVertex& added = pattern.added[static_cast<std::size_t>(vertex - pattern.own_vertices)];
+  Eigen::Index nearest = 0;
+  added.weights.maxCoeff(&nearest);
+  return std::to_string(added.of[static_cast<std::size_t>(nearest)] + 1);
+}
 
-FlatPattern flat_pattern(const Garment& garment, const Garment* source, const PatternOptions& options) {
-  if (source) require_same_faces(garment, *source);
+std::vector<NamedWidth> named_widths(const SeamFile& seams, const std::vector<PatternPiece>& pieces) {
+  std::vector<NamedWidth> widths;
+  for (const VertexName& wanted : seams.widths)
+    for (std::size_t p = 0; p < pieces.size(); ++p) {
+      const std::vector<int>& vertices = pieces[p].piece.vertices;
+      const auto found = std::find(vertices.begin(), vertices.end(), wanted.vertex);
+      if (found != vertices.end())
+        widths.push_back({wanted.name, static_cast<int>(p), static_cast<int>(found - vertices.begin())});
+    }
+  return widths;
+}
+
+/// The same of a garment that seams cut along edges only.
+FlatPattern pattern_along_edges(const Garment& garment, const Garment* source,
+                                const PatternOptions& options) {
   FlatPattern pattern;
   Attempt result = with_darts(garment, source, options, pattern.darts);
   pattern.charts = result.cut.charts;
@@ -170,6 +196,34 @@ FlatPattern flat_pattern(const Garment& garment, const Garment* source, const Pa
   }
   for (Seam& seam : result.seams)
     pattern.seams.push_back(measured_seam(std::move(seam), pattern.pieces, options.flatten.seam_tolerance));
+  if (!options.marks.empty()) {
+    std::vector<Piece> pieces;
+    for (const PatternPiece& piece : pattern.pieces) pieces.push_back(piece.piece);
+    set_marks(source ? pieces_at(std::move(pieces), source->mesh.vertices) : pieces, options.marks,
+              pattern.seams);
+  }
+  if (options.cut.seams) pattern.widths = named_widths(*options.cut.seams, pattern.pieces);
+  return pattern;
+}
+
+}  // namespace
+
+FlatPattern flat_pattern(const Garment& garment, const Garment* source, const PatternOptions& options) {
+  if (source) require_same_faces(garment, *source);
+  const auto has_line = [](const SeamCut& cut) { return !cut.line.empty(); };
+  if (!options.cut.seams ||
+      std::none_of(options.cut.seams->cuts.begin(), options.cut.seams->cuts.end(), has_line))
+    return pattern_along_edges(garment, source, options);
+  const FacesAlongLines cut = faces_along_lines(source ? *source : garment, *options.cut.seams);
+  PatternOptions along_edges = options;
+  along_edges.cut.seams = cut.seams;
+  std::optional<Garment> cut_source;
+  if (source) cut_source = cut_along(*source, cut);
+  FlatPattern pattern =
+      pattern_along_edges(cut_along(garment, cut), cut_source ? &*cut_source : nullptr, along_edges);
+  pattern.added = cut.added;
+  pattern.own_vertices = static_cast<int>(garment.mesh.vertices.cols());
+  pattern.own_faces = cut.of_face;
   return pattern;
 }
 
@@ -197,11 +251,11 @@ std::string to_string(const FlatPattern& pattern, const PatternOptions& options)
                             percent(piece.excess->warp_max) + ", weft to " + percent(piece.excess->weft_max));
     if (piece.overlap) line("  overlap", "the flat piece overlaps itself");
     if (piece.dart)
-      line("  dart", "suggested: {\"path\": [" + std::to_string(piece.dart->from + 1) + ", " +
-                         std::to_string(piece.dart->to + 1) + "]}, or --darts");
+      line("  dart", "suggested: {\"path\": [" + own_vertex(pattern, piece.dart->from) + ", " +
+                         own_vertex(pattern, piece.dart->to) + "]}, or --darts");
   }
   for (const PatternSeam& seam : pattern.seams)
-    if (seam.differs) line("seam", seam_text(pattern, seam));
+    if (seam.differs || seam.seam.ease != 0) line("seam", seam_text(pattern, seam));
   return text;
 }
 

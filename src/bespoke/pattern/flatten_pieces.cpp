@@ -64,7 +64,7 @@ double widest_gap(const std::vector<Seam>& seams, const std::vector<Eigen::Matri
     const auto length = [&](std::size_t side) {
       return side_length(seam.sides[side], flat[static_cast<std::size_t>(seam.sides[side].piece)]);
     };
-    gap = std::max(gap, std::abs(length(0) - length(1)));
+    gap = std::max(gap, std::abs(length(0) - length(1) - seam.ease));
   }
   return gap;
 }

@@ -54,11 +54,11 @@ struct FlatPieces {
 ///
 ///     Σ_faces area |J − P(J)|²  +  w Σ_seams Σ_edges |e − p(e)|² + |e' − p(e')|²
 ///
-/// where p makes paired edges e, e' equally long. Local and global steps alternate (one factorisation),
-/// accelerated as Anderson's (Peng et al. 2018); no step flips a triangle. w grows tenfold, three times,
-/// while a seam's sides differ by more than the tolerance. Pieces that can be unrolled come back exactly.
-/// Same bits at any number of threads. Throws InvalidInput for a piece with a face without area, SolverError
-/// where a piece has no start without flips.
+/// where p makes paired edges e, e' equally long, or as different as the seam's ease wants them. Local and
+/// global steps alternate (one factorisation), accelerated as Anderson's (Peng et al. 2018); no step flips a
+/// triangle. w grows tenfold, three times, while a seam's sides differ by more than the tolerance. Pieces
+/// that can be unrolled come back exactly. Same bits at any number of threads. Throws InvalidInput for a
+/// piece with a face without area, SolverError where a piece has no start without flips.
 FlatPieces flatten_pieces(const std::vector<Piece>& pieces, const std::vector<Seam>& seams,
                           const FlattenOptions& options = {});
 

@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/pattern/detail/flat_faces.h"
+#include "bespoke/product/corner_texture.h"
 #include "bespoke/product/face_groups.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
@@ -70,7 +71,8 @@ void require_areas(const Garment& garment) {
 }  // namespace
 
 Garment read_garment(const std::filesystem::path& path, const GarmentOptions& options) {
-  const Product product = read_product(path);
+  Product product = read_product(path);
+  if (product.texture.cols() == 0) product.texture = corner_texture(path);
   Garment garment;
   garment.path = path.string();
   garment.mesh.vertices = mm_per_unit(path, product, options.unit) * product.vertices;

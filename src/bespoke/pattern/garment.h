@@ -14,7 +14,7 @@ namespace bespoke {
 enum class PieceRule {
   automatic,   ///< charts, where there is a texture; else the first of the next that names several; else
                ///< components
-  charts,      ///< faces joined by equal texture coordinates
+  charts,      ///< faces joined by equal texture coordinates (of glTF the first ones)
   groups,      ///< of OBJ
   objects,     ///< of OBJ; what nodes show in glTF
   materials,   ///< of OBJ; of primitives in glTF

@@ -29,13 +29,14 @@ std::vector<Eigen::Vector2d> listed_points(const Eigen::Matrix2Xd& places) {
 struct SeamMarks {
   std::vector<OutlineMark> notches;
   std::vector<std::pair<int, OutlineMark>> numbers;  ///< of seams, from 1
+  std::vector<std::pair<std::string, Eigen::Vector2d>> widths;
 };
 
 std::vector<SeamMarks> marks_of_pieces(const FlatPattern& pattern) {
   std::vector<SeamMarks> marks(pattern.pieces.size());
   for (std::size_t s = 0; s < pattern.seams.size(); ++s) {
     const PatternSeam& seam = pattern.seams[s];
-    const auto notches = seam_marks(pattern, seam, notch_shares(std::max(seam.lengths[0], seam.lengths[1])));
+    const auto notches = seam_notches(pattern, seam);
     const auto numbers = seam_marks(pattern, seam, {0.4});  // beside a notch in the middle
     for (std::size_t side = 0; side < 2; ++side) {
       SeamMarks& own = marks[static_cast<std::size_t>(seam.seam.sides[side].piece)];
@@ -43,7 +44,22 @@ std::vector<SeamMarks> marks_of_pieces(const FlatPattern& pattern) {
       own.numbers.emplace_back(static_cast<int>(s) + 1, numbers[side].front());
     }
   }
+  for (const NamedWidth& width : pattern.widths) {
+    const auto p = static_cast<std::size_t>(width.piece);
+    marks[p].widths.emplace_back(width.name, pattern.pieces[p].flat.col(width.vertex));
+  }
   return marks;
+}
+
+/// The lines across the grain that have names.
+void add_widths(const SeamMarks& marks, SheetPiece& drawn) {
+  for (const auto& [name, at] : marks.widths) {
+    const auto [left, right] = width_at(drawn.outline, at);
+    drawn.lines.push_back({PatternLayer::internal, {left, right}, false});
+    constexpr double share = 0.2;  // of the line, from its left end: clear of the grain and of folds
+    drawn.texts.push_back(
+        {left + share * (right - left) + Eigen::Vector2d(0, small_text_height), small_text_height, name});
+  }
 }
 
 void add_labels(const PatternPiece& piece, const SeamMarks& marks, const SheetOptions& options,
@@ -94,6 +110,7 @@ SheetPiece drawn_piece(const PatternPiece& piece, const SeamMarks& marks, const 
   for (const OutlineMark& mark : marks.notches)
     drawn.notches.push_back({mark.at - options.seam_allowance * mark.inward, mark.inward});
   add_labels(piece, marks, options, drawn);
+  add_widths(marks, drawn);
   for (Eigen::Index f = 0; f < piece.piece.mesh.faces.cols(); ++f) {
     SheetFace face;
     for (int k = 0; k < 3; ++k)

@@ -82,8 +82,9 @@ struct Sheet {
   SheetText test_text;
 };
 
-/// Draws the pieces and lays them out in rows: boundary (cut line), sew line, notches at equal shares of the
-/// length of both sides of seams, grain, the fold of a symmetric piece, labels with the numbers of the seams.
+/// Draws the pieces and lays them out in rows: boundary (cut line), sew line, notches at the
+/// marks and at equal shares of the length of both sides of seams, grain, lines with names, the fold of a
+/// symmetric piece, labels with the numbers of the seams.
 Sheet pattern_sheet(const FlatPattern& pattern, const SheetOptions& options = {});
 
 /// A garment's pattern in one size.

@@ -20,6 +20,12 @@ struct Piece {
   std::vector<int> outline;  ///< vertices of the boundary loop, the surface on the left
 };
 
+/// A vertex that the product has not, inside a face or on an edge: by weights of the vertices there.
+struct AddedVertex {
+  std::array<int, 3> of{};
+  Vector3 weights = Vector3::Zero();
+};
+
 /// One side of a seam: a part of a piece's outline.
 struct SeamSide {
   int piece = 0;
@@ -29,6 +35,7 @@ struct SeamSide {
 /// Two parts of outlines that are sewn together: in the garment they lie on the same edges.
 struct Seam {
   std::array<SeamSide, 2> sides;
+  double ease = 0;  ///< millimetres that the first side is longer by when flat; negative: the second
 };
 
 }  // namespace bespoke

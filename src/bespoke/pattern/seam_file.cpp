@@ -19,13 +19,11 @@ class SeamReader {
 
   SeamFile run(const Json& root) {
     if (!root.is_object()) fail("it must hold one object with \"seams\"");
-    require_keys(root, {"seams", "pieces"}, "the file");
+    require_keys(root, {"seams", "pieces", "widths"}, "the file");
     if (!root.contains("seams") || !root["seams"].is_array()) fail("\"seams\" must be a list");
     for (const Json& seam : root["seams"]) add_seam(seam);
-    if (root.contains("pieces")) {
-      if (!root["pieces"].is_array()) fail("\"pieces\" must be a list");
-      for (const Json& piece : root["pieces"]) add_name(piece);
-    }
+    file_.names = vertex_names(root, "pieces", "piece");
+    file_.widths = vertex_names(root, "widths", "width");
     return std::move(file_);
   }
 
@@ -49,26 +47,56 @@ class SeamReader {
   }
 
   void add_seam(const Json& seam) {
-    const std::string where = "seam " + std::to_string(++seams_);
-    if (!seam.is_object()) fail(where + " must be an object with \"edges\" or \"path\"");
-    require_keys(seam, {"edges", "path", "name"}, where);
-    if (seam.contains("edges") == seam.contains("path")) fail(where + " needs either \"edges\" or \"path\"");
-    const Json& list = seam.contains("edges") ? seam["edges"] : seam["path"];
+    const std::string where = "seam " + std::to_string(file_.cuts.size() + 1);
+    if (!seam.is_object()) fail(where + R"( must be an object with "edges", "path" or "line")");
+    require_keys(seam, {"edges", "path", "line", "name", "ease", "longer"}, where);
+    if (seam.count("edges") + seam.count("path") + seam.count("line") != 1)
+      fail(where + R"( needs one of "edges", "path" and "line")");
+    const std::string kind = seam.contains("edges") ? "edges" : seam.contains("path") ? "path" : "line";
+    const Json& list = seam[kind];
     if (!list.is_array() || list.empty()) fail(where + " must be a list that is not empty");
-    if (seam.contains("edges")) {
-      for (const Json& edge : list) {
-        if (!edge.is_array() || edge.size() != 2) fail(where + ": an edge is a pair of vertices");
-        file_.edges.push_back({vertex(edge[0], where), vertex(edge[1], where)});
-      }
-      return;
+    if (kind != "edges" && list.size() < 2) fail(where + ": a " + kind + " has two vertices or more");
+    SeamCut cut;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (kind == "line")
+        cut.line.push_back(edge_point(list[k], where));
+      else if (kind == "edges")
+        cut.edges.push_back(edge(list[k], where));
+      else if (k > 0)
+        add_way(vertex(list[k - 1], where), vertex(list[k], where), where, cut);
     }
-    if (list.size() < 2) fail(where + ": a path has two vertices or more");
-    for (std::size_t k = 0; k + 1 < list.size(); ++k)
-      add_way(vertex(list[k], where), vertex(list[k + 1], where), where);
+    set_ease(seam, where, cut);
+    file_.cuts.push_back(std::move(cut));
+  }
+
+  std::array<int, 2> edge(const Json& value, const std::string& where) const {
+    if (!value.is_array() || value.size() != 2) fail(where + ": an edge is a pair of vertices");
+    return {vertex(value[0], where), vertex(value[1], where)};
+  }
+
+  EdgePoint edge_point(const Json& value, const std::string& where) const {
+    if (!value.is_array()) return {vertex(value, where), vertex(value, where), 0};
+    if (value.size() != 3 || !value[2].is_number())
+      fail(where + ": a point of a line is a vertex, or two vertices and the share of the way between them");
+    const EdgePoint point{vertex(value[0], where), vertex(value[1], where), value[2].get<double>()};
+    if (!(point.share >= 0 && point.share <= 1))
+      fail(where + ": share " + value[2].dump() + " is not in 0 … 1");
+    return point;
+  }
+
+  void set_ease(const Json& seam, const std::string& where, SeamCut& cut) const {
+    if (seam.contains("ease") != seam.contains("longer"))
+      fail(where + R"( needs "ease" and "longer" both, or neither)");
+    if (!seam.contains("ease")) return;
+    if (!seam["ease"].is_number() || !(seam["ease"].get<double>() >= 0))
+      fail(where + ": \"ease\" must be millimetres, 0 or more");
+    if (!seam["longer"].is_string()) fail(where + ": \"longer\" must name a piece");
+    cut.ease = seam["ease"].get<double>();
+    cut.longer = seam["longer"].get<std::string>();
   }
 
   /// From the end back along edges that the distance grows by exactly.
-  void add_way(int from, int to, const std::string& where) {
+  void add_way(int from, int to, const std::string& where, SeamCut& cut) {
     if (!graph_) graph_ = edge_graph(mesh_);
     const PathStart start{from, 0};
     const Eigen::VectorXd distance = path_lengths(*graph_, {&start, 1});
@@ -86,28 +114,39 @@ class SeamReader {
       }
       if (before == at)
         fail(where + ": vertices " + std::to_string(at + 1) + " and its neighbours lie at one place");
-      file_.edges.push_back({before, at});
+      cut.edges.push_back({before, at});
       at = before;
     }
   }
 
-  void add_name(const Json& piece) {
-    const std::string where = "piece " + std::to_string(file_.names.size() + 1);
-    if (!piece.is_object() || !piece.contains("name") || !piece["name"].is_string() ||
-        !piece.contains("vertex"))
-      fail(where + " needs a \"name\" and a \"vertex\"");
-    require_keys(piece, {"name", "vertex"}, where);
-    file_.names.push_back({piece["name"].get<std::string>(), vertex(piece["vertex"], where)});
+  std::vector<VertexName> vertex_names(const Json& root, const char* key, const char* one) const {
+    std::vector<VertexName> names;
+    if (!root.contains(key)) return names;
+    if (!root[key].is_array()) fail("\"" + std::string(key) + "\" must be a list");
+    for (const Json& named : root[key]) {
+      const std::string where = one + (" " + std::to_string(names.size() + 1));
+      if (!named.is_object() || !named.contains("name") || !named["name"].is_string() ||
+          !named.contains("vertex"))
+        fail(where + " needs a \"name\" and a \"vertex\"");
+      require_keys(named, {"name", "vertex"}, where);
+      names.push_back({named["name"].get<std::string>(), vertex(named["vertex"], where)});
+    }
+    return names;
   }
 
   std::string path_;
   const TriangleMesh& mesh_;
   std::optional<SurfaceGraph> graph_;
   SeamFile file_;
-  int seams_ = 0;
 };
 
 }  // namespace
+
+std::vector<std::array<int, 2>> SeamFile::edges() const {
+  std::vector<std::array<int, 2>> all;
+  for (const SeamCut& cut : cuts) all.insert(all.end(), cut.edges.begin(), cut.edges.end());
+  return all;
+}
 
 SeamFile read_seam_file(const std::filesystem::path& path, const TriangleMesh& mesh) {
   std::ifstream in(path);

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "bespoke/number_format.h"
+#include "bespoke/pattern/detail/piece_marks.h"
 
 namespace bespoke {
 namespace {
@@ -30,6 +31,12 @@ double extent(const PatternPiece& piece, Eigen::Index axis) {
   return piece.flat.row(axis).maxCoeff() - piece.flat.row(axis).minCoeff();
 }
 
+double width_of(const FlatPattern& pattern, const NamedWidth& width) {
+  const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(width.piece)];
+  const auto [left, right] = width_at(outline_places(piece), piece.flat.col(width.vertex));
+  return right.x() - left.x();
+}
+
 }  // namespace
 
 std::string size_table_csv(const std::vector<SizedPattern>& sizes) {
@@ -49,6 +56,10 @@ std::string size_table_csv(const std::vector<SizedPattern>& sizes) {
     row(name, "width", "mm", [&](const FlatPattern& of) { return extent(of.pieces[p], 0); });
     row(name, "height", "mm", [&](const FlatPattern& of) { return extent(of.pieces[p], 1); });
     row(name, "strain p95", "%", [&](const FlatPattern& of) { return 100 * of.pieces[p].strain.strain_p95; });
+    for (std::size_t w = 0; w < first.widths.size(); ++w)
+      if (first.widths[w].piece == static_cast<int>(p))
+        row(name, cell("width at " + first.widths[w].name), "mm",
+            [&](const FlatPattern& of) { return width_of(of, of.widths[w]); });
   }
   for (std::size_t s = 0; s < first.seams.size(); ++s)
     for (std::size_t side = 0; side < 2; ++side) {

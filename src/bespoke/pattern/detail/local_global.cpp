@@ -6,15 +6,17 @@
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/pattern/detail/nearest_stretch.h"
+#include "bespoke/pattern/detail/paired_seams.h"
 
 namespace bespoke {
 namespace {
 
-/// Both edges with the length that they have in the mean.
-std::array<Eigen::Vector2d, 2> of_mean_length(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+/// Both edges with the length that they have in the mean, but for what the first eases.
+std::array<Eigen::Vector2d, 2> of_mean_length(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                                              double ease) {
   const double one = a.norm(), other = b.norm(), mean = (one + other) / 2;
-  if (!(one > 0 && other > 0)) return {a, b};
-  return {a * (mean / one), b * (mean / other)};
+  if (!(one > 0 && other > 0 && mean > std::abs(ease) / 2)) return {a, b};
+  return {a * ((mean + ease / 2) / one), b * ((mean - ease / 2) / other)};
 }
 
 /// n×n without the row and column of one vertex, whose neighbours' values go to the other side.
@@ -54,7 +56,15 @@ LocalGlobal::LocalGlobal(const std::vector<Piece>& pieces, const std::vector<Sea
     begin += static_cast<int>(piece.mesh.vertices.cols());
     parts_.push_back(std::move(part));
   }
-  for (const Seam& seam : seams)
+  for (const Seam& seam : seams) {
+    const auto step = [&](std::size_t k) {
+      const Points& x = pieces[static_cast<std::size_t>(seam.sides[0].piece)].mesh.vertices;
+      return (x.col(seam.sides[0].vertices[k + 1]) - x.col(seam.sides[0].vertices[k])).norm();
+    };
+    const double length =
+        seam.ease == 0
+            ? 1
+            : side_length(seam.sides[0], pieces[static_cast<std::size_t>(seam.sides[0].piece)].mesh.vertices);
     for (std::size_t k = 0; k + 1 < seam.sides[0].vertices.size(); ++k) {
       PairedEdge pair;
       for (std::size_t side = 0; side < 2; ++side) {
@@ -64,8 +74,10 @@ LocalGlobal::LocalGlobal(const std::vector<Piece>& pieces, const std::vector<Sea
       }
       pair.weight =
           1;  // the cotangent weight of an edge between equilateral triangles is 2 · ½ cot 60° = 0.58
+      if (seam.ease != 0) pair.ease = seam.ease * step(k) / length;
       paired_.push_back(pair);
     }
+  }
 }
 
 void LocalGlobal::set_seam_weight(double weight) {
@@ -133,7 +145,8 @@ double LocalGlobal::energy(const FlatState& x) const {
   for (const PairedEdge& pair : paired_) {
     const double one = (x.col(pair.ends[0][1]) - x.col(pair.ends[0][0])).norm();
     const double other = (x.col(pair.ends[1][1]) - x.col(pair.ends[1][0])).norm();
-    sum += seam_weight_ * pair.weight * (one - other) * (one - other) / 2;
+    const double gap = one - other - pair.ease;
+    sum += seam_weight_ * pair.weight * gap * gap / 2;
   }
   return sum;
 }
@@ -149,7 +162,7 @@ FlatState LocalGlobal::next(const FlatState& x) const {
   FlatState right = FlatState::Zero(2, x.cols());
   for (const PairedEdge& pair : paired_) {
     const auto targets = of_mean_length(x.col(pair.ends[0][1]) - x.col(pair.ends[0][0]),
-                                        x.col(pair.ends[1][1]) - x.col(pair.ends[1][0]));
+                                        x.col(pair.ends[1][1]) - x.col(pair.ends[1][0]), pair.ease);
     for (std::size_t side = 0; side < 2; ++side) {
       right.col(pair.ends[side][1]) += seam_weight_ * pair.weight * targets[side];
       right.col(pair.ends[side][0]) -= seam_weight_ * pair.weight * targets[side];

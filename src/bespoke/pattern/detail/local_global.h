@@ -35,10 +35,11 @@ class LocalGlobal {
 
  private:
   struct Part;
-  /// Two edges of one length, by the columns of a state.
+  /// Two edges of one length, or that differ by what the seam eases, by the columns of a state.
   struct PairedEdge {
     std::array<std::array<int, 2>, 2> ends;
     double weight = 0;
+    double ease = 0;  ///< millimetres, of the first
   };
 
   double scale_of_targets(const Part& part, const FlatState& x) const;

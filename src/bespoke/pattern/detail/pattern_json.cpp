@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "bespoke/pattern/detail/piece_marks.h"
 #include "bespoke/pattern/detail/sheet_formats.h"
 
 namespace bespoke {
@@ -20,15 +21,20 @@ OrderedJson columns_json(const Columns& columns) {
   return list;
 }
 
-OrderedJson piece_json(const PatternPiece& piece, const SheetPiece& drawn) {
+/// own_faces: FlatPattern::own_faces.
+OrderedJson piece_json(const PatternPiece& piece, const SheetPiece& drawn,
+                       const std::vector<int>& own_faces) {
   const Eigen::Vector2d shift = sheet_shift(piece, drawn);
+  std::vector<int> product_faces = piece.piece.faces;
+  if (!own_faces.empty())
+    for (int& face : product_faces) face = own_faces[static_cast<std::size_t>(face)];
   OrderedJson json{
       {"name", piece.piece.name},
       {"vertices", columns_json(piece.flat)},
       {"faces", columns_json(piece.piece.mesh.faces)},
       {"outline", piece.piece.outline},
       {"product_vertices", piece.piece.vertices},
-      {"product_faces", piece.piece.faces},
+      {"product_faces", product_faces},
       {"on_sheet", {shift.x(), shift.y()}},
       {"strain", strain_json(piece.strain)},
       {"strain_of_faces", std::vector(piece.strain.of_face.begin(), piece.strain.of_face.end())}};
@@ -48,7 +54,7 @@ std::string pattern_json(const FlatPattern& pattern, const Sheet& sheet, const P
   OrderedJson root{
       {"name", options.name}, {"unit", "mm"}, {"grain", {0, 1}}, {"pieces", OrderedJson::array()}};
   for (std::size_t p = 0; p < pattern.pieces.size(); ++p)
-    root["pieces"].push_back(piece_json(pattern.pieces[p], sheet.pieces[p]));
+    root["pieces"].push_back(piece_json(pattern.pieces[p], sheet.pieces[p], pattern.own_faces));
   root["seams"] = OrderedJson::array();
   for (const PatternSeam& seam : pattern.seams) {
     OrderedJson sides = OrderedJson::array();
@@ -56,8 +62,16 @@ std::string pattern_json(const FlatPattern& pattern, const Sheet& sheet, const P
       sides.push_back({{"piece", seam.seam.sides[side].piece},
                        {"vertices", seam.seam.sides[side].vertices},
                        {"length", seam.lengths[side]}});
-    root["seams"].push_back({{"sides", sides}, {"differs", seam.differs}});
+    root["seams"].push_back({{"sides", sides}, {"ease", seam.seam.ease}, {"differs", seam.differs}});
   }
+  for (const NamedWidth& width : pattern.widths) {
+    const PatternPiece& piece = pattern.pieces[static_cast<std::size_t>(width.piece)];
+    const auto [left, right] = width_at(outline_places(piece), piece.flat.col(width.vertex));
+    root["widths"].push_back({{"name", width.name}, {"piece", width.piece}, {"width", right.x() - left.x()}});
+  }
+  for (const AddedVertex& added : pattern.added)
+    root["added_vertices"].push_back(
+        {{"of", added.of}, {"weights", {added.weights[0], added.weights[1], added.weights[2]}}});
   return root.dump() + "\n";
 }
 

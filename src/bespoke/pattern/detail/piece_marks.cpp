@@ -37,20 +37,7 @@ OutlineMark mark_at(const Eigen::Matrix2Xd& side, double share, bool is_reversed
   return {side.col(k) + step * ((wanted - begin) / step.norm()), {-along_side.y(), along_side.x()}};
 }
 
-}  // namespace
-
-std::array<std::vector<OutlineMark>, 2> seam_marks(const FlatPattern& pattern, const PatternSeam& seam,
-                                                   const std::vector<double>& shares) {
-  std::array<std::vector<OutlineMark>, 2> marks;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const SeamSide& of = seam.seam.sides[side];
-    const Eigen::Matrix2Xd places =
-        pattern.pieces[static_cast<std::size_t>(of.piece)].flat(Eigen::all, of.vertices);
-    for (const double share : shares) marks[side].push_back(mark_at(places, share, side == 1));
-  }
-  return marks;
-}
-
+/// Equal parts of a length, in shares of it.
 std::vector<double> notch_shares(double length) {
   constexpr double spacing = 150, shortest = 60;  // millimetres, as tailors notch sleeves and side seams
   if (length < shortest) return {};
@@ -58,6 +45,60 @@ std::vector<double> notch_shares(double length) {
   std::vector<double> shares;
   for (int k = 1; k < parts; ++k) shares.push_back(static_cast<double>(k) / parts);
   return shares;
+}
+
+/// The place that lies as far along a side of `places` (2×k), in shares of its length.
+double share_of(const Eigen::Matrix2Xd& side, const SeamPlace& place) {
+  double before = 0, whole = 0;
+  for (Eigen::Index k = 0; k + 1 < side.cols(); ++k) {
+    const double step = (side.col(k + 1) - side.col(k)).norm();
+    if (k < place.edge) before += step;
+    if (k == place.edge) before += place.share * step;
+    whole += step;
+  }
+  return whole > 0 ? before / whole : 0;
+}
+
+Eigen::Matrix2Xd side_places(const FlatPattern& pattern, const SeamSide& side) {
+  return pattern.pieces[static_cast<std::size_t>(side.piece)].flat(Eigen::all, side.vertices);
+}
+
+}  // namespace
+
+std::array<std::vector<OutlineMark>, 2> seam_marks(const FlatPattern& pattern, const PatternSeam& seam,
+                                                   const std::vector<double>& shares) {
+  std::array<std::vector<OutlineMark>, 2> marks;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Eigen::Matrix2Xd places = side_places(pattern, seam.seam.sides[side]);
+    for (const double share : shares) marks[side].push_back(mark_at(places, share, side == 1));
+  }
+  return marks;
+}
+
+std::array<std::vector<OutlineMark>, 2> seam_notches(const FlatPattern& pattern, const PatternSeam& seam) {
+  constexpr double apart = 15;  // millimetres, that one notch is told from the next
+  const double length = std::max(seam.lengths[0], seam.lengths[1]);
+  const Eigen::Matrix2Xd first = side_places(pattern, seam.seam.sides[0]);
+  std::vector<double> shares = notch_shares(length);
+  std::erase_if(shares, [&](double share) {
+    return std::any_of(seam.marks.begin(), seam.marks.end(), [&](const SeamPlace& mark) {
+      return std::abs(share_of(first, mark) - share) * length < apart;
+    });
+  });
+  auto notches = seam_marks(pattern, seam, shares);
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Eigen::Matrix2Xd places = side_places(pattern, seam.seam.sides[side]);
+    for (const SeamPlace& mark : seam.marks)
+      notches[side].push_back(mark_at(places, share_of(places, mark), side == 1));
+  }
+  return notches;
+}
+
+std::array<Eigen::Vector2d, 2> width_at(const Eigen::Matrix2Xd& outline, const Eigen::Vector2d& at) {
+  Eigen::Matrix2d quarter_turn;
+  quarter_turn << 0, 1, -1, 0;  // (x, y) to (y, -x): what is to the right is below
+  const auto [low, high] = upright_extent(quarter_turn * outline, quarter_turn * at);
+  return {Eigen::Vector2d(-high, at.y()), Eigen::Vector2d(-low, at.y())};
 }
 
 Eigen::Matrix2Xd outline_places(const PatternPiece& piece) {

@@ -18,8 +18,12 @@ struct OutlineMark {
 std::array<std::vector<OutlineMark>, 2> seam_marks(const FlatPattern& pattern, const PatternSeam& seam,
                                                    const std::vector<double>& shares);
 
-/// Shares of a seam's length that get notches: equal parts of at most 150 mm, none for less than 60 mm.
-std::vector<double> notch_shares(double length);
+/// The notches of both sides of a seam: at its marks, and at equal parts of its length of at most 150 mm
+/// where it has none near; none of these for less than 60 mm.
+std::array<std::vector<OutlineMark>, 2> seam_notches(const FlatPattern& pattern, const PatternSeam& seam);
+
+/// How wide a piece is across the grain at a place of it, millimetres: its left and its right end.
+std::array<Eigen::Vector2d, 2> width_at(const Eigen::Matrix2Xd& outline, const Eigen::Vector2d& at);
 
 /// The vertex inside that is farthest from the outline, and how far it is: where labels go.
 struct WidePlace {
