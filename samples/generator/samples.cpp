@@ -6,6 +6,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
 #include "garments.h"
+#include "seam_plans.h"
 #include "tessellate.h"
 
 namespace bespoke {
@@ -70,7 +71,7 @@ Sample dress_sample() {
   const Anatomy source = mannequin(slim);
   const Anatomy target = mannequin(full);
   Sample sample{"dress", tessellate(source, std::nullopt, body_tessellation(0, 2.8, 0.09)), {}, {}};
-  sample.products = {{"dress", dress(slim, source)}};
+  sample.products = {{"dress", dress(slim, source), dress_seams(slim)}};
   add_target(sample, "", source, target, body_tessellation(40, 3.4, 0.085), posed(35, 4, {120, 3, -30}));
   return sample;
 }
@@ -80,7 +81,8 @@ Sample girths_sample() {
   const MannequinBuild smallest = graded_build(height, 88 + girth_lost_to_chords);
   const Anatomy source = mannequin(smallest);
   Sample sample{"girths", tessellate(source, std::nullopt, body_tessellation(0, 2.6)), {}, {}};
-  sample.products = {{"top", top(smallest, source)}, {"skirt", skirt(smallest, source)}};
+  sample.products = {{"top", top(smallest, source), top_seams(smallest)},
+                     {"skirt", skirt(smallest, source), skirt_seams(smallest)}};
   for (int i = 1; i <= 4; ++i) {
     const int girth = 88 + 6 * i;
     add_target(sample, std::to_string(girth), source,
@@ -111,7 +113,7 @@ Sample glove_sample() {
   const Anatomy target = hand(second);
   Sample sample{"glove",
                 tessellate(source, std::nullopt, limb_tessellation(0.21, 0, {0.2, 0.9, 0.014, 8})),
-                {{"glove", glove(first, source)}},
+                {{"glove", glove(first, source), glove_seams(source)}},
                 {}};
   add_target(sample, "", source, target, limb_tessellation(0.2, 37, {0.2, 0.8, 0.012, 8}),
              posed(40, -18, {24, 1, 5}));
@@ -123,10 +125,11 @@ Sample shoe_sample() {
   const FootBuild second{1.1, 1.18, 1.15, 1.12};
   const Anatomy source = foot(first);
   const Anatomy target = foot(second);
-  Sample sample{"shoe",
-                tessellate(source, std::nullopt, limb_tessellation(0.19, 0, {0.2, 1.0, 0.018, 8})),
-                {{"upper", shoe_upper(first, source)}, {"sole", shoe_sole(first, source)}},
-                {}};
+  Sample sample{
+      "shoe",
+      tessellate(source, std::nullopt, limb_tessellation(0.19, 0, {0.2, 1.0, 0.018, 8})),
+      {{"upper", shoe_upper(first, source), upper_seams(first)}, {"sole", shoe_sole(first, source)}},
+      {}};
   add_target(sample, "", source, target, limb_tessellation(0.2, 35, {0.2, 0.85, 0.014, 8}),
              posed(-24, 5, {22, 1, -4}));
   return sample;

@@ -6,6 +6,7 @@
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/mesh/triangle_mesh.h"
+#include "seam_lines.h"
 
 namespace bespoke {
 
@@ -20,6 +21,7 @@ struct SampleTarget {
 struct SampleProduct {
   std::string name;
   TriangleMesh mesh;
+  SeamPlan seams = {};  ///< of what is made of cloth or leather
 };
 
 /// One of the paper's five examples, made of implicit surfaces. Centimetres; the source stands upright, y up,
@@ -38,8 +40,9 @@ std::vector<std::string> sample_names();
 /// name.
 Sample make_sample(const std::string& name);
 
-/// Writes source.obj, target[_NAME].obj, anchors[_NAME].json and PRODUCT.obj into directory/sample.name,
-/// which it makes if need be. Returns what it wrote. Throws FileError.
+/// Writes source.obj, target[_NAME].obj, anchors[_NAME].json, PRODUCT.obj and, of what is sewn,
+/// PRODUCT_seams.json into directory/sample.name, which it makes if need be. Returns what it wrote. Throws
+/// FileError.
 std::vector<std::filesystem::path> write_sample(const Sample& sample, const std::filesystem::path& directory);
 
 }  // namespace bespoke

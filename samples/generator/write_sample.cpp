@@ -44,7 +44,12 @@ std::vector<std::filesystem::path> write_sample(const Sample& sample,
     write_triangle_mesh(written.back(), mesh);
   };
   write_mesh("source", sample.source);
-  for (const SampleProduct& product : sample.products) write_mesh(product.name, product.mesh);
+  for (const SampleProduct& product : sample.products) {
+    write_mesh(product.name, product.mesh);
+    if (product.seams.seams.empty()) continue;
+    written.push_back(folder / (product.name + "_seams.json"));
+    write_text(written.back(), seam_file_text(product.mesh, product.seams));
+  }
   for (const SampleTarget& target : sample.targets) {
     const std::string ending = target.name.empty() ? "" : "_" + target.name;
     write_mesh("target" + ending, target.mesh);

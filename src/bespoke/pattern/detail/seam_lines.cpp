@@ -111,6 +111,8 @@ class LineCutter {
   }
 
   void add_part(std::size_t seam, std::size_t k, const std::vector<int>& line) {
+    ++uses_[line[k]];
+    ++uses_[line[k + 1]];
     Part part{line[k], line[k + 1], common_edge(line[k], line[k + 1]), {}};
     if (!part.edge) {
       const std::vector<int> others = faces_at(part.to);
@@ -196,6 +198,30 @@ class LineCutter {
       edges.push_back({all[static_cast<std::size_t>(k)], all[static_cast<std::size_t>(k) + 1]});
   }
 
+  std::vector<int> chain_of(const Part& part) const {
+    const int f = *part.face;
+    return vertices_along(parts_of_face_.at(f), weights_in(f, part.from), weights_in(f, part.to));
+  }
+
+  /// Whether a line that ends there, behind another one in the same face, leaves a cut shorter than the face:
+  /// neither the border nor a further line is there, and it ends where it meets the other line.
+  bool ends_inside(int point) const {
+    const std::vector<int> faces = faces_at(point);
+    const auto on_border = [&](int f) {
+      for (int k = 0; k < 3; ++k)
+        if (edges_.on_boundary(f, k) && is_on_edge(point, edges_.of_face(k, f))) return true;
+      return false;
+    };
+    if (std::any_of(faces.begin(), faces.end(), on_border)) return false;
+    return uses_.at(point) < 2;
+  }
+
+  bool is_on_edge(int point, int edge) const {
+    if (is_added(point)) return edge_of_added_[index(point - own_count())] == edge;
+    const MeshEdge& of = edges_.edges[index(edge)];
+    return of.a == joined(point) || of.b == joined(point);
+  }
+
   void set_edges(std::size_t seam) {
     SeamCut& cut = result_.seams.cuts[seam];
     std::vector<std::array<int, 2>> edges;
@@ -204,17 +230,22 @@ class LineCutter {
         add_along(*edge, a, b, edges);
       else
         edges.push_back({a, b});  // is refused where pieces are cut
-    if (seam < parts_of_seam_.size())
-      for (const Part& part : parts_of_seam_[seam]) {
-        if (part.edge) {
-          add_along(*part.edge, part.from, part.to, edges);
+    if (seam < parts_of_seam_.size()) {
+      const std::vector<Part>& parts = parts_of_seam_[seam];
+      const bool is_closed = parts.size() > 1 && parts.front().from == parts.back().to;
+      for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (parts[k].edge) {
+          add_along(*parts[k].edge, parts[k].from, parts[k].to, edges);
           continue;
         }
-        const int f = *part.face;
-        const std::vector<int> chain =
-            vertices_along(parts_of_face_.at(f), weights_in(f, part.from), weights_in(f, part.to));
-        for (std::size_t k = 0; k + 1 < chain.size(); ++k) edges.push_back({chain[k], chain[k + 1]});
+        std::vector<int> chain = chain_of(parts[k]);
+        if (!is_closed && k == 0 && chain.size() > 2 && ends_inside(parts[k].from))
+          chain.erase(chain.begin());
+        if (!is_closed && k + 1 == parts.size() && chain.size() > 2 && ends_inside(parts[k].to))
+          chain.pop_back();
+        for (std::size_t i = 0; i + 1 < chain.size(); ++i) edges.push_back({chain[i], chain[i + 1]});
       }
+    }
     cut.edges = std::move(edges);
     cut.line.clear();
   }
@@ -227,6 +258,7 @@ class LineCutter {
   std::vector<int> edge_of_added_;
   std::map<int, std::vector<std::array<int, 2>>> chords_;  ///< of faces
   std::map<int, std::vector<ConvexPart>> parts_of_face_;
+  std::map<int, int> uses_;  ///< of points: how many parts of lines end there
   std::vector<std::vector<Part>> parts_of_seam_;
   FacesAlongLines result_;
 };

@@ -17,7 +17,8 @@ struct FacesAlongLines {
   SeamFile seams;                  ///< with edges instead of lines
 };
 
-/// Each part of a line between successive points cuts its face straight through. Lines may cross. Throws
+/// Each part of a line between successive points cuts its face straight through. Lines may cross; one that
+/// ends in the face where it crosses another ends there. Throws
 /// InvalidInput for points that lie in no common face, and for pairs of vertices without an edge.
 FacesAlongLines faces_along_lines(const Garment& garment, const SeamFile& seams);
 
