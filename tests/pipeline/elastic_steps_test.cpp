@@ -231,7 +231,7 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
   options.fit.steps = 1;
   const MadeMap one = make_map({source, fitted, {}, &fitted}, options);
   ASSERT_GT(one.asset.steps.front().certificate.folded, 0u);
-  EXPECT_GT(one.fit.summary.bake->folded_cells, 0u);
+  EXPECT_GT(one.fit->summary.bake->folded_cells, 0u);
 
   options.fit.steps.reset();
   const MadeMap chain = make_map({source, fitted, {}, &fitted}, options);
@@ -241,11 +241,11 @@ TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
     EXPECT_TRUE(step.certificate.is_bijection());
     levels += step.pyramid.levels.size();
   }
-  EXPECT_EQ(chain.fit.summary.elastic.divided_steps, chain.asset.steps.size() - 1);
-  EXPECT_LE(chain.fit.summary.elastic.vertex_residuals.max, 2 * options.fit.fit_tolerance);
+  EXPECT_EQ(chain.fit->summary.elastic.divided_steps, chain.asset.steps.size() - 1);
+  EXPECT_LE(chain.fit->summary.elastic.vertex_residuals.max, 2 * options.fit.fit_tolerance);
   // Nothing of the bake that was given up is told.
-  EXPECT_EQ(chain.fit.summary.bake->levels.size(), levels);
-  EXPECT_EQ(chain.fit.summary.bake->folded_cells, 0u);
+  EXPECT_EQ(chain.fit->summary.bake->levels.size(), levels);
+  EXPECT_EQ(chain.fit->summary.bake->folded_cells, 0u);
 }
 
 // A composition that goes over its scales again and again is too steep for voxels: to bake it, only to learn
@@ -272,7 +272,7 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options, progress);
   EXPECT_GT(elastic_until(std::find(stages.cbegin(), stages.cend(), "bake")), before);
   for (std::size_t k = 0; k < made.asset.steps.size(); ++k)
-    EXPECT_FALSE(is_foreseen_to_fold(made.fit, k)) << k;
+    EXPECT_FALSE(is_foreseen_to_fold(*made.fit, k)) << k;
 }
 
 // Halves of a step share what it had to say, and the voxels that the steps after them have left.
@@ -281,11 +281,11 @@ TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
   MakeMapOptions options = layered_options(source);
   options.bake.max_leaves = 2500;
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options);
-  ASSERT_EQ(step_count(made.fit.summary.elastic.motion), 1);
-  ASSERT_GT(made.fit.summary.elastic.divided_steps, 1u);
-  ASSERT_TRUE(made.fit.plan.has_value());
-  EXPECT_EQ(made.fit.plan->times, equal_times(static_cast<int>(made.asset.steps.size())));
-  EXPECT_LE(made.fit.summary.elastic.vertex_residuals.p95, options.fit.fit_tolerance);
+  ASSERT_EQ(step_count(made.fit->summary.elastic.motion), 1);
+  ASSERT_GT(made.fit->summary.elastic.divided_steps, 1u);
+  ASSERT_TRUE(made.fit->plan.has_value());
+  EXPECT_EQ(made.fit->plan->times, equal_times(static_cast<int>(made.asset.steps.size())));
+  EXPECT_LE(made.fit->summary.elastic.vertex_residuals.p95, options.fit.fit_tolerance);
   for (const MapStep& step : made.asset.steps) EXPECT_TRUE(step.certificate.is_bijection());
 }
 
@@ -298,19 +298,19 @@ TEST(ElasticSteps, LeaveGuidesThatTakeOneBeyondItsVoxels) {
   const auto make = [&] { return make_map({source, fitted, {}, &fitted}, options); };
   const auto leaves = [](const MadeMap& made) {
     std::size_t sum = 0;
-    for (const BakeLevelSummary& level : made.fit.summary.bake->levels) sum += level.leaves;
+    for (const BakeLevelSummary& level : made.fit->summary.bake->levels) sum += level.leaves;
     return sum;
   };
   const MadeMap guided = make();
-  EXPECT_FALSE(guided.fit.summary.elastic.left_guides);
+  EXPECT_FALSE(guided.fit->summary.elastic.left_guides);
   EXPECT_GT(leaves(guided), 700u);
   EXPECT_THAT(guided.asset.record.options_json, HasSubstr("\"guides\":\"all\""));
 
   options.bake.max_leaves = 700;
   const MadeMap within = make();
-  EXPECT_TRUE(within.fit.summary.elastic.left_guides);
+  EXPECT_TRUE(within.fit->summary.elastic.left_guides);
   EXPECT_LE(leaves(within), 700u);
-  EXPECT_TRUE(within.fit.summary.bake->relaxed.empty());
+  EXPECT_TRUE(within.fit->summary.bake->relaxed.empty());
   EXPECT_THAT(within.asset.record.options_json, HasSubstr("\"guides\":\"none\""));
 }
 

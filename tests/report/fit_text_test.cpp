@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "asset/small_asset.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "support/shapes.h"
 
 namespace bespoke {
@@ -20,24 +21,26 @@ class FitText : public testing::Test {
  protected:
   FitText() {
     made_.asset = test::small_asset();
-    FitSummary& summary = made_.fit.summary;
+    made_.fit = fit_;
+    FitSummary& summary = fit_->summary;
     summary.surface.emplace();
     summary.surface->after = summarize({0.1, 0.25, 0.75});
     summary.elastic.anchor_residuals = summarize({0.5, 2});
     summary.bake.emplace();
     summary.bake->error = summarize({0.0005});
     summary.bake->tolerance_met = true;
-    made_.fit.confidence.assign(static_cast<std::size_t>(mesh_.vertices.cols()), 1);
-    made_.fit.anchor_residual = {0.5, 2};
+    fit_->confidence.assign(static_cast<std::size_t>(mesh_.vertices.cols()), 1);
+    fit_->anchor_residual = {0.5, 2};
     anchors_.pairs = {{"chin", Vector3::Zero(), Vector3::Zero()}, {"heel", Vector3::Ones(), Vector3::Ones()}};
   }
   std::string text() const {
-    const MakeMapInput input{mesh_, mesh_, anchors_};
+    const Problem input{mesh_, mesh_, anchors_};
     return fit_text({input, made_, "a.obj", "b.obj", "ab.vdb", "", 2'500'000, 3.25, "bespoke view ab.vdb"});
   }
 
   TriangleMesh mesh_ = shapes::icosphere(2);
   Anchors anchors_;
+  std::shared_ptr<FittedMapping> fit_ = std::make_shared<FittedMapping>();
   MadeMap made_;
 };
 
@@ -54,7 +57,7 @@ TEST_F(FitText, SaysWhatAnEngineerAsks) {
 }
 
 TEST_F(FitText, SaysThatTheFittedMapIsStoredAsItIs) {
-  made_.fit.summary.bake->error = summarize({0.0});
+  fit_->summary.bake->error = summarize({0.0});
   EXPECT_THAT(text(), HasSubstr("error        the stored map is the fitted one; "));
 }
 
@@ -80,9 +83,9 @@ TEST_F(FitText, SaysWhereVerticesHaveNoCounterpart) {
   mesh_.vertices.row(1).minCoeff(&bottom);
   for (const auto& face : mesh_.faces.colwise())
     if ((face.array() == static_cast<int>(top)).any())
-      for (const int vertex : face) made_.fit.confidence[static_cast<std::size_t>(vertex)] = 0;
-  made_.fit.confidence[static_cast<std::size_t>(bottom)] = 0;
-  const auto around_top = std::count(made_.fit.confidence.begin(), made_.fit.confidence.end(), 0.0) - 1;
+      for (const int vertex : face) fit_->confidence[static_cast<std::size_t>(vertex)] = 0;
+  fit_->confidence[static_cast<std::size_t>(bottom)] = 0;
+  const auto around_top = std::count(fit_->confidence.begin(), fit_->confidence.end(), 0.0) - 1;
   EXPECT_THAT(text(), HasSubstr(std::to_string(around_top + 1) + " of 162 vertices have none"));
   EXPECT_THAT(text(), HasSubstr(": " + std::to_string(around_top) + " around ("));
   EXPECT_THAT(text(), HasSubstr(", 1 around ("));
@@ -90,10 +93,10 @@ TEST_F(FitText, SaysWhereVerticesHaveNoCounterpart) {
 
 TEST_F(FitText, HasAtMostTenLines) {
   made_.asset.steps.front().certificate.folded = 1;
-  made_.fit.summary.bake->tolerance_met = false;
-  made_.fit.summary.uncovered.emplace();
-  made_.fit.summary.uncovered->share = 0.5;
-  made_.fit.confidence.assign(made_.fit.confidence.size(), 0);
+  fit_->summary.bake->tolerance_met = false;
+  fit_->summary.uncovered.emplace();
+  fit_->summary.uncovered->share = 0.5;
+  fit_->confidence.assign(fit_->confidence.size(), 0);
   const std::string lines = text();
   EXPECT_LE(std::count(lines.begin(), lines.end(), '\n'), 10);
   EXPECT_THAT(lines, HasSubstr(" MISSED"));

@@ -114,12 +114,12 @@ void print_stages(const MadeMap& made, const Anchors& anchors) {
   };
   // What matters most comes first.
   if (!certificate.is_bijection()) print_certificate();
-  for (const StageLine& stage : stage_lines(made.fit.summary, anchors))
+  for (const StageLine& stage : stage_lines(made.fit->summary, anchors))
     std::printf("%-12s %s\n", stage.name.c_str(), stage.line.c_str());
   if (certificate.is_bijection()) print_certificate();
   if (!anchors.pairs.empty())
-    std::printf("%-12s %s\n", "anchors", to_string(made.fit.summary.elastic.anchor_residuals).c_str());
-  std::printf("%-12s %s\n", "vertices", to_string(made.fit.summary.elastic.vertex_residuals).c_str());
+    std::printf("%-12s %s\n", "anchors", to_string(made.fit->summary.elastic.anchor_residuals).c_str());
+  std::printf("%-12s %s\n", "vertices", to_string(made.fit->summary.elastic.vertex_residuals).c_str());
 }
 
 /// What is wrong with patches shows only on the models; here the file can be named.
@@ -133,7 +133,7 @@ void require_usable_patches(const FitArguments& arguments, const Anchors& anchor
 }
 
 std::vector<JobFigure> figures(const MadeMap& made) {
-  const FitSummary& summary = made.fit.summary;
+  const FitSummary& summary = made.fit->summary;
   return {{"vertex_residual_p95", summary.elastic.vertex_residuals.p95},
           {"vertex_residual_max", summary.elastic.vertex_residuals.max},
           {"anchor_residual_max", summary.elastic.anchor_residuals.max},
@@ -156,11 +156,11 @@ std::optional<HtmlPages> html_pages(const FitArguments& arguments) {
 }
 
 /// The map's page, which shows what the fit found as well, its picture, and the index.
-void write_pages(const HtmlPages& pages, const FitArguments& arguments, const MakeMapInput& input,
+void write_pages(const HtmlPages& pages, const FitArguments& arguments, const Problem& input,
                  const MadeMap& made, const RunContext& context) {
   const std::string title = std::filesystem::path(arguments.output).filename().string();
   const std::string scene =
-      view_scene({made.asset, input.source, input.target, {}, findings_of(made.fit), title, context.command},
+      view_scene({made.asset, input.source, input.target, {}, findings_of(*made.fit), title, context.command},
                  {}, context.progress);
   pages.write(scene, *context.maps.open(arguments.output, MapForm::grids, {}));
 }
@@ -220,12 +220,12 @@ void run(const FitArguments& arguments, const RunContext& context) {
   estimate_anchor_sigmas(anchors, arguments, size, size_scale);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
-  const MakeMapInput input{source,
-                           target,
-                           anchors,
-                           fitted ? &*fitted : nullptr,
-                           target_model.cloud ? &*target_model.cloud : nullptr,
-                           [&] { return vertex_groups(arguments.source, source.vertices); }};
+  const Problem input{source,
+                      target,
+                      anchors,
+                      fitted ? &*fitted : nullptr,
+                      target_model.cloud ? &*target_model.cloud : nullptr,
+                      [&] { return vertex_groups(arguments.source, source.vertices); }};
   const MakeMapOptions options = make_options(arguments, size, size_scale);
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())
@@ -236,11 +236,11 @@ void run(const FitArguments& arguments, const RunContext& context) {
   files.write(arguments.output, [&](const auto& path) { write_asset(path, made.asset); });
   if (!arguments.fitted_out.empty())
     files.write(arguments.fitted_out, [&](const auto& path) {
-      write_triangle_mesh(path, {made.fit.target_from_source * made.fit.fitted_vertices, source.faces},
+      write_triangle_mesh(path, {made.fit->target_from_source * made.fit->fitted_vertices, source.faces},
                           units.unit);
     });
   if (!arguments.confidence_out.empty())
-    files.write_text(arguments.confidence_out, confidence_lines(made.fit.confidence));
+    files.write_text(arguments.confidence_out, confidence_lines(made.fit->confidence));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty()) files.write_text(arguments.report, fit_report(input, made, seconds));
   files.keep();

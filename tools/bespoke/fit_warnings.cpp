@@ -115,9 +115,9 @@ void warn_of_missing_certificate(const RunContext& context, const Certificate& c
                Entry::not_proved);
 }
 
-void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
+void warn_of_misses(const RunContext& context, const Problem& input, const MakeMapOptions& options,
                     const MadeMap& made) {
-  const FitSummary& summary = made.fit.summary;
+  const FitSummary& summary = made.fit->summary;
   const double size = diagonal(input.target.vertices);
   warn_of_missing_certificate(context, whole_certificate(made.asset));
   warn_of_anchors(context, summary, input.anchors);

@@ -17,7 +17,7 @@ void warn_of_missing_certificate(const RunContext& context, const Certificate& c
 /// Where a map is not as required: first of all that it is not certified, then anchors that were not
 /// taken as given or are missed, a source that is not on the target, vertices that the map misses, a bake
 /// that misses its tolerance.
-void warn_of_misses(const RunContext& context, const MakeMapInput& input, const MakeMapOptions& options,
+void warn_of_misses(const RunContext& context, const Problem& input, const MakeMapOptions& options,
                     const MadeMap& made);
 
 }  // namespace bespoke::command

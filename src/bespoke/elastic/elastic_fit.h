@@ -1,12 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "bespoke/enum_names.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -25,16 +23,6 @@ enum class AffinePart {
   least_squares,  ///< the affine map nearest to the correspondences
   similarity,  ///< the nearest similarity: for steps of a change of pose, whose affine maps would shear space
 };
-
-/// Which maps go by guides in space (space_guides.h) beside the surface.
-enum class GuidedMaps {
-  none,   ///< the surface alone is met, as printed
-  steps,  ///< steps of a chain, whose turns space would follow less the farther it is from the surface
-  all,
-};
-inline constexpr std::array guided_maps{Named<GuidedMaps>{"none", GuidedMaps::none},
-                                        Named<GuidedMaps>{"steps", GuidedMaps::steps},
-                                        Named<GuidedMaps>{"all", GuidedMaps::all}};
 
 struct ElasticOptions {
   double lambda = 0;  ///< effective distance around the source, > 0, mesh units

@@ -9,22 +9,13 @@
 
 #include "bespoke/elastic/csrbf.h"
 #include "bespoke/elastic/elastic_fit.h"
+#include "bespoke/elastic/elastic_method.h"
 #include "bespoke/elastic/finite_elements.h"
 #include "bespoke/elastic/multiscale.h"
 #include "bespoke/elastic/pffd.h"
 #include "bespoke/elastic/pffd_smooth.h"
-#include "bespoke/enum_names.h"
 
 namespace bespoke {
-
-enum class ElasticMethod {
-  finite_elements,  ///< the map of least distortion, on the lattices that store it
-  csrbf,            ///< the paper's, one scale (Eq. 16)
-  multiscale,       ///< residual correction over halved scales
-  diffeomorphic,    ///< the same layers composed, each a diffeomorphism
-  pffd,             ///< the paper's p-FFD as printed (Eq. 18), with jumps
-  pffd_smooth,      ///< p-FFD with weights that make it continuous
-};
 
 /// What the method found; each has to_string and figures.
 using ElasticFindings = std::variant<FiniteElementSummary, CsrbfSummary, MultiscaleSummary, PffdSummary>;

@@ -3,8 +3,10 @@
 #include <optional>
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/bake/bake.h"
+#include "bespoke/bake/bake_options.h"
+#include "bespoke/bake/bake_summary.h"
 #include "bespoke/length.h"
+#include "bespoke/progress.h"
 
 namespace bespoke {
 

@@ -3,8 +3,10 @@
 #include <utility>
 
 #include "bespoke/clearance/model_sides.h"
+#include "bespoke/cloud/point_cloud_surface.h"
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/pipeline/detail/bake_fitted_map.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
 
@@ -79,20 +81,21 @@ RotationPath path_of(const FittedMapping& fit, const MakeMapOptions& options) {
   return path == RotationPath::flow ? RotationPath::geodesic : path;
 }
 
-AssetRecord make_record(const MakeMapInput& input, const MakeMapOptions& options, const FittedMapping& fit) {
+AssetRecord make_record(const Problem& problem, const MakeMapOptions& options, const FittedMapping& fit) {
   AssetRecord record;
-  record.unit = input.anchors.unit.empty() ? "unknown" : input.anchors.unit;
+  record.unit = problem.anchors.unit.empty() ? "unknown" : problem.anchors.unit;
   record.elastic_method = elastic_method(options.fit.elastic).name;
-  record.surface_fit_method = input.fitted ? "given" : name_of(surface_fits, options.fit.surface_fit.method);
+  record.surface_fit_method =
+      problem.fitted ? "given" : name_of(surface_fits, options.fit.surface_fit.method);
   record.lambda = options.fit.lambda;
   record.tolerance = options.bake.tolerance;
   record.bake_error = fit.summary.bake->error;
-  record.options_json = recorded_options(options, fit, path_of(fit, options), input.fitted != nullptr);
-  record.stages_json = recorded_stages(fit.summary, input.anchors);
-  record.anchors = anchor_records(input.anchors, fit);
-  record.source = {content_hash(input.source), bounding_box(input.source.vertices)};
-  record.target = {input.target_cloud ? input.target_cloud->hash : content_hash(input.target),
-                   bounding_box(input.target.vertices)};
+  record.options_json = recorded_options(options, fit, path_of(fit, options), problem.fitted != nullptr);
+  record.stages_json = recorded_stages(fit.summary, problem.anchors);
+  record.anchors = anchor_records(problem.anchors, fit);
+  record.source = {content_hash(problem.source), bounding_box(problem.source.vertices)};
+  record.target = {problem.target_cloud ? problem.target_cloud->hash : content_hash(problem.target),
+                   bounding_box(problem.target.vertices)};
   return record;
 }
 
@@ -102,9 +105,9 @@ std::string valid_utf8(const std::string& text) {
   return Json::parse(valid).get<std::string>();
 }
 
-void name_loose_parts(FitSummary& summary, const MakeMapInput& input) {
-  if (!summary.parts || !input.read_source_groups) return;
-  const std::vector<std::string> groups = input.read_source_groups();
+void name_loose_parts(FitSummary& summary, const Problem& problem) {
+  if (!summary.parts || !problem.read_source_groups) return;
+  const std::vector<std::string> groups = problem.read_source_groups();
   for (LoosePart& part : summary.parts->loose)
     if (const auto vertex = static_cast<std::size_t>(part.first_vertex); vertex < groups.size())
       part.name = valid_utf8(groups[vertex]);
@@ -123,32 +126,35 @@ MakeMapOptions default_options(double source_diagonal, double size_scale) {
   return options;
 }
 
-MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const Progress& progress) {
-  MadeMap made;
-  made.fit = input.fitted
-                 ? fit_mapping_to_fitted(input.source, *input.fitted, input.anchors, options.fit, progress)
-                 : fit_mapping(input.source, input.target, input.anchors, options.fit, progress);
-  if (input.target_cloud) made.fit.summary.cloud = *input.target_cloud;
+MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Progress& progress) {
+  FittedMapping fit =
+      problem.fitted
+          ? fit_mapping_to_fitted(problem.source, *problem.fitted, problem.anchors, options.fit, progress)
+          : fit_mapping(problem.source, problem.target, problem.anchors, options.fit, progress);
+  if (problem.target_cloud) fit.summary.cloud = *problem.target_cloud;
   // The bake may replace the fit, but not what was registered.
-  const std::shared_ptr<const PartialMesh> registered = made.fit.registered;
-  BakedSteps baked = bake_fitted_map(made.fit, registered ? registered->mesh : input.source, input.anchors,
+  const std::shared_ptr<const PartialMesh> registered = fit.registered;
+  BakedSteps baked = bake_fitted_map(fit, registered ? registered->mesh : problem.source, problem.anchors,
                                      options.fit, options.bake, progress);
-  made.fit = with_loose_parts(std::move(made.fit), input.source);
-  name_loose_parts(made.fit.summary, input);
-  made.fit.summary.bake = std::move(baked.whole);
-  if (baked.steps.size() > 1) made.fit.summary.bake_steps = std::move(baked.summaries);
+  fit = with_loose_parts(std::move(fit), problem.source);
+  name_loose_parts(fit.summary, problem);
+  fit.summary.bake = std::move(baked.whole);
+  if (baked.steps.size() > 1) fit.summary.bake_steps = std::move(baked.summaries);
 
+  MadeMap made;
   Asset& asset = made.asset;
-  asset.target_from_source = made.fit.target_from_source;
-  asset.path = path_of(made.fit, options);
+  asset.target_from_source = fit.target_from_source;
+  asset.path = path_of(fit, options);
   asset.steps = std::move(baked.steps);
-  asset.record = make_record(input, options, made.fit);
-  if (options.keep_exact) asset.exact_map = serialize_exact_map(*made.fit.elastic);
+  asset.record = make_record(problem, options, fit);
+  if (options.keep_exact) asset.exact_map = serialize_exact_map(*fit.elastic);
 
   progress.check();
   const Stopwatch watch;
-  asset = with_model_sides(with_preview(std::move(asset), input.source), input.source, input.target);
+  asset = with_model_sides(with_preview(std::move(asset), problem.source), problem.source, problem.target);
   made.preview_seconds = watch.seconds();
+  made.exact = fit.elastic;
+  made.fit = std::make_shared<const FittedMapping>(std::move(fit));
   return made;
 }
 

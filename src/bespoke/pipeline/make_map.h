@@ -1,14 +1,18 @@
 #pragma once
 
-#include <functional>
+#include <cstddef>
+#include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/bake/bake_options.h"
+#include "bespoke/pipeline/fit_options.h"
+#include "bespoke/pipeline/problem.h"
+#include "bespoke/progress.h"
 
 namespace bespoke {
+
+struct FittedMapping;
 
 /// Default lengths as fractions of the source's bounding-box diagonal.
 inline constexpr double default_lambda = 0.1;
@@ -31,27 +35,16 @@ struct MakeMapOptions {
 /// (power_of_two_scale, length.h).
 MakeMapOptions default_options(double source_diagonal, double size_scale = 1);
 
-struct MakeMapInput {
-  const TriangleMesh& source;
-  const TriangleMesh& target;
-  const Anchors& anchors;
-  /// The source already fitted to the target, target frame, same connectivity: surface fitting is skipped.
-  const TriangleMesh* fitted = nullptr;
-  /// What the target was made of, if it is the surface of a point cloud: the record names that.
-  const PointCloudSummary* target_cloud = nullptr;
-  /// Names of the groups that the source's vertices belong to, one a vertex, for loose parts; called where
-  /// there are any.
-  std::function<std::vector<std::string>()> read_source_groups = nullptr;
-};
-
 struct MadeMap {
   Asset asset;
-  FittedMapping fit;  ///< with fit.summary.bake
+  std::shared_ptr<const ElasticChain> exact;  ///< E as it was before it was baked
+  /// What every stage found (fit_mapping.h), with fit->summary.bake; its findings are in the record, too.
+  std::shared_ptr<const FittedMapping> fit;
   double preview_seconds = 0;
 };
 
 /// The whole way from two models and their anchors to an asset: fit, bake, certificate, preview grids.
 /// Throws InvalidInput, SolverError, MemoryLimitError, Interrupted.
-MadeMap make_map(const MakeMapInput& input, const MakeMapOptions& options, const Progress& progress = {});
+MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Progress& progress = {});
 
 }  // namespace bespoke

@@ -8,6 +8,7 @@
 
 #include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/number_format.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke {
 namespace {
@@ -99,7 +100,7 @@ std::string counterparts(const TriangleMesh& source, const std::vector<double>& 
 }
 
 std::string anchor_text(const FitOutcome& outcome, const Lengths& lengths) {
-  const FittedMapping& fit = outcome.made.fit;
+  const FittedMapping& fit = *outcome.made.fit;
   const Statistics& found = fit.summary.elastic.anchor_residuals;
   std::string text = "half are met within " + lengths(found.median) + ", all within " + lengths(found.max);
   const auto worst = std::max_element(fit.anchor_residual.begin(), fit.anchor_residual.end());
@@ -124,13 +125,13 @@ std::string unproved(const Certificate& certificate) {
 }
 
 std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
-  const BakeSummary& bake = *outcome.made.fit.summary.bake;
+  const BakeSummary& bake = *outcome.made.fit->summary.bake;
   const std::string stored =
       bake.error.max > 0
           ? "the stored map is within " + lengths(bake.error.max) + " of the exact one; tolerance " +
                 lengths(outcome.made.asset.record.tolerance) + (bake.tolerance_met ? "" : " MISSED")
           : "the stored map is the fitted one";
-  const Statistics& vertices = outcome.made.fit.summary.elastic.vertex_residuals;
+  const Statistics& vertices = outcome.made.fit->summary.elastic.vertex_residuals;
   return stored + "; 99 % of the vertices are taken to their places within " + lengths(vertices.p99) +
          ", all within " + lengths(vertices.max);
 }
@@ -160,14 +161,14 @@ std::string fit_text(const FitOutcome& outcome) {
     name.resize(13, ' ');
     lines += name + text + '\n';
   };
-  const FitSummary& summary = outcome.made.fit.summary;
+  const FitSummary& summary = outcome.made.fit->summary;
   const Lengths lengths(outcome.made.asset.record.unit);
   const Certificate certificate = whole_certificate(outcome.made.asset);
   if (!certificate.is_bijection()) add("NOT PROVED", unproved(certificate));
   add("registered", registration(outcome));
   if (summary.surface) {
     add("surfaces", distances(summary.surface->after, lengths));
-    add("counterparts", counterparts(outcome.input.source, outcome.made.fit.confidence));
+    add("counterparts", counterparts(outcome.input.source, outcome.made.fit->confidence));
   }
   if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));
   if (!outcome.input.anchors.pairs.empty()) add("anchors", anchor_text(outcome, lengths));

@@ -10,7 +10,7 @@ namespace bespoke {
 
 /// A map that was fitted and written, with the names of its files as a person knows them.
 struct FitOutcome {
-  const MakeMapInput& input;
+  const Problem& input;
   const MadeMap& made;
   std::string source, target, map;
   std::string fitted;                   ///< of a source that was registered already; else empty

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
 
 namespace bespoke {
@@ -81,11 +82,11 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts kibibytes
 }
 
-std::string fit_report(const MakeMapInput& input, const MadeMap& made, double seconds) {
+std::string fit_report(const Problem& input, const MadeMap& made, double seconds) {
   Json stages = Json::array();
-  for (const StageJson& stage : stages_json(made.fit.summary, input.anchors))
+  for (const StageJson& stage : stages_json(made.fit->summary, input.anchors))
     stages.push_back(timed(stage.json, stage.seconds));
-  const BakeSummary& bake = *made.fit.summary.bake;
+  const BakeSummary& bake = *made.fit->summary.bake;
   stages.back()["refine_seconds"] = bake.refine_seconds;
   stages.back()["measure_seconds"] = bake.measure_seconds;
   stages.back()["repair_seconds"] = bake.repair_seconds;
@@ -100,14 +101,14 @@ std::string fit_report(const MakeMapInput& input, const MadeMap& made, double se
                {"source", model(input.source)},
                {"target", model(input.target)},
                {"options", Json::parse(made.asset.record.options_json)},
-               {"anchor_residuals", to_json(made.fit.summary.elastic.anchor_residuals)},
-               {"vertex_residuals", to_json(made.fit.summary.elastic.vertex_residuals)},
-               {"unmet_vertices", unmet_vertices(made.fit.summary.elastic.unmet)},
+               {"anchor_residuals", to_json(made.fit->summary.elastic.anchor_residuals)},
+               {"vertex_residuals", to_json(made.fit->summary.elastic.vertex_residuals)},
+               {"unmet_vertices", unmet_vertices(made.fit->summary.elastic.unmet)},
                {"stages", std::move(stages)},
                {"voxels", voxel_count(made.asset)},
                {"seconds", seconds},
                {"peak_memory", peak_memory()}};
-  if (!made.fit.confidence.empty()) json["confidence"] = to_json(summarize(made.fit.confidence));
+  if (!made.fit->confidence.empty()) json["confidence"] = to_json(summarize(made.fit->confidence));
   return json.dump(2) + "\n";
 }
 

@@ -16,7 +16,7 @@ std::size_t peak_memory();
 
 /// How a map came to be, as a JSON object: models, options, per stage its residuals, iterations, stop reason
 /// and seconds, counts, peak memory.
-std::string fit_report(const MakeMapInput& input, const MadeMap& made, double seconds);
+std::string fit_report(const Problem& input, const MadeMap& made, double seconds);
 
 struct AppliedProduct {
   std::string name;  ///< of the file, without its directory

@@ -3,17 +3,13 @@
 #include <array>
 #include <string_view>
 
+#include "bespoke/surface_fit/surface_fit_options.h"
+
 namespace bespoke {
 
 struct Progress;
 struct SurfaceFit;
 struct SurfaceFitInput;
-struct SurfaceFitOptions;
-
-enum class SurfaceFitMethod {
-  laplacian,          ///< the paper's (IV.C, Eq. 11–15)
-  deformation_graph,  ///< nodes on the source and layers of space, coarse to fine
-};
 
 using FitSurface = SurfaceFit(const SurfaceFitInput&, const SurfaceFitOptions&, const Progress&);
 

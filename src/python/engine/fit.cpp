@@ -6,6 +6,7 @@
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
@@ -123,15 +124,15 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
   if (add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
   const Stopwatch watch;
-  const MakeMapInput input{source, target, anchors, fitted ? &*fitted : nullptr,
-                           target_cloud ? &*target_cloud : nullptr};
+  const Problem input{source, target, anchors, fitted ? &*fitted : nullptr,
+                      target_cloud ? &*target_cloud : nullptr};
   MadeMap made = released(callback, [&](const Progress& progress) {
     return make_map(input, make_options(request, size, size_scale), progress);
   });
   const std::string report = fit_report(input, made, watch.seconds());
-  const Points laid = made.fit.target_from_source * made.fit.fitted_vertices;
+  const Points laid = made.fit->target_from_source * made.fit->fitted_vertices;
   return py::make_tuple(std::make_shared<LoadedAsset>(std::move(made.asset)), to_array(laid),
-                        to_array(made.fit.confidence), report);
+                        to_array(made.fit->confidence), report);
 }
 
 }  // namespace
