@@ -123,6 +123,23 @@ for (const format of ["csv", "meshlab", "markups", "fiducials", "landmarks"])
     if (format === "markups") assert.match(readFileSync(file("anchors_a.mrk.json"), "utf8"), /"RAS"/);
   });
 
+// Of the vectors that the library passes, too, those that need a browser (shared_vectors_test.ts has the others).
+interface Vector {
+  name: string;
+  files: [string, string][];
+  pairs?: [string, Triple, Triple][];
+  fault?: string[];
+}
+const vectors = JSON.parse(readFileSync(join(process.env.BESPOKE_VECTORS as string, "anchor_files.json"), "utf8")) as Vector[];
+for (const each of vectors.filter(({ files }) => files[0][0].endsWith(".pp")))
+  test(`anchor files: ${each.name}`, async () => {
+    each.files.forEach(([name, text]) => writeFileSync(file(name), text));
+    const names = each.files.map(([name]) => name);
+    if (each.pairs !== undefined) return assert.deepEqual((await imported(names)).map(({ name = "", a, b }) => [name, a, b]), each.pairs);
+    const answer = await open_files(...names);
+    each.fault!.forEach((words) => assert.ok(answer.includes(words), answer));
+  });
+
 test("vertex numbers are those of the command", async () => {
   await imported(["given.json"]);
   await exported("indices");

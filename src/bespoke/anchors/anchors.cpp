@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
 #include "bespoke/anchors/detail/anchor_json.h"
+#include "bespoke/anchors/detail/point_text.h"
 #include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
@@ -35,12 +35,10 @@ bool is_csv_header(const std::vector<std::string>& fields) {
 
 double csv_number(const std::string& cell, const char* column, const std::string& where) {
   const std::string field(csv_characters(cell));
-  double number = 0;
-  const char* end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, number);
-  if (error != std::errc{} || stop != end || !std::isfinite(number))
+  const std::optional<double> number = decimal_number(field);
+  if (!number)
     throw FormatError(where + ": " + column + " is \"" + field.substr(0, 40) + "\", not a finite number");
-  return number;
+  return *number;
 }
 
 /// accuracy_columns: what stands after the seventh column.

@@ -3,7 +3,7 @@ import { eigen_of, solved } from "./linear";
 
 /**
  * What the page needs of `rigid` and `rbf`: a port of some hundred lines, for the library as WebAssembly would bring a compiler of
- * half a gigabyte into the set-up and megabytes into every page. The properties of its C++ counterparts are its tests.
+ * half a gigabyte into the set-up and megabytes into every page. One truth for both: the vectors of tests/vectors.
  */
 
 export type Warp = (point: Triple) => Triple;
