@@ -10,13 +10,16 @@ find_dependency(nlohmann_json CONFIG)
 find_dependency(OpenSSL COMPONENTS Crypto)
 find_dependency(ZLIB)
 find_dependency(EXPAT)
+find_dependency(PNG)
 list(APPEND CMAKE_MODULE_PATH "/usr/lib/${CMAKE_CXX_LIBRARY_ARCHITECTURE}/cmake/OpenVDB")
 # FindOpenVDB turns BUILD_SHARED_LIBS on for whoever calls it.
 set(bespoke_shared_libs "${BUILD_SHARED_LIBS}")
 find_dependency(OpenVDB 8.0 MODULE COMPONENTS openvdb)
 set(BUILD_SHARED_LIBS "${bespoke_shared_libs}")
 unset(bespoke_shared_libs)
-# Without packages for CMake: their headers are found by their directories, and they are linked by their names.
+# Without packages for CMake: their headers are found by their directories, and they are linked by their names. libzip has
+# one, which on Debian wants its command line tools as well.
 find_path(BESPOKE_CAIRO cairo/cairo-pdf.h REQUIRED)
 find_path(BESPOKE_POLYCLIPPING polyclipping/clipper.hpp REQUIRED)
-mark_as_advanced(BESPOKE_CAIRO BESPOKE_POLYCLIPPING)
+find_path(BESPOKE_ZIP zip.h REQUIRED)
+mark_as_advanced(BESPOKE_CAIRO BESPOKE_POLYCLIPPING BESPOKE_ZIP)

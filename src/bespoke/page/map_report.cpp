@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bespoke/number_format.h"
-#include "bespoke/page/detail/base64.h"
+#include "bespoke/base64.h"
 #include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/picture.h"
 #include "bespoke/page/detail/places.h"

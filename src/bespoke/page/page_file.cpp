@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "bespoke/error.h"
-#include "bespoke/page/detail/base64.h"
+#include "bespoke/base64.h"
 
 namespace bespoke {
 namespace {

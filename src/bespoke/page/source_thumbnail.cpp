@@ -1,7 +1,7 @@
 #include "bespoke/page/source_thumbnail.h"
 
 #include "bespoke/asset/source_surface.h"
-#include "bespoke/page/detail/base64.h"
+#include "bespoke/base64.h"
 #include "bespoke/page/detail/picture.h"
 
 namespace bespoke {

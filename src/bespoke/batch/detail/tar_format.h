@@ -10,8 +10,8 @@
 namespace bespoke {
 
 /// The tar format of POSIX (ustar with pax headers): members of a header of 512 bytes and content padded to
-/// blocks of as many. Written here because archives must grow and be cut at whole members, and libarchive has
-/// calls for neither.
+/// blocks of as many. Written here because archives must grow and be cut at whole members, and hold comments:
+/// libarchive has calls for none of these.
 struct TarMember {
   enum class Kind { file, comment, other };
 

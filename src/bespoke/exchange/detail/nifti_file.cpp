@@ -1,10 +1,12 @@
+#include <nifti/nifti1.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <ostream>
+#include <string_view>
 
 #include "bespoke/error.h"
 #include "bespoke/exchange/detail/image_files.h"
@@ -12,29 +14,9 @@
 namespace bespoke {
 namespace {
 
-constexpr std::size_t header_bytes = 348;
-constexpr std::size_t extension_bytes = 4;  // all zero: there is none
-constexpr std::int16_t float32 = 16;
-constexpr std::int16_t displacement_vectors = 1006;
-constexpr std::int16_t scanner_coordinates = 1;
+constexpr char no_extension[4] = {};  // what follows the header
 constexpr int gzip_window = 15 + 16;  // zlib's largest, and 16 for a gzip header, which then holds no time
 constexpr std::size_t floats_per_call = std::size_t{1} << 18;
-
-/// Fields of nifti1.h by their offsets.
-class Header {
- public:
-  template <class Number>
-  void set(std::size_t offset, std::initializer_list<Number> values) {
-    std::memcpy(bytes_.data() + offset, std::data(values), values.size() * sizeof(Number));
-  }
-  void set(std::size_t offset, std::string_view text, std::size_t room) {
-    text.substr(0, room - 1).copy(bytes_.data() + offset, room - 1);
-  }
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_ = std::string(header_bytes + extension_bytes, '\0');
-};
 
 std::int16_t node_count(std::size_t nodes) {
   if (nodes > std::numeric_limits<std::int16_t>::max())
@@ -44,23 +26,38 @@ std::int16_t node_count(std::size_t nodes) {
 }
 
 /// `turned` is -1 on the axes that point the other way in RAS.
-Header header_of(const DisplacementImage& image, const ImageNotes& notes, const Eigen::Vector3f& turned) {
-  Header header;
-  header.set<std::int32_t>(0, {header_bytes});
-  header.set<std::int16_t>(
-      40, {5, node_count(image.size[0]), node_count(image.size[1]), node_count(image.size[2]), 1, 3, 1, 1});
-  header.set<std::int16_t>(68, {displacement_vectors, float32, 32});
+nifti_1_header header_of(const DisplacementImage& image, const ImageNotes& notes,
+                         const Eigen::Vector3f& turned) {
+  nifti_1_header header{};
+  header.sizeof_hdr = sizeof header;
+  const std::array<std::int16_t, 8> dim{
+      5, node_count(image.size[0]), node_count(image.size[1]), node_count(image.size[2]), 1, 3, 1, 1};
+  std::copy(dim.begin(), dim.end(), header.dim);
+  header.intent_code = NIFTI_INTENT_DISPVECT;
+  header.datatype = NIFTI_TYPE_FLOAT32;
+  header.bitpix = 32;
   const auto h = static_cast<float>(image.spacing);
-  header.set<float>(76, {1, h, h, h, 1, 1, 1, 1});
-  header.set<float>(108, {float{header_bytes + extension_bytes}, 1, 0});
-  header.set(148, notes.content, 80);
-  header.set<std::int16_t>(252, {scanner_coordinates, scanner_coordinates});
+  std::fill(std::begin(header.pixdim), std::end(header.pixdim), 1.0f);
+  std::fill_n(header.pixdim + 1, 3, h);
+  header.vox_offset = sizeof header + sizeof no_extension;
+  header.scl_slope = 1;
+  std::string_view(notes.content)
+      .substr(0, sizeof header.descrip - 1)
+      .copy(header.descrip, sizeof header.descrip);
+  header.qform_code = header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
   // The quaternion's b, c, d: half a turn about z, or none.
   const Eigen::Vector3f origin = turned.cwiseProduct(image.origin.cast<float>());
-  header.set<float>(256, {0, 0, turned.x() < 0 ? 1.0f : 0.0f, origin.x(), origin.y(), origin.z()});
-  header.set<float>(280, {turned.x() * h, 0, 0, origin.x(), 0, turned.y() * h, 0, origin.y(), 0, 0,
-                          turned.z() * h, origin.z()});
-  header.set(344, "n+1", 4);
+  header.quatern_d = turned.x() < 0 ? 1.0f : 0.0f;
+  header.qoffset_x = origin.x();
+  header.qoffset_y = origin.y();
+  header.qoffset_z = origin.z();
+  header.srow_x[0] = turned.x() * h;
+  header.srow_x[3] = origin.x();
+  header.srow_y[1] = turned.y() * h;
+  header.srow_y[3] = origin.y();
+  header.srow_z[2] = turned.z() * h;
+  header.srow_z[3] = origin.z();
+  std::string_view("n+1").copy(header.magic, sizeof header.magic);
   return header;
 }
 
@@ -102,9 +99,10 @@ class GzipWriter {
 void write_nifti_gz(std::ostream& out, const DisplacementImage& image, const ImageNotes& notes) {
   const float sign = notes.space == WorldSpace::lps ? -1.0f : 1.0f;
   const Eigen::Vector3f turned(sign, sign, 1);
-  const std::string header = header_of(image, notes, turned).bytes();
+  const nifti_1_header header = header_of(image, notes, turned);
   GzipWriter zipped(out);
-  zipped.write(header.data(), header.size());
+  zipped.write(&header, sizeof header);
+  zipped.write(no_extension, sizeof no_extension);
   const std::size_t nodes = image.values.size() / 3;
   std::vector<float> part;
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -1,6 +1,6 @@
 #include "bespoke/page/detail/picture.h"
 
-#include <zlib.h>
+#include <png.h>
 
 #include <algorithm>
 #include <array>
@@ -17,23 +17,6 @@ namespace {
 // Samples along each edge of a pixel: four a pixel smooth the outlines.
 constexpr int oversampling = 2;
 constexpr double margin = 0.04;  // of the picture, around what is drawn
-
-// ---- PNG (RFC 2083)
-
-std::string big_endian(std::uint32_t value) {
-  std::string bytes;
-  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFF);
-  return bytes;
-}
-
-std::string chunk(const std::string& type, const std::string& data) {
-  const std::string body = type + data;
-  const uLong check = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
-  return big_endian(static_cast<std::uint32_t>(data.size())) + body +
-         big_endian(static_cast<std::uint32_t>(check));
-}
-
-// ---- drawing
 
 struct Sample {
   double depth = -std::numeric_limits<double>::infinity();  ///< towards the eye
@@ -130,23 +113,17 @@ void require_drawable(const PaintedMesh& mesh) {
 }  // namespace
 
 std::string png(const Picture& picture) {
-  // Every row begins with the number of its filter: none.
-  std::string rows;
-  const auto row_bytes = static_cast<std::size_t>(3 * picture.width);
-  for (std::size_t row = 0; row < static_cast<std::size_t>(picture.height); ++row) {
-    rows += '\0';
-    rows.append(reinterpret_cast<const char*>(picture.pixels.data()) + row * row_bytes, row_bytes);
-  }
-  uLongf size = compressBound(static_cast<uLong>(rows.size()));
-  std::string packed(size, '\0');
-  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(rows.data()),
-                static_cast<uLong>(rows.size()), Z_BEST_COMPRESSION) != Z_OK)
-    throw MemoryLimitError("no memory to deflate a picture");
-  packed.resize(size);
-  const std::string header = big_endian(static_cast<std::uint32_t>(picture.width)) +
-                             big_endian(static_cast<std::uint32_t>(picture.height)) +
-                             std::string("\x08\x02\0\0\0", 5);
-  return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", packed) + chunk("IEND", "");
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.width);
+  image.height = static_cast<png_uint_32>(picture.height);
+  image.format = PNG_FORMAT_RGB;
+  std::string file(PNG_IMAGE_PNG_SIZE_MAX(image), '\0');
+  png_alloc_size_t size = file.size();
+  if (!png_image_write_to_memory(&image, file.data(), &size, 0, picture.pixels.data(), 0, nullptr))
+    throw MemoryLimitError("a picture cannot be written: " + std::string(image.message));
+  file.resize(size);
+  return file;
 }
 
 Picture draw(const std::vector<PaintedMesh>& meshes, DrawnFrom from, int size) {

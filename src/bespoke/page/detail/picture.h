@@ -15,7 +15,7 @@ struct Picture {
   std::vector<std::uint8_t> pixels;
 };
 
-/// As a PNG file: 8 bits a channel, no interlace.
+/// As a PNG file: 8 bits a channel, no interlace (libpng).
 std::string png(const Picture& picture);
 
 /// A mesh to be drawn.

@@ -203,10 +203,10 @@ class ModelReader {
   bool has_model_ = false, unit_only_ = false;
 };
 
-const ZipEntry& required_entry(const ZipFile& package, const std::string& name) {
-  const ZipEntry* const entry = package.find(name);
+ZipEntry required_entry(const ZipFile& package, const std::string& name) {
+  std::optional<ZipEntry> entry = package.find(name);
   if (!entry) throw FormatError(package.path().string() + ": has no part " + in_quotes(name));
-  return *entry;
+  return *std::move(entry);
 }
 
 }  // namespace
@@ -239,7 +239,7 @@ std::string threemf_name_of_unit(const std::string& unit) {
 
 std::string unit_of_3mf(const InputFile& file) {
   const ZipFile package(file);
-  const ZipEntry& root = required_entry(package, root_part_of_3mf(package));
+  const ZipEntry root = required_entry(package, root_part_of_3mf(package));
   return std::string(*value_of(units, ModelReader().read(package, root, true).unit));
 }
 

@@ -1,10 +1,7 @@
-#include <zlib.h>
+#include <zip.h>
 
 #include <array>
 #include <charconv>
-#include <cstdint>
-#include <limits>
-#include <new>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -28,76 +25,52 @@ constexpr std::string_view relationships =
     "<Relationship Id=\"rel0\" Target=\"/3D/3dmodel.model\" "
     "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>\n";
 
-void require_short(std::size_t size) {
-  if (size > std::numeric_limits<std::uint32_t>::max())
-    throw InvalidInput("a 3MF file would have more than the 4 GB that it can have");
-}
-
-void append_little_endian(std::string& bytes, std::size_t value, int count) {
-  require_short(value);
-  for (int i = 0; i < count; ++i) bytes += static_cast<char>(value >> 8 * i & 0xff);
-}
-
-std::string deflated(std::string_view text) {
-  require_short(text.size());
-  z_stream stream{};
-  if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, -MAX_WBITS, MAX_MEM_LEVEL,
-                   Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::bad_alloc();
-  std::string result(deflateBound(&stream, static_cast<uLong>(text.size())), '\0');
-  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
-  stream.avail_in = static_cast<uInt>(text.size());
-  stream.next_out = reinterpret_cast<Bytef*>(result.data());
-  stream.avail_out = static_cast<uInt>(result.size());
-  deflate(&stream, Z_FINISH);
-  result.resize(stream.total_out);
-  deflateEnd(&stream);
-  return result;
-}
-
 /// A ZIP archive of files without dates, so that the same model has the same bytes.
 class ZipWriter {
  public:
-  void add(std::string_view name, std::string_view text) {
-    constexpr std::size_t first_day = 0x21;  // 1 January 1980: there is no earlier one
-    const std::string stored = deflated(text);
-    std::string common;
-    append_little_endian(common, 20, 2);  // version 2.0 reads it
-    append_little_endian(common, 0, 2);
-    append_little_endian(common, Z_DEFLATED, 2);
-    append_little_endian(common, first_day << 16, 4);
-    append_little_endian(
-        common, crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())), 4);
-    append_little_endian(common, stored.size(), 4);
-    append_little_endian(common, text.size(), 4);
-    append_little_endian(common, name.size(), 2);
-    append_little_endian(common, 0, 2);
-    directory_ += "PK\1\2";
-    append_little_endian(directory_, 20, 2);
-    directory_ += common;
-    directory_.append(10, '\0');
-    append_little_endian(directory_, archive_.size(), 4);
-    directory_ += name;
-    archive_ += "PK\3\4" + common;
-    archive_ += name;
-    archive_ += stored;
-    ++files_;
+  ZipWriter() {
+    memory_ = zip_source_buffer_create(nullptr, 0, 0, nullptr);
+    require(memory_ != nullptr);
+    zip_source_keep(memory_);  // the archive takes one reference
+    archive_ = zip_open_from_source(memory_, ZIP_CREATE | ZIP_TRUNCATE, nullptr);
+    require(archive_ != nullptr);
+  }
+  ~ZipWriter() {
+    if (archive_) zip_discard(archive_);
+    zip_source_free(memory_);
+  }
+  ZipWriter(const ZipWriter&) = delete;
+  ZipWriter& operator=(const ZipWriter&) = delete;
+
+  /// `text` must stay until `content`.
+  void add(const char* name, std::string_view text) {
+    zip_source_t* const source = zip_source_buffer(archive_, text.data(), text.size(), 0);
+    const zip_int64_t index = zip_file_add(archive_, name, source, ZIP_FL_ENC_UTF_8);
+    if (index < 0) zip_source_free(source);
+    require(index >= 0);
+    constexpr zip_uint16_t first_day = 0x21;  // 1 January 1980: there is no earlier one
+    require(zip_file_set_dostime(archive_, static_cast<zip_uint64_t>(index), 0, first_day, 0) == 0);
   }
 
-  std::string content() const {
-    std::string end = "PK\5\6";
-    append_little_endian(end, 0, 4);
-    append_little_endian(end, files_, 2);
-    append_little_endian(end, files_, 2);
-    append_little_endian(end, directory_.size(), 4);
-    append_little_endian(end, archive_.size(), 4);
-    append_little_endian(end, 0, 2);
-    return archive_ + directory_ + end;
+  std::string content() {
+    require(zip_close(archive_) == 0);
+    archive_ = nullptr;
+    zip_stat_t stat;
+    require(zip_source_stat(memory_, &stat) == 0 && zip_source_open(memory_) == 0);
+    std::string bytes(stat.size, '\0');
+    require(zip_source_read(memory_, bytes.data(), bytes.size()) == static_cast<zip_int64_t>(bytes.size()));
+    zip_source_close(memory_);
+    return bytes;
   }
 
  private:
-  std::string archive_, directory_;
-  std::size_t files_ = 0;
+  /// All is in memory: nothing else can go wrong.
+  static void require(bool succeeded) {
+    if (!succeeded) throw MemoryLimitError("no memory to write a 3MF file");
+  }
+
+  zip_source_t* memory_ = nullptr;
+  zip_t* archive_ = nullptr;
 };
 
 template <class Number>
@@ -145,7 +118,8 @@ void write_3mf_faces(std::ostream& out, const WrittenFaces& faces) {
   ZipWriter archive;
   archive.add("[Content_Types].xml", content_types);
   archive.add("_rels/.rels", relationships);
-  archive.add("3D/3dmodel.model", model_of(faces));
+  const std::string model = model_of(faces);
+  archive.add("3D/3dmodel.model", model);
   out << archive.content();
 }
 

@@ -1,36 +1,36 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "bespoke/product/carry/product_file.h"
 
 namespace bespoke {
 
-/// A file in a ZIP archive, as the archive's directory describes it.
+/// A file in a ZIP archive.
 struct ZipEntry {
   std::string name;
-  int method = 0;
-  bool encrypted = false;
-  std::uint32_t checksum = 0;
+  std::uint64_t index = 0;        ///< in the archive's directory
   std::uint64_t stored_size = 0;  ///< bytes in the archive
   std::uint64_t size = 0;         ///< bytes inflated
-  std::uint64_t header = 0;       ///< where its own header begins
 };
 
-/// Reads ZIP archives, also those of the 64-bit format, of one volume.
+/// Reads ZIP archives (libzip). One thread at a time.
 class ZipFile {
  public:
-  /// Reads the directory; the file must outlive it. Throws FormatError for what is no archive, or cut off.
+  /// Reads the directory. Throws FormatError for what is no archive, or cut off.
   explicit ZipFile(const InputFile& file);
+  ~ZipFile();
 
-  const std::filesystem::path& path() const { return file_.path(); }
+  const std::filesystem::path& path() const { return path_; }
 
-  /// By its name, whatever the case of its ASCII letters; null when there is none.
-  const ZipEntry* find(std::string_view name) const;
+  /// By its name, whatever the case of its ASCII letters.
+  std::optional<ZipEntry> find(const std::string& name) const;
 
   /// Inflates in pieces, until the end or until `take` returns false. Throws FormatError naming the entry for
   /// an encrypted or unknown form, damage of any kind, and one that says that it expands by more than 200
@@ -38,16 +38,12 @@ class ZipFile {
   void read(const ZipEntry& entry, const std::function<bool(std::string_view piece)>& take) const;
 
  private:
-  struct Directory {
-    std::uint64_t entries, size, offset;
-  };
-  Directory find_directory() const;
-  std::uint64_t data_of(const ZipEntry& entry) const;
-  std::string bytes(std::uint64_t offset, std::uint64_t size) const;
+  struct Archive;
+
   [[noreturn]] void fail(const std::string& what) const;
 
-  const InputFile& file_;
-  std::vector<ZipEntry> entries_;
+  std::filesystem::path path_;
+  std::unique_ptr<Archive> archive_;
 };
 
 }  // namespace bespoke

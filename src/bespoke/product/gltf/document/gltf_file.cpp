@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "bespoke/base64.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/product/gltf/document/gltf_extensions.h"
@@ -22,7 +23,6 @@ constexpr std::uint32_t magic = 0x46546c67, json_chunk = 0x4e4f534a, binary_chun
 
 constexpr std::size_t bytes_at_a_time = std::size_t{1} << 22;
 
-constexpr std::string_view base64_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr std::string_view base64_mark = ";base64,";
 
 std::string read_bytes(const InputFile& file, std::size_t begin, std::size_t size) {
@@ -82,47 +82,12 @@ void read_chunks(const InputFile& file, GltfFile& gltf, std::optional<GltfBuffer
   gltf.chunks_behind = read_bytes(file, at, file.size() - at);
 }
 
-bool decode_base64(std::string_view text, std::string& bytes) {
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-  std::array<std::uint8_t, 256> value{};
-  value.fill(base64_digits.size());
-  for (std::size_t i = 0; i < base64_digits.size(); ++i)
-    value[static_cast<unsigned char>(base64_digits[i])] = static_cast<std::uint8_t>(i);
-  bytes.reserve(text.size() * 3 / 4);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    const std::uint8_t digit = value[static_cast<unsigned char>(c)];
-    if (digit == base64_digits.size()) return false;
-    bits = bits << 6 | digit;
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes += static_cast<char>(bits >> count & 0xff);
-  }
-  return true;
-}
-
-std::string encode_base64(std::string_view bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? base64_digits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
 GltfBuffer read_uri(const GltfPart& part, GltfFile& gltf) {
   const std::string uri = part.text("uri");
   if (is_data_uri(uri)) {
-    std::string bytes;
-    if (!decode_base64(std::string_view(uri).substr(uri.find(base64_mark) + base64_mark.size()), bytes))
-      part.fail_at("uri", "is not base64");
-    return GltfBuffer(std::move(bytes));
+    auto bytes = bytes_of_base64(std::string_view(uri).substr(uri.find(base64_mark) + base64_mark.size()));
+    if (!bytes) part.fail_at("uri", "is not base64");
+    return GltfBuffer(*std::move(bytes));
   }
   if (uri.starts_with("data:") || uri.find("://") != std::string::npos)
     part.fail_at("uri", "is neither base64 data nor the name of a file beside this one");
@@ -196,7 +161,7 @@ bool is_data_uri(std::string_view uri) {
 }
 
 std::string data_uri_of(std::string_view uri, std::string_view bytes) {
-  return std::string(uri.substr(0, uri.find(base64_mark) + base64_mark.size())) + encode_base64(bytes);
+  return std::string(uri.substr(0, uri.find(base64_mark) + base64_mark.size())) + base64(bytes);
 }
 
 std::string file_name_of_uri(std::string_view uri) {
