@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "bespoke/lattice/leaf_table.h"
 
 namespace bespoke {
@@ -49,6 +52,17 @@ TEST(SurfaceNet, OfABallIsClosedAndFacesOutwardsAcrossLeaves) {
   EXPECT_EQ(found.unreferenced_vertices, 0u);
   EXPECT_EQ(2 * found.vertices, found.faces + 4) << "of a sphere, by Euler";
   EXPECT_NEAR(volume(mesh), 4.18879, 0.03 * 4.18879);
+}
+
+// Where sheets come near to each other a cell has several vertices.
+TEST(SurfaceNet, IsManifoldWhereSheetsPassThroughOneCell) {
+  const auto thin = [](const Vector3& x) {
+    return std::max(std::abs(x.x() + 0.7 * x.y()) - 0.06, x.norm() - 1);
+  };
+  const MeshFindings found = inspect_mesh(surface_net(field_of(2, 0.1, thin), where_it_starts));
+  EXPECT_GT(found.faces, 100u);
+  EXPECT_EQ(found.non_manifold_edges, 0u);
+  EXPECT_EQ(found.inconsistent_edges, 0u);
 }
 
 TEST(SurfaceNet, EndsWhereValuesOrPlacesLack) {

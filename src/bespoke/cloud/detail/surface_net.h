@@ -24,15 +24,13 @@ struct SparseField {
   }
 };
 
-/// Where a vertex goes that starts at the mean of where its cell's edges change sign; empty when the surface
-/// is not to have it.
+/// Where a vertex goes that the lattice puts here; empty when the surface is not to have it.
 using PlaceVertex = std::function<std::optional<Vector3>(const Vector3& start)>;
 
-/// The surface between negative and other values, seen from the latter: a vertex for every cell whose eight
-/// values are known and differ in sign, and around every edge that changes sign a quadrilateral of the four
-/// cells' vertices, cut along its shorter diagonal (surface nets: Gibson 1998). It ends, with a boundary,
-/// where one of the four lacks. Vertices and faces are in the order of the leaves. `place` is called from
-/// several threads.
+/// The surface between negative and other values, seen from the latter, of the cells whose eight values are
+/// known (OpenVDB's VolumeToMesh, which gives a cell as many vertices as sheets go through it: the surface is
+/// manifold). Of its quadrilaterals the shorter diagonal divides each. It ends, with a boundary, at the other
+/// cells and where vertices have no place. `place` is called from several threads.
 TriangleMesh surface_net(const SparseField& field, const PlaceVertex& place);
 
 }  // namespace bespoke
