@@ -9,6 +9,7 @@
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/number_format.h"
+#include "bespoke/pipeline/fit_mapping.h"
 
 namespace bespoke::command {
 namespace {
