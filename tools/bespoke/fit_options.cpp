@@ -1,6 +1,8 @@
 #include "fit_options.h"
 
+#include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/product/product_io.h"
+#include "bespoke/surface_fit/surface_fit_methods.h"
 #include "commands.h"
 #include "help.h"
 #include "length_option.h"
