@@ -40,7 +40,7 @@ void fit_bodies(benchmark::State& state) {
   for (int level = 0; level < state.range(0) - 1; ++level) bodies.target = shapes::subdivided(bodies.target);
   const FitOptions options = default_options(diagonal(bodies.source.vertices)).fit;
   FittedMapping fit;
-  for (auto _ : state) fit = fit_mapping(bodies.source, bodies.target, bodies.anchors, options);
+  for (auto _ : state) fit = fit_mapping({bodies.source, bodies.target, bodies.anchors}, options);
   state.counters["source"] = double(bodies.source.vertices.cols());
   state.counters["target"] = double(bodies.target.vertices.cols());
   const double surface_fit = fit.summary.surface->seconds, elastic = fit.summary.elastic.seconds;

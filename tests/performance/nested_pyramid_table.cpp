@@ -85,7 +85,7 @@ FittedMapping fit(const Pair& pair) {
   options.elastic = ElasticMethod::diffeomorphic;
   options.lambda = 0.1 * length;
   options.fit_tolerance = 1e-4 * length;
-  return fit_mapping(pair.source, pair.target, pair.anchors, options);
+  return fit_mapping({pair.source, pair.target, pair.anchors}, options);
 }
 
 void print_levels(const ElasticMap& exact, const Bake& baked, const TriangleMesh& source) {

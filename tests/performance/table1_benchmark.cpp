@@ -92,7 +92,7 @@ enum class Baking { none, baked };
 Seconds measure(const Models& models, const MakeMapOptions& options, Baking baking) {
   Seconds least;
   for (int run = 0; run < runs; ++run) {
-    const FittedMapping fit = fit_mapping(models.source, models.target, models.anchors, options.fit);
+    const FittedMapping fit = fit_mapping({models.source, models.target, models.anchors}, options.fit);
     least.fitting = std::min(least.fitting, fit.summary.surface->seconds);
     least.elastic = std::min(least.elastic, fit.summary.elastic.seconds);
     const Stopwatch exact;

@@ -143,7 +143,7 @@ TEST_P(FitSampleWithFlatAnchors, LaysTheSourceOntoTheTarget) {
   const FlatPair pair(make_sample("shoe"), GetParam(), 7);
   FitOptions options;
   options.lambda = 0.1 * diagonal(pair.source.vertices);
-  const FittedMapping registered = fit_source_surface(pair.source, pair.target, pair.anchors, options);
+  const Registration registered = fit_source_surface({pair.source, pair.target, pair.anchors}, options);
   EXPECT_LT(registered.summary.surface->after.median, 1e-3 * diagonal(pair.source.vertices));
 }
 

@@ -36,7 +36,7 @@ struct BakeScene {
 TEST(BakeSteps, MeetTheToleranceAsAWhole) {
   const BakeScene scene;
   const ElasticChain exact = chain(4);
-  const BakedSteps baked = bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options);
+  const BakedSteps baked = bake_steps({exact, scene.surfaces(exact), scene.source.faces}, scene.options);
   ASSERT_EQ(baked.steps.size(), 4u);
   EXPECT_TRUE(baked.whole.tolerance_met);
   // At points that no measure has used.
@@ -51,7 +51,7 @@ TEST(BakeSteps, SayWhereTheWholeWasMeasured) {
   for (const int steps : {1, 3}) {
     const ElasticChain exact = chain(steps);
     const BakeSummary whole =
-        bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options).whole;
+        bake_steps({exact, scene.surfaces(exact), scene.source.faces}, scene.options).whole;
     EXPECT_GE(whole.error_random_points, scene.options.error_points) << steps;
     EXPECT_GT(whole.error_surface_points, 0u) << steps;
     EXPECT_EQ(whole.error_random_points + whole.error_surface_points, whole.error.count) << steps;
@@ -61,7 +61,7 @@ TEST(BakeSteps, SayWhereTheWholeWasMeasured) {
 TEST(BakeSteps, OfOneStepAreItsBake) {
   const BakeScene scene;
   const ElasticChain exact = chain(1);
-  const BakedSteps baked = bake_steps(exact, scene.surfaces(exact), scene.source.faces, scene.options);
+  const BakedSteps baked = bake_steps({exact, scene.surfaces(exact), scene.source.faces}, scene.options);
   BakeOptions options = scene.options;
   options.surface = &scene.source;
   const Bake expected = bake(*exact.steps().front(), options);
@@ -84,7 +84,8 @@ TEST(BakeSteps, EndAtAStepThatFoldsAndMayBeDividedAndGoOnFromThoseAfterIt) {
   const std::vector<bool> divisible(3, true);
   BakeOptions options = scene.options;
   options.tolerance = 0.02;
-  BakedSteps last = bake_steps(folded, scene.surfaces(folded), scene.source.faces, options, divisible);
+  BakedSteps last =
+      bake_steps({folded, scene.surfaces(folded), scene.source.faces}, options, {divisible, {}});
   ASSERT_EQ(last.steps.size(), 2u);
   EXPECT_TRUE(is_to_be_divided(last, divisible));
   last.steps.erase(last.steps.begin());
@@ -94,7 +95,7 @@ TEST(BakeSteps, EndAtAStepThatFoldsAndMayBeDividedAndGoOnFromThoseAfterIt) {
   const auto values = last.steps.front().pyramid.levels.front().values;
   const ElasticChain exact(sound);
   const BakedSteps baked =
-      bake_steps(exact, scene.surfaces(exact), scene.source.faces, options, divisible, std::move(last));
+      bake_steps({exact, scene.surfaces(exact), scene.source.faces}, options, {divisible, std::move(last)});
   ASSERT_EQ(baked.steps.size(), 3u);
   EXPECT_EQ(baked.steps.back().pyramid.levels.front().values, values);
 }
@@ -107,10 +108,10 @@ TEST(BakeSteps, ShareFewLeavesEvenlyHoweverLateTheyWereDivided) {
   const ElasticChain exact = chain(4);
   const std::vector<Points> surfaces = scene.surfaces(exact);
   const ElasticChain second_half({exact.steps()[2], exact.steps()[3]});
-  BakedSteps last = bake_steps(second_half, {surfaces[2], surfaces[3]}, scene.source.faces, scene.options);
+  BakedSteps last = bake_steps({second_half, {surfaces[2], surfaces[3]}, scene.source.faces}, scene.options);
   ASSERT_GT(last.steps[0].pyramid.leaf_count() + last.steps[1].pyramid.leaf_count(), 700u);
-  const BakedSteps baked = bake_steps(exact, surfaces, scene.source.faces, scene.options,
-                                      std::vector<bool>(4, true), std::move(last));
+  const BakedSteps baked = bake_steps({exact, surfaces, scene.source.faces}, scene.options,
+                                      {std::vector<bool>(4, true), std::move(last)});
   ASSERT_EQ(baked.steps.size(), 4u);
   for (const MapStep& step : baked.steps) {
     EXPECT_NEAR(static_cast<double>(step.pyramid.leaf_count()), 200, 40);

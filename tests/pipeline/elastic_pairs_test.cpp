@@ -77,7 +77,7 @@ struct PairScene {
     options.fit_tolerance = pair_tolerance;
   }
 
-  FittedMapping fit() const { return fit_mapping_to_fitted(source, fitted, anchors, options); }
+  FittedMapping fit() const { return fit_mapping({source, fitted, anchors, &fitted}, options); }
 };
 
 TEST(FitOffSurface, AnchorsAreMetByEveryMethodThatMeetsPoints) {

@@ -12,8 +12,10 @@
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/error.h"
-#include "bespoke/pipeline/detail/fit_elastic_map.h"
+#include "bespoke/pipeline/detail/divided_map.h"
+#include "bespoke/pipeline/detail/fit_map.h"
 #include "bespoke/pipeline/elastic_pairs.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/product/mesh_io.h"
 #include "bespoke/rigid/affine_alignment.h"
@@ -46,8 +48,26 @@ FitOptions options_of(const TriangleMesh& source, ElasticMethod method = Elastic
 
 FittedMapping fit_bent(const TriangleMesh& source, double angle, const FitOptions& options,
                        const Anchors& anchors = {}) {
-  return fit_mapping_to_fitted(source, {test::bent(source.vertices, angle), source.faces}, anchors, options);
+  const TriangleMesh fitted{test::bent(source.vertices, angle), source.faces};
+  return fit_mapping({source, fitted, anchors, &fitted}, options);
 }
+
+/// The same without Γ, and what it was made of.
+struct BentFit {
+  BentFit(double angle, const FitOptions& how) : options(how) {
+    registration.fitted_vertices = test::bent(source.vertices, angle);
+    fit = fit_map(problem(), options);
+  }
+  MapProblem problem() const { return map_problem(source, registration, options); }
+  void divide(std::size_t step, bool leave_path = false) {
+    fit = divided_map(fit, {problem(), options, step, leave_path});
+  }
+
+  TriangleMesh source = test::tube();
+  Registration registration;
+  FitOptions options;
+  MapFit fit;
+};
 
 TEST(ElasticSteps, AreOneForOnePose) {
   const TriangleMesh source = test::tube();
@@ -138,33 +158,33 @@ TEST(ElasticSteps, ComeApartAsTheyAreWhereHalvesOfThePathWouldMiss) {
   const TriangleMesh source = test::tube();
   FitOptions options = options_of(source);
   options.steps = 3;
-  FittedMapping fit = fit_bent(source, 90 * degree, options);
+  BentFit bent(90 * degree, options);
+  const MapFit& fit = bent.fit;
   const auto maps = fit.elastic->steps();
   const Points x = 2 * test::random_points(1000, 3), before = (*fit.elastic)(x);
-  const double missed = fit.summary.elastic.vertex_residuals.max;
-  options.fit_tolerance = fit.summary.elastic.vertex_residuals.median / 10;
-  divide_step(fit, source, {}, options, 1);
+  const double missed = fit.summary.vertex_residuals.max;
+  bent.options.fit_tolerance = fit.summary.vertex_residuals.median / 10;
+  bent.divide(1);
   ASSERT_EQ(fit.elastic->steps().size(), maps.size() + 1);
   EXPECT_EQ(fit.elastic->steps().front(), maps.front());
   EXPECT_EQ(fit.elastic->steps().back(), maps.back());
   EXPECT_FALSE(fit.plan.has_value()) << "the chain has left its path";
   EXPECT_LT(test::largest_distance((*fit.elastic)(x), before), 1e-12);
-  EXPECT_NEAR(fit.summary.elastic.vertex_residuals.max, missed, 1e-12);
+  EXPECT_NEAR(fit.summary.vertex_residuals.max, missed, 1e-12);
   EXPECT_LT(test::largest_distance((*fit.elastic->steps()[1])(fit.step_sources[1]), fit.step_sources[2]),
             1e-12);
 }
 
 TEST(ElasticSteps, ComeApartUntilTheyAreSingleLayers) {
   const TriangleMesh source = test::tube();
-  const FitOptions options = options_of(source);
-  FittedMapping fit = fit_bent(source, 30 * degree, options);
+  BentFit bent(30 * degree, options_of(source));
+  const MapFit& fit = bent.fit;
   const Points before = (*fit.elastic)(source.vertices);
   for (std::size_t step = 0; step < fit.elastic->steps().size();)
-    is_divisible(fit, step) ? divide_step(fit, source, {}, options, step, true) : static_cast<void>(++step);
+    is_divisible(fit, step) ? bent.divide(step, true) : static_cast<void>(++step);
   EXPECT_GT(fit.elastic->steps().size(), 2u);
   EXPECT_LT(test::largest_distance((*fit.elastic)(source.vertices), before), 1e-12);
-  EXPECT_THAT(test::error_message<InvalidInput>([&] { divide_step(fit, source, {}, options, 0); }),
-              HasSubstr("no such step"));
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { bent.divide(0); }), HasSubstr("no such step"));
 }
 
 TEST(ElasticSteps, AreHalvedAlongThePathWhileTheyMeetTheirVertices) {
@@ -173,22 +193,23 @@ TEST(ElasticSteps, AreHalvedAlongThePathWhileTheyMeetTheirVertices) {
     FitOptions options = options_of(source);
     options.elastic = method;
     options.steps = 3;
-    FittedMapping fit = fit_bent(source, 90 * degree, options);
+    BentFit bent(90 * degree, options);
+    const MapFit& fit = bent.fit;
     const std::size_t before = fit.elastic->steps().size();
     const auto maps = fit.elastic->steps();
     const Points next = fit.step_sources[2];
-    divide_step(fit, source, {}, options, 1);
+    bent.divide(1);
     EXPECT_EQ(fit.elastic->steps().size(), before + 1);
     EXPECT_EQ(fit.elastic->steps().front(), maps.front());
     EXPECT_EQ(fit.elastic->steps().back(), maps.back());
     ASSERT_TRUE(fit.plan.has_value());
     EXPECT_EQ(fit.plan->steps(), before + 1);
-    EXPECT_EQ(fit.summary.elastic.divided_steps, 1u);
+    EXPECT_EQ(fit.summary.divided_steps, 1u);
     // The second half ends where the whole step did.
     const Points end = (*fit.elastic->steps()[2])(fit.step_sources[2]);
     const Eigen::VectorXd missed = (end - next).colwise().norm();
     EXPECT_LE(summarize({missed.begin(), missed.end()}).p95, options.fit_tolerance);
-    EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+    EXPECT_LE(fit.summary.vertex_residuals.p95, options.fit_tolerance);
   }
 }
 
@@ -203,10 +224,15 @@ TEST(ElasticStepsSharedCase, FollowAPoseThatFiveAnchorsTell) {
   std::erase_if(anchors.pairs, [&](const AnchorPair& pair) { return !kept.contains(pair.name); });
   ASSERT_EQ(anchors.pairs.size(), kept.size());
   const FitOptions options = layered_options(source).fit;
-  const FittedMapping fit = fit_mapping(source, target, anchors, options);
+  const FittedMapping fit = fit_mapping({source, target, anchors}, options);
   EXPECT_TRUE(fit.summary.surface->posed_by_anchors);
   EXPECT_GT(fit.elastic->steps().size(), 1u);
   EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
+}
+
+/// What is known of E alone.
+MapFit map_fit(const FittedMapping& fit) {
+  return {fit.elastic, fit.step_sources, fit.plan, fit.summary.elastic};
 }
 
 /// Three tubes side by side, the middle one moved along the others by `slide`.
@@ -260,11 +286,12 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
     return std::count(stages.cbegin(), end, "elastic");
   };
 
-  const FittedMapping one = fit_mapping_to_fitted(source, fitted, {}, options.fit, progress);
+  const FittedMapping one = fit_mapping({source, fitted, {}, &fitted}, options.fit, progress);
   ASSERT_EQ(one.elastic->steps().size(), 1u);
-  EXPECT_TRUE(is_foreseen_to_fold(one, 0));
-  EXPECT_THROW(is_foreseen_to_fold(one, 1), std::out_of_range);
-  EXPECT_FALSE(is_foreseen_to_fold(fit_mapping_to_fitted(source, tubes(0.02), {}, options.fit), 0));
+  EXPECT_TRUE(is_foreseen_to_fold(map_fit(one), 0));
+  EXPECT_THROW(is_foreseen_to_fold(map_fit(one), 1), std::out_of_range);
+  const TriangleMesh near = tubes(0.02);
+  EXPECT_FALSE(is_foreseen_to_fold(map_fit(fit_mapping({source, near, {}, &near}, options.fit)), 0));
   const auto before = elastic_until(stages.cend());
 
   stages.clear();
@@ -272,7 +299,7 @@ TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
   const MadeMap made = make_map({source, fitted, {}, &fitted}, options, progress);
   EXPECT_GT(elastic_until(std::find(stages.cbegin(), stages.cend(), "bake")), before);
   for (std::size_t k = 0; k < made.asset.steps.size(); ++k)
-    EXPECT_FALSE(is_foreseen_to_fold(*made.fit, k)) << k;
+    EXPECT_FALSE(is_foreseen_to_fold(map_fit(*made.fit), k)) << k;
 }
 
 // Halves of a step share what it had to say, and the voxels that the steps after them have left.
@@ -319,12 +346,12 @@ TEST(ElasticSteps, BecomeMoreWherePartsSlideAlongEachOther) {
   FitOptions options = default_options(diagonal(source.vertices)).fit;
   options.elastic = ElasticMethod::diffeomorphic;
   options.steps = 1;
-  const FittedMapping one = fit_mapping_to_fitted(source, fitted, {}, options);
+  const FittedMapping one = fit_mapping({source, fitted, {}, &fitted}, options);
   EXPECT_GT(one.summary.elastic.vertex_residuals.p99, 100 * options.fit_tolerance);
   EXPECT_FALSE(one.summary.elastic.divided_where_missed);
 
   options.steps.reset();
-  const FittedMapping chain = fit_mapping_to_fitted(source, fitted, {}, options);
+  const FittedMapping chain = fit_mapping({source, fitted, {}, &fitted}, options);
   EXPECT_GT(chain.elastic->steps().size(), 1u);
   EXPECT_TRUE(chain.summary.elastic.divided_where_missed);
   EXPECT_LE(chain.summary.elastic.vertex_residuals.p99, options.fit_tolerance);

@@ -38,8 +38,7 @@ FitOptions fit_options(ElasticMethod method) {
 }
 
 FittedMapping fit(const BodyPair& pair, ElasticMethod method) {
-  return with_loose_parts(fit_mapping(pair.source, pair.target, pair.anchors, fit_options(method)),
-                          pair.source);
+  return fit_mapping({pair.source, pair.target, pair.anchors}, fit_options(method));
 }
 
 /// One for each method; the surface is fitted once.
@@ -47,7 +46,7 @@ std::vector<FittedMapping> fit_by_all_methods(const BodyPair& pair) {
   std::vector<FittedMapping> all{fit(pair, all_methods[0])};
   const TriangleMesh fitted{all[0].target_from_source * all[0].fitted_vertices, pair.source.faces};
   for (const ElasticMethod method : std::span(all_methods).subspan(1))
-    all.push_back(fit_mapping_to_fitted(pair.source, fitted, pair.anchors, fit_options(method)));
+    all.push_back(fit_mapping({pair.source, fitted, pair.anchors, &fitted}, fit_options(method)));
   return all;
 }
 
@@ -105,7 +104,7 @@ TEST(FitAndBake, GivenFittedSourceNeedsNoTarget) {
   const TriangleMesh fitted{psi(fit(pair, ElasticMethod::csrbf), pair.source.vertices), pair.source.faces};
   for (const ElasticMethod method : all_methods) {
     const FittedMapping mapping =
-        fit_mapping_to_fitted(pair.source, fitted, pair.anchors, fit_options(method));
+        fit_mapping({pair.source, fitted, pair.anchors, &fitted}, fit_options(method));
     const Points image = psi(mapping, pair.source.vertices);
     EXPECT_NEAR((image - fitted.vertices).colwise().norm().maxCoeff(),
                 mapping.summary.elastic.vertex_residuals.max, 1e-9);

@@ -45,7 +45,7 @@ struct CurveScene {
 
 TEST(FitCurves, MeetThemWithinTheTolerance) {
   CurveScene scene;
-  const FittedMapping fit = fit_mapping(scene.source, scene.target, scene.anchors, scene.options);
+  const FittedMapping fit = fit_mapping({scene.source, scene.target, scene.anchors}, scene.options);
   ASSERT_EQ(fit.summary.curves.size(), 1u);
   EXPECT_LT(fit.summary.curves[0].largest_distance, 2 * scene.options.fit_tolerance);
   EXPECT_EQ(fit.anchor_residual.size(), scene.anchors.pairs.size());
@@ -54,7 +54,7 @@ TEST(FitCurves, MeetThemWithinTheTolerance) {
   // Without the curve the waist stays about where the ellipsoid has its own.
   Anchors pairs_only = scene.anchors;
   pairs_only.curves.clear();
-  const FittedMapping plain = fit_mapping(scene.source, scene.target, pairs_only, scene.options);
+  const FittedMapping plain = fit_mapping({scene.source, scene.target, pairs_only}, scene.options);
   const AnchorCurve& waist = scene.anchors.curves[0];
   const Points mapped = plain.target_from_source * (*plain.elastic)(waist.a);
   EXPECT_GT(distance_from_polyline(waist.b, true, mapped), 10 * fit.summary.curves[0].largest_distance);
@@ -68,7 +68,7 @@ TEST(FitCurves, GiveWayWhereTheyWouldFoldTheSurface) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(wavy.cols());
     wavy.col(i) = level_curve({1.1, 0.9, 1.2}, 0.1 + 0.1 * std::sin(12 * angle), 1, angle);
   }
-  const FittedMapping fit = fit_mapping(scene.source, scene.target, scene.anchors, scene.options);
+  const FittedMapping fit = fit_mapping({scene.source, scene.target, scene.anchors}, scene.options);
   const TriangleMesh fitted{fit.target_from_source * fit.fitted_vertices, scene.source.faces};
   const Points normals = face_normals(fitted);
   for (Eigen::Index face = 0; face < fitted.faces.cols(); ++face)
@@ -78,7 +78,8 @@ TEST(FitCurves, GiveWayWhereTheyWouldFoldTheSurface) {
 
 TEST(FitCurves, AreRefusedWithAGivenFit) {
   CurveScene scene;
-  EXPECT_THROW(fit_mapping_to_fitted(scene.source, scene.source, scene.anchors, scene.options), InvalidInput);
+  EXPECT_THROW(fit_mapping({scene.source, scene.source, scene.anchors, &scene.source}, scene.options),
+               InvalidInput);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ struct Pair {
     options.elastic = ElasticMethod::csrbf;
   }
 
-  FittedMapping fit() const { return fit_mapping(source, target, anchors, options); }
+  FittedMapping fit() const { return fit_mapping({source, target, anchors}, options); }
 
   std::string message() const {
     try {
@@ -162,10 +162,10 @@ struct BentTube {
       }
   }
 
-  FittedMapping registered() const {
+  Registration registered() const {
     FitOptions options;
     options.lambda = 0.5;
-    return fit_source_surface(source, target, anchors, options);
+    return fit_source_surface({source, target, anchors}, options);
   }
 };
 
@@ -174,7 +174,7 @@ TEST(FitMapping, RejectsAnOutlierThatABendHidesFromTheOthers) {
   constexpr int outlier = 12;  // ring 64, side 0
   tube.anchors.pairs[outlier].b = tube.target.vertices.col(70 * shapes::tube_sides + 3);
   EXPECT_TRUE(audit_anchors(tube.anchors).suspicious.empty());
-  const FittedMapping fit = tube.registered();
+  const Registration fit = tube.registered();
   ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
   EXPECT_EQ(fit.summary.accuracy.left_out[0].index, std::size_t{outlier});
 }
@@ -187,7 +187,7 @@ TEST(FitMapping, StepsTakeALooseSleeveAlongWithItsArm) {
     options.fit_tolerance = 1e-3;
     options.steps = steps;
     options.guides = guides;
-    const FittedMapping fit = fit_mapping(tube.source, tube.target, tube.anchors, options);
+    const FittedMapping fit = fit_mapping({tube.source, tube.target, tube.anchors}, options);
     double largest = 0;
     for (int k = 0; k < 12; ++k) {
       const Vector3 sleeve(3, 0.35 * std::cos(k / 2.0), 0.35 * std::sin(k / 2.0));
@@ -298,8 +298,8 @@ TEST(FitMapping, MatchesExactAnchorsWhereFacesWereRepairedToo) {
   options.lambda = 0.1 * diagonal(source.vertices);
   options.fit_tolerance = 1e-4 * diagonal(source.vertices);
   options.elastic = ElasticMethod::diffeomorphic;  // meets every vertex, so that anchors tell of the surface
-  const FittedMapping fit = fit_mapping(source, read_triangle_mesh(pair / "reference_b.obj"),
-                                        read_anchors(pair / "anchors.json"), options);
+  const FittedMapping fit = fit_mapping(
+      {source, read_triangle_mesh(pair / "reference_b.obj"), read_anchors(pair / "anchors.json")}, options);
   ASSERT_GT(fit.summary.surface.value().repaired_vertices, 0u);
   EXPECT_LE(fit.summary.elastic.anchor_residuals.max, options.fit_tolerance);
 }
@@ -323,7 +323,7 @@ TEST(FitMapping, StopsWhenAsked) {
   Progress progress;
   int calls = 0;
   progress.cancelled = [&] { return ++calls > 4; };
-  EXPECT_THROW(fit_mapping(pair.source, pair.target, pair.anchors, pair.options, progress), Interrupted);
+  EXPECT_THROW(fit_mapping({pair.source, pair.target, pair.anchors}, pair.options, progress), Interrupted);
 }
 
 TEST(FitMapping, RefusesModelsInTwoUnits) {
@@ -335,9 +335,13 @@ TEST(FitMapping, RefusesModelsInTwoUnits) {
     for (AnchorPair& anchor : pair.anchors.pairs) anchor.b *= unit;
     const auto names_the_factor = testing::ThrowsMessage<InvalidInput>(testing::HasSubstr("two units"));
     const Anchors none;
-    EXPECT_THAT([&] { fit_mapping(pair.source, pair.target, pair.anchors, pair.options); }, names_the_factor);
-    EXPECT_THAT([&] { fit_mapping(pair.source, pair.target, none, pair.options); }, names_the_factor);
-    EXPECT_THAT([&] { fit_mapping_to_fitted(pair.source, fitted, none, pair.options); }, names_the_factor);
+    EXPECT_THAT(
+        [&] {
+          fit_mapping({pair.source, pair.target, pair.anchors}, pair.options);
+        },
+        names_the_factor);
+    EXPECT_THAT([&] { fit_mapping({pair.source, pair.target, none}, pair.options); }, names_the_factor);
+    EXPECT_THAT([&] { fit_mapping({pair.source, fitted, none, &fitted}, pair.options); }, names_the_factor);
   }
 }
 
@@ -366,7 +370,7 @@ TEST(FitMappingToFitted, TakesTheFittedMeshAsItIs) {
   fitted.vertices = moved_away * bent(pair.source.vertices);
   for (const bool with_anchors : {true, false}) {
     const FittedMapping fit =
-        fit_mapping_to_fitted(pair.source, fitted, with_anchors ? pair.anchors : Anchors{}, pair.options);
+        fit_mapping({pair.source, fitted, with_anchors ? pair.anchors : Anchors{}, &fitted}, pair.options);
     const Points image = fit.target_from_source * (*fit.elastic)(pair.source.vertices);
     EXPECT_LT((image - fitted.vertices).cwiseAbs().maxCoeff(), 1e-7);
     EXPECT_EQ(fit.anchor_residual.size(), with_anchors ? pair.anchors.pairs.size() : 0);
@@ -378,10 +382,11 @@ TEST(FitMappingToFitted, TakesTheFittedMeshAsItIs) {
 
 TEST(FitMappingToFitted, RejectsOtherConnectivity) {
   Pair pair;
-  EXPECT_THROW(fit_mapping_to_fitted(pair.source, pair.target, pair.anchors, pair.options), InvalidInput);
+  EXPECT_THROW(fit_mapping({pair.source, pair.target, pair.anchors, &pair.target}, pair.options),
+               InvalidInput);
   TriangleMesh fitted = pair.source;
   fitted.faces.col(5).reverseInPlace();
-  EXPECT_THROW(fit_mapping_to_fitted(pair.source, fitted, pair.anchors, pair.options), InvalidInput);
+  EXPECT_THROW(fit_mapping({pair.source, fitted, pair.anchors, &fitted}, pair.options), InvalidInput);
 }
 
 }  // namespace

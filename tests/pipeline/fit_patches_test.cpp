@@ -74,7 +74,7 @@ struct PatchScene {
     options.fit_tolerance = 0.002 * diagonal(source.vertices);
   }
 
-  FittedMapping fit() const { return fit_mapping(source, target, anchors, options); }
+  FittedMapping fit() const { return fit_mapping({source, target, anchors}, options); }
 };
 
 /// Where the map takes vertices that lie this much within the patch of the source, or without it: the
@@ -141,7 +141,8 @@ TEST(FitPatches, OfFacesMeetTheirBordersWithinAnEdgeAsCarried) {
 
 TEST(FitPatches, NeedPairsAndNoGivenFit) {
   PatchScene scene;
-  EXPECT_THROW(fit_mapping_to_fitted(scene.source, scene.source, scene.anchors, scene.options), InvalidInput);
+  EXPECT_THROW(fit_mapping({scene.source, scene.source, scene.anchors, &scene.source}, scene.options),
+               InvalidInput);
   scene.anchors.pairs.clear();
   EXPECT_THAT(test::error_message<InvalidInput>([&] { scene.fit(); }), HasSubstr("anchor pairs"));
 }

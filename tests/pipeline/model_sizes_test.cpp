@@ -2,6 +2,7 @@
 
 #include "bespoke/length.h"
 #include "bespoke/pipeline/derive_map.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
 #include "flow/bent_tube.h"
 #include "support/arithmetic.h"
@@ -79,12 +80,12 @@ TEST(ModelSizes, LeaveTheIterationsOfTheLaplacianFit) {
     options.any_size = true;
     options.surface_fit.method = SurfaceFitMethod::laplacian;
     if (as_printed) options.surface_fit.laplacian = no_additions;
-    return fit_source_surface(source, target, anchors, options);
+    return fit_source_surface({source, target, anchors}, options);
   };
   for (const bool as_printed : {true, false}) {
-    const FittedMapping same = registered_at(1, as_printed);
+    const Registration same = registered_at(1, as_printed);
     for (const double size : {1.0 / 1024, 4.0, 1024.0}) {
-      const FittedMapping scaled = registered_at(size, as_printed);
+      const Registration scaled = registered_at(size, as_printed);
       EXPECT_GT(same.summary.surface->iterations, 0);
       EXPECT_EQ(scaled.summary.surface->iterations, same.summary.surface->iterations) << size;
     }
@@ -124,7 +125,7 @@ TEST(ModelSizes, TakeAnchorsOffTheSurfaceAlong) {
     }
     MakeMapOptions options = default_options(diagonal(source.vertices), power_of_two_scale(size));
     options.fit.any_size = true;
-    const FittedMapping fit = fit_mapping(source, target, anchors, options.fit);
+    const FittedMapping fit = fit_mapping({source, target, anchors}, options.fit);
     EXPECT_EQ(fit.summary.elastic.anchors_off_surface, anchors.pairs.size()) << size;
     for (const double sigma : fit.anchor_sigma) EXPECT_EQ(sigma, 0) << size;
     for (const double residual : fit.anchor_residual) EXPECT_LT(residual, options.fit.fit_tolerance) << size;

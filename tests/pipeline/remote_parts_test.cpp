@@ -32,10 +32,10 @@ struct BentTubes {
       }
   }
 
-  FittedMapping register_models() const { return fit_source_surface(source, target, anchors, options); }
+  Registration register_models() const { return fit_source_surface({source, target, anchors}, options); }
 
   /// Of the vertices beyond the bend, from where they belong: the largest.
-  double beyond_the_bend(const FittedMapping& registered) const {
+  double beyond_the_bend(const Registration& registered) const {
     const Points places = registered.target_from_source * registered.fitted_vertices;
     double largest = 0;
     for (Eigen::Index i = 0; i < places.cols(); ++i)
@@ -48,7 +48,7 @@ struct BentTubes {
 TEST(RemoteParts, FollowDistancesAlongTheSurfacesWhereNoAnchorIsNear) {
   BentTubes tubes;
   tubes.add_pairs({0, 15, 30});  // up to x = 1.5 of 4
-  const FittedMapping registered = tubes.register_models();
+  const Registration registered = tubes.register_models();
   ASSERT_TRUE(registered.summary.counterparts);
   EXPECT_TRUE(registered.summary.counterparts->taken);
   EXPECT_GE(registered.summary.counterparts->displaced, 2u);
@@ -60,7 +60,7 @@ TEST(RemoteParts, FollowDistancesAlongTheSurfacesWhereNoAnchorIsNear) {
 TEST(RemoteParts, AreRegisteredByAnchorsAloneWhereThoseSuffice) {
   BentTubes tubes;
   tubes.add_pairs({0, 15, 30, 50, 65, 80});
-  const FittedMapping registered = tubes.register_models();
+  const Registration registered = tubes.register_models();
   EXPECT_FALSE(registered.summary.counterparts);
   EXPECT_LT(tubes.beyond_the_bend(registered), 0.2);
 }

@@ -19,7 +19,8 @@ FittedMapping carried_to(const TriangleMesh& source, const Points& fitted, Elast
   options.elastic = method;
   options.lambda = 0.4;
   options.fit_tolerance = satisfied_within;
-  return fit_mapping_to_fitted(source, {fitted, source.faces}, {}, options);
+  const TriangleMesh registered{fitted, source.faces};
+  return fit_mapping({source, registered, {}, &registered}, options);
 }
 
 /// Every vertex beyond the tolerance is listed with its residual, and no other.
@@ -119,7 +120,7 @@ TEST(UnmetVertices, AreTouchingWhereTheTargetTouchesItself) {
   options.lambda = 0.4;
   options.fit_tolerance = satisfied_within;
   options.contact_offset = 0.02;
-  const FittedMapping fit = fit_mapping_to_fitted(source, touching, {}, options);
+  const FittedMapping fit = fit_mapping({source, touching, {}, &touching}, options);
   ASSERT_TRUE(fit.summary.contact.has_value());
   EXPECT_EQ(fit.summary.contact->left, 0u);
   const Points wanted = inverse(fit.target_from_source) * touching.vertices;

@@ -13,7 +13,7 @@
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/spread_points.h"
 #include "bespoke/pipeline/detail/two_way_points.h"
-#include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/pipeline/registration.h"
 
 namespace bespoke {
 namespace {
@@ -65,12 +65,12 @@ Eigen::VectorXd medians_around(const Points& x, const Eigen::VectorXd& values) {
 }
 
 Uncertainty find_uncertainty(const TriangleMesh& source, const TriangleMesh& target,
-                             const FittedMapping& there, const FittedMapping& back) {
+                             const Registration& there, const Registration& back) {
   Uncertainty found;
   found.vertices = spread_vertices(source, candidates);
-  const Points registered = there.target_from_source * there.fitted_vertices;
-  const TwoWayPoints points = two_way_points(source, registered, target,
-                                             back.target_from_source * back.fitted_vertices, found.vertices);
+  const Points registered = registered_vertices(there);
+  const TwoWayPoints points =
+      two_way_points(source, registered, target, registered_vertices(back), found.vertices);
   const ClosestPointTree surface(target);
   const double least = min_sigma * diagonal(target.vertices);
   Eigen::VectorXd errors(points.apart.size());
@@ -114,8 +114,9 @@ std::vector<SuggestedAnchor> suggest_anchors(const TriangleMesh& source, const T
   FitOptions fitting;
   fitting.lambda = diagonal(source.vertices);
   fitting.any_size = true;  // the fit says what size the models may have
-  const FittedMapping there = fit_source_surface(source, target, anchors, fitting, progress);
-  const FittedMapping back = fit_source_surface(target, source, turned_round(anchors), fitting, progress);
+  const Anchors turned = turned_round(anchors);
+  const Registration there = fit_source_surface({source, target, anchors}, fitting, progress);
+  const Registration back = fit_source_surface({target, source, turned}, fitting, progress);
   const Uncertainty found = find_uncertainty(source, target, there, back);
 
   const Points x = source.vertices(Eigen::all, found.vertices);

@@ -29,14 +29,14 @@ Points grown(const Points& points, const Vector3& middle, double factor) {
 /// Fits one step after the other, from where the points have come to.
 class StepFitter {
  public:
-  StepFitter(const TriangleMesh& source, const ElasticPairs& pairs, ElasticMethod method,
-             const ElasticOptions& options, const Progress& progress)
+  StepFitter(const TriangleMesh& source, const ElasticPairs& pairs, const StepMethod& method,
+             const Progress& progress)
       : source_(source),
         vertices_(source.vertices),
         places_(pairs.sources),
         loose_(pairs.anchors_off_surface),
-        method_(elastic_method(method)),
-        options_(options),
+        method_(elastic_method(method.method)),
+        options_(method.options),
         progress_(progress) {
     options_.affine_part = AffinePart::similarity;
   }
@@ -124,12 +124,11 @@ StepPlan halved(const StepPlan& plan, std::size_t step) {
 }
 
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                               ElasticMethod method, const ElasticOptions& options,
-                               const Progress& progress) {
+                               const StepMethod& method, const Progress& progress) {
   // A chain has as many nodes as two maps of one step.
-  ElasticOptions of_a_step = options;
-  if (plan.steps() > 1) of_a_step.max_nodes = 2 * options.max_nodes / plan.steps();
-  StepFitter fitter(source, pairs, method, of_a_step, progress);
+  StepMethod of_a_step = method;
+  if (plan.steps() > 1) of_a_step.options.max_nodes = 2 * method.options.max_nodes / plan.steps();
+  StepFitter fitter(source, pairs, of_a_step, progress);
   for (std::size_t k = 0; k < plan.steps(); ++k) {
     progress.step("elastic", k, plan.steps());
     fitter.fit_to(plan, plan.times[k], plan.times[k + 1]);
@@ -137,10 +136,10 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   return std::move(fitter).steps();
 }
 
-ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                        const ElasticChain& chain, std::size_t step, ElasticMethod method,
-                        const ElasticOptions& options, const Progress& progress) {
-  StepFitter fitter(source, pairs, method, options, progress);
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const HalvedStep& halves,
+                        const StepMethod& method, const Progress& progress) {
+  const auto& [plan, chain, step] = halves;
+  StepFitter fitter(source, pairs, method, progress);
   for (std::size_t k = 0; k < step; ++k) fitter.move_by(*chain.steps()[k]);
   const bool last = step + 1 == chain.steps().size();
   const Points end = last ? plan.surface(1) : fitter.moved_by(*chain.steps()[step]);

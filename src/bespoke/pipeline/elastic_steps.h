@@ -47,17 +47,28 @@ struct ElasticSteps {
   std::vector<Points> sources;  ///< 3×n, where the source's vertices are when a step begins, mesh units
 };
 
+/// How steps are fitted.
+struct StepMethod {
+  ElasticMethod method;
+  ElasticOptions options;
+};
+
 /// One elastic map per step. Each starts from where the maps before it have left the points, so that what
 /// they missed is made good by those after them, and its affine part is a similarity: least-squares affine
 /// maps of a changing pose shear the space around the model.
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                               ElasticMethod method, const ElasticOptions& options,
-                               const Progress& progress = {});
+                               const StepMethod& method, const Progress& progress = {});
 
-/// Two maps for one: of step `step` of a plan that was `halved` there. `chain`: the maps of the plan before.
-/// The second ends where that of the whole step did, so that the steps after it remain as they are.
-ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
-                        const ElasticChain& chain, std::size_t step, ElasticMethod method,
-                        const ElasticOptions& options, const Progress& progress = {});
+/// A step of a plan that was `halved` there.
+struct HalvedStep {
+  const StepPlan& plan;
+  const ElasticChain& chain;  ///< the maps of the plan before
+  std::size_t step = 0;
+};
+
+/// Two maps for one. The second ends where that of the whole step did, so that the steps after it remain as
+/// they are.
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const HalvedStep& halves,
+                        const StepMethod& method, const Progress& progress = {});
 
 }  // namespace bespoke

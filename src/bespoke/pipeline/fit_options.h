@@ -14,7 +14,6 @@ struct FitOptions {
   double lambda = 0;                    ///< effective distance, > 0, mesh units
   GuidedMaps guides = GuidedMaps::all;  ///< of methods that take them (elastic_methods.h)
   double max_squeeze = 50;              ///< of finite elements, each step of a chain, > 1 (ElasticOptions)
-  bool give_up_blocked = false;  ///< finite elements stop early where they are blocked (ElasticOptions)
   double fit_tolerance =
       0;  ///< the multiscale methods stop refining below it, ≥ 0, mesh units; csrbf interpolates
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes

@@ -98,14 +98,12 @@ struct SeamSummary {
 };
 inline bool has_any(const SeamSummary& summary) { return summary.source + summary.target > 0; }
 
-/// What every stage of a fit found.
-struct FitSummary {
-  std::optional<PointCloudSummary> cloud;  ///< the target's, if it was one
+/// What the registration of the source found.
+struct RegistrationSummary {
   SeamSummary seams;
   std::optional<LoosePartsSummary> parts;       ///< empty where all parts of the source are registered
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
-  std::vector<MissedAnchor> missed;             ///< by more than their accuracy explains
   std::string matched_parts;  ///< how disconnected parts correspond (matched_parts.h); mostly empty
   RigidSummary rigid;
   std::optional<CoarseSummary> coarse;             ///< empty when the fitted source was given, or no anchors
@@ -115,9 +113,15 @@ struct FitSummary {
   std::optional<UncoveredArea>
       uncovered;  ///< farther than 1 % of the target's diagonal; empty when the fitted source was given
   std::optional<ContactSummary> contact;  ///< empty where nothing touches
+  std::vector<PatchSummary> patches;
+};
+
+/// What every stage of a fit found.
+struct FitSummary : RegistrationSummary {
+  std::optional<PointCloudSummary> cloud;  ///< the target's, if it was one
+  std::vector<MissedAnchor> missed;        ///< by more than their accuracy explains
   ElasticSummary elastic;
   std::vector<CurveSummary> curves;
-  std::vector<PatchSummary> patches;
   std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map
   std::vector<BakeSummary> bake_steps;  ///< of a chain, one per step
 };

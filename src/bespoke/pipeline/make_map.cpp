@@ -5,7 +5,9 @@
 #include "bespoke/clearance/model_sides.h"
 #include "bespoke/cloud/point_cloud_surface.h"
 #include "bespoke/elastic/exact_map_io.h"
-#include "bespoke/pipeline/detail/bake_fitted_map.h"
+#include "bespoke/pipeline/detail/bake_map.h"
+#include "bespoke/pipeline/detail/fit_map.h"
+#include "bespoke/pipeline/detail/whole_fit.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/stopwatch.h"
@@ -105,12 +107,30 @@ std::string valid_utf8(const std::string& text) {
   return Json::parse(valid).get<std::string>();
 }
 
-void name_loose_parts(FitSummary& summary, const Problem& problem) {
-  if (!summary.parts || !problem.read_source_groups) return;
+FitSummary with_named_parts(FitSummary summary, const Problem& problem) {
+  if (!summary.parts || !problem.read_source_groups) return summary;
   const std::vector<std::string> groups = problem.read_source_groups();
   for (LoosePart& part : summary.parts->loose)
     if (const auto vertex = static_cast<std::size_t>(part.first_vertex); vertex < groups.size())
       part.name = valid_utf8(groups[vertex]);
+  return summary;
+}
+
+FitSummary with_bake(FitSummary summary, const BakedSteps& baked) {
+  summary.bake = baked.whole;
+  if (baked.steps.size() > 1) summary.bake_steps = baked.summaries;
+  return summary;
+}
+
+Asset make_asset(const Problem& problem, const MakeMapOptions& options, const FittedMapping& fit,
+                 std::vector<MapStep> steps) {
+  Asset asset;
+  asset.target_from_source = fit.target_from_source;
+  asset.path = path_of(fit, options);
+  asset.steps = std::move(steps);
+  asset.record = make_record(problem, options, fit);
+  if (options.keep_exact) asset.exact_map = serialize_exact_map(*fit.elastic);
+  return asset;
 }
 
 }  // namespace
@@ -127,34 +147,30 @@ MakeMapOptions default_options(double source_diagonal, double size_scale) {
 }
 
 MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Progress& progress) {
-  FittedMapping fit =
-      problem.fitted
-          ? fit_mapping_to_fitted(problem.source, *problem.fitted, problem.anchors, options.fit, progress)
-          : fit_mapping(problem.source, problem.target, problem.anchors, options.fit, progress);
-  if (problem.target_cloud) fit.summary.cloud = *problem.target_cloud;
-  // The bake may replace the fit, but not what was registered.
-  const std::shared_ptr<const PartialMesh> registered = fit.registered;
-  BakedSteps baked = bake_fitted_map(fit, registered ? registered->mesh : problem.source, problem.anchors,
-                                     options.fit, options.bake, progress);
-  fit = with_loose_parts(std::move(fit), problem.source);
-  name_loose_parts(fit.summary, problem);
-  fit.summary.bake = std::move(baked.whole);
-  if (baked.steps.size() > 1) fit.summary.bake_steps = std::move(baked.summaries);
+  // IV.A to IV.C: alignment and registration.
+  const Registration registration = register_models(problem, options.fit, progress);
+
+  // IV.D, IV.E: the elastic map.
+  const TriangleMesh& registered = registered_mesh(registration, problem.source);
+  const MapProblem to_fit = map_problem(registered, registration, options.fit);
+  const MapFit fit = fit_map(to_fit, options.fit, progress);
+
+  // The bake takes another fit where this one's does not do.
+  BakedFit baked = bake_map(fit, measured_at(to_fit, problem.anchors), options, progress);
+
+  FittedMapping whole = whole_fit(problem, registration, baked.fit, map_findings(problem, registration, fit));
+  whole.summary = with_bake(with_named_parts(std::move(whole.summary), problem), baked.baked);
+  if (problem.target_cloud) whole.summary.cloud = *problem.target_cloud;
 
   MadeMap made;
-  Asset& asset = made.asset;
-  asset.target_from_source = fit.target_from_source;
-  asset.path = path_of(fit, options);
-  asset.steps = std::move(baked.steps);
-  asset.record = make_record(problem, options, fit);
-  if (options.keep_exact) asset.exact_map = serialize_exact_map(*fit.elastic);
-
+  made.asset = make_asset(problem, options, whole, std::move(baked.baked.steps));
   progress.check();
   const Stopwatch watch;
-  asset = with_model_sides(with_preview(std::move(asset), problem.source), problem.source, problem.target);
+  made.asset =
+      with_model_sides(with_preview(std::move(made.asset), problem.source), problem.source, problem.target);
   made.preview_seconds = watch.seconds();
-  made.exact = fit.elastic;
-  made.fit = std::make_shared<const FittedMapping>(std::move(fit));
+  made.exact = whole.elastic;
+  made.fit = std::make_shared<const FittedMapping>(std::move(whole));
   return made;
 }
 

@@ -41,11 +41,10 @@ ErrorPoints error_points(const MapStep& step, const TriangleMesh& surface, std::
           points_in_cells(step.pyramid, finest_cells_on(step.pyramid, surface), count, seed)};
 }
 
-/// Into `baked.whole`. From every step to the end: points of a later band that no earlier one moves are met
+/// In BakedSteps::whole. From every step to the end: points of a later band that no earlier one moves are met
 /// there.
-void measure_whole(BakedSteps& baked, const ElasticChain& exact, const std::vector<Points>& surfaces,
-                   const Faces& faces, const BakeOptions& options, std::uint64_t seed,
-                   const Progress& progress) {
+BakedSteps with_whole_measured(BakedSteps baked, const ExactSteps& exact, const BakeOptions& options,
+                               std::uint64_t seed, const Progress& progress) {
   const Stopwatch watch;
   BakeSummary& whole = baked.whole;
   const ElasticChain chain = baked_chain(baked.steps);
@@ -54,9 +53,10 @@ void measure_whole(BakedSteps& baked, const ElasticChain& exact, const std::vect
   whole.error_random_points = whole.error_surface_points = 0;
   for (std::size_t k = 0; k < steps; ++k) {
     const std::size_t count = k == 0 ? options.error_points : options.error_points / steps;
-    const ErrorPoints points = error_points(baked.steps[k], {surfaces[k], faces}, count, seed);
+    const ErrorPoints points = error_points(baked.steps[k], {exact.surfaces[k], exact.faces}, count, seed);
     for (const Points* x : {&points.band, &points.surface}) {
-      const std::vector<double> found = displacement_errors(tail(chain, k), tail(exact, k), *x, progress);
+      const std::vector<double> found =
+          displacement_errors(tail(chain, k), tail(exact.chain, k), *x, progress);
       errors.insert(errors.end(), found.begin(), found.end());
     }
     whole.error_random_points += static_cast<std::size_t>(points.band.cols());
@@ -65,6 +65,7 @@ void measure_whole(BakedSteps& baked, const ElasticChain& exact, const std::vect
   whole.error = summarize(std::move(errors));
   whole.tolerance_met = whole.error.max <= options.tolerance;
   whole.measure_seconds += watch.seconds();
+  return baked;
 }
 
 /// The baked steps after one, looked up as products are: the rounding that this adds is far below a
@@ -86,24 +87,24 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const Steps
 }
 
 /// The last step first, before `done`, until one folds that may be divided.
-BakedSteps bake_all(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
-                    const BakeOptions& options, const std::vector<bool>& divisible, BakedSteps done,
+BakedSteps bake_all(const ExactSteps& exact, const BakeOptions& options, const PartialBake& partial,
                     const Progress& progress) {
-  BakedSteps baked = std::move(done);
+  BakedSteps baked = partial.done;
+  const std::vector<bool>& divisible = partial.divisible;
   std::size_t used = 0;
   StepsAfter after;
   for (auto step = baked.steps.rbegin(); step != baked.steps.rend(); ++step) {
     used += step->pyramid.leaf_count();
     put_first(*step, after);
   }
-  for (std::size_t k = exact.steps().size() - baked.steps.size(); k-- > 0;) {
-    const ElasticMap& map = *exact.steps()[k];
+  for (std::size_t k = exact.chain.steps().size() - baked.steps.size(); k-- > 0;) {
+    const ElasticMap& map = *exact.chain.steps()[k];
     BakeOptions step_options = options;
     // Steps that need less leave it to those before them; a share is kept in case one is divided.
     const std::size_t shares = k + (k > 0 && !divisible.empty() ? 2 : 1);
     if (options.max_leaves)
       step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
-    Bake step = bake_step(map, {surfaces[k], faces}, after, step_options, progress);
+    Bake step = bake_step(map, {exact.surfaces[k], exact.faces}, after, step_options, progress);
     used += step.pyramid.leaf_count();
     baked.steps.insert(baked.steps.begin(),
                        {map.affine(), std::move(step.pyramid), std::move(step.certificate)});
@@ -163,31 +164,30 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.repair_seconds += step.repair_seconds;
 }
 
-BakedSteps bake_steps(const ElasticChain& exact, const std::vector<Points>& surfaces, const Faces& faces,
-                      const BakeOptions& options, const std::vector<bool>& divisible, BakedSteps done,
+BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const PartialBake& partial,
                       const Progress& progress) {
-  if (exact.steps().size() == 1) {
-    BakedSteps baked = bake_all(exact, surfaces, faces, options, divisible, std::move(done), progress);
-    if (!is_to_be_divided(baked, divisible)) baked.whole = baked.summaries.front();
+  if (exact.chain.steps().size() == 1) {
+    BakedSteps baked = bake_all(exact, options, partial, progress);
+    if (!is_to_be_divided(baked, partial.divisible)) baked.whole = baked.summaries.front();
     return baked;
   }
   const Stopwatch watch;
-  const bool was_divided = !done.steps.empty();
+  const bool was_divided = !partial.done.steps.empty();
   BakeOptions step_options = options;
   step_options.tolerance = tolerance_of_a_step * options.tolerance;
   step_options.max_face_turn = tolerance_of_a_step * options.max_face_turn;
   step_options.error_points = std::max<std::size_t>(1, options.error_points / share_of_a_step);
   BakedSteps baked;
   for (const bool again : {false, true}) {
-    baked = bake_all(exact, surfaces, faces, step_options, again ? std::vector<bool>{} : divisible,
-                     again ? BakedSteps{} : std::move(done), progress);
-    if (!again && is_to_be_divided(baked, divisible)) return baked;
+    baked = bake_all(exact, step_options, again ? PartialBake{} : partial, progress);
+    if (!again && is_to_be_divided(baked, partial.divisible)) return baked;
     if (!again && was_divided && options.max_leaves && has_starved_step(baked, *options.max_leaves)) {
-      BakedSteps even = bake_all(exact, surfaces, faces, step_options, {}, {}, progress);
+      BakedSteps even = bake_all(exact, step_options, {}, progress);
       if (is_bijection(even)) baked = std::move(even);
     }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
-    measure_whole(baked, exact, surfaces, faces, options, again ? first_seed + 1 : first_seed, progress);
+    baked =
+        with_whole_measured(std::move(baked), exact, options, again ? first_seed + 1 : first_seed, progress);
     if (baked.whole.tolerance_met || !finer_steps_help(baked, options)) break;
     step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
   }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/spread_points.h"
 #include "bespoke/number_format.h"
@@ -97,21 +98,22 @@ void require_useful_steps(std::size_t steps, const FitOptions& options) {
       std::to_string(steps) + " steps would be needed" + advice);
 }
 
-MapHealth map_health(const FittedMapping& fitted, const TriangleMesh& source) {
+MapHealth map_health(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted) {
   const Points x = source.vertices(Eigen::all, spread_vertices(source, sampled_vertices));
-  const Points gradients = fitted.elastic->displacement_gradient(x);
-  const Matrix3 linear = fitted.elastic->affine().linear;
-  const double size = growth(source, fitted.fitted_vertices);
+  const Points gradients = elastic.displacement_gradient(x);
+  const Matrix3 linear = elastic.affine().linear;
+  const double size = growth(source, fitted);
   std::vector<double> determinants;
   for (Eigen::Index k = 0; k < x.cols(); ++k)
     determinants.push_back(Matrix3((linear + gradients.middleCols<3>(3 * k)) / size).determinant());
   std::sort(determinants.begin(), determinants.end());
-  return {fitted.elastic->steps().size(), determinants[determinants.size() / one_in], determinants.front()};
+  return {elastic.steps().size(), determinants[determinants.size() / one_in], determinants.front()};
 }
 
-void require_hopeful(const FittedMapping& fitted, const TriangleMesh& source, const FitOptions& options) {
+void require_hopeful(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
+                     const FitOptions& options) {
   if (options.steps || !elastic_method(options.elastic).keeps_orientation) return;
-  const MapHealth health = map_health(fitted, source);
+  const MapHealth health = map_health(elastic, source, fitted);
   if (!health.is_hopeless()) return;
   throw SolverError("no useful map follows from this fit: it takes " + std::to_string(health.steps) +
                     " steps so far, and one place in twenty on the source is shrunk to " +

@@ -1,6 +1,10 @@
 #pragma once
 
-#include "bespoke/pipeline/fit_mapping.h"
+#include <cstddef>
+
+#include "bespoke/mapping/elastic_chain.h"
+#include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/pipeline/fit_options.h"
 
 namespace bespoke {
 
@@ -33,12 +37,13 @@ double surface_shear(const TriangleMesh& source, const Points& fitted);
 /// of the surface fitting: before any map is fitted to it. For methods as require_hopeful.
 void require_hopeful_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options);
 
-/// Of an exact map, at some hundred vertices. source: as it was fitted.
-MapHealth map_health(const FittedMapping& fitted, const TriangleMesh& source);
+/// Of an exact map, at some hundred vertices. source: as it was fitted; fitted: 3×n, H'_a, source frame.
+MapHealth map_health(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted);
 
 /// Throws SolverError with the reason where the fit is hopeless: before it is baked, and before steps of it
 /// are divided. Only of methods that keep the orientation, and where the number of steps is not given: others
 /// fold by nature, or were requested.
-void require_hopeful(const FittedMapping& fitted, const TriangleMesh& source, const FitOptions& options);
+void require_hopeful(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
+                     const FitOptions& options);
 
 }  // namespace bespoke

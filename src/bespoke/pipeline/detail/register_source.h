@@ -1,13 +1,12 @@
 #pragma once
 
-#include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/pipeline/registration.h"
 
 namespace bespoke {
 
-/// Registers the source to the target, sections IV.A to IV.C: Γ, H'_a and their confidence in `result`, with
-/// what was found on the way. Surfaces end at seams (seams.h): models come without. Returns the anchors as
-/// the fit took them, those of curves included. Throws as fit_mapping.
-Anchors register_source(FittedMapping& result, const TriangleMesh& source, const TriangleMesh& target,
-                        const Anchors& anchors, const FitOptions& options, const Progress& progress);
+/// Registers the source to the target, sections IV.A to IV.C, however Γ and H'_a are found: by anchors, with
+/// curves, or by the surfaces alone. Surfaces end at seams (seams.h): models come without. Throws as
+/// register_models.
+Registration register_source(const Problem& problem, const FitOptions& options, const Progress& progress);
 
 }  // namespace bespoke

@@ -1,10 +1,11 @@
-#include "bespoke/pipeline/detail/bake_fitted_map.h"
+#include "bespoke/pipeline/detail/bake_map.h"
 
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "bespoke/pipeline/detail/fit_elastic_map.h"
+#include "bespoke/pipeline/detail/divided_map.h"
+#include "bespoke/pipeline/detail/fit_map.h"
 #include "bespoke/pipeline/detail/hopeless_fit.h"
 
 namespace bespoke {
@@ -21,28 +22,27 @@ constexpr std::size_t max_halved_steps = 16;
 /// equal steps replace them, the plan's number doubled until they have room (tests/accuracy/tuning.md).
 class BakeOfAPlan {
  public:
-  BakeOfAPlan(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,
-              const FitOptions& options, const BakeOptions& bake, const Progress& progress)
+  BakeOfAPlan(const MapFit& fit, const MapProblem& problem, const MakeMapOptions& options,
+              const Progress& progress)
       : fit_(fit),
-        source_(source),
-        anchors_(anchors),
-        options_(options),
-        bake_(bake),
+        problem_(problem),
+        options_(options.fit),
+        bake_(options.bake),
         progress_(progress),
-        has_layers_(bool{elastic_method(options.elastic).composition}) {
+        has_layers_(bool{elastic_method(options.fit.elastic).composition}) {
     if (fit.plan || may_become_chain())
       max_halvings_ = halvings_on_path + (has_layers_ ? halvings_by_layers : 0);
     begin_plan();
   }
 
-  BakedSteps finish() {
+  BakedFit finish() && {
     BakedSteps last;
     for (;;) {
       divide_foreseen(last);
-      const std::vector<bool> divisible = divisible_steps();
-      BakedSteps baked = bake_steps(*fit_.elastic, fit_.step_sources, source_.faces, bake_, divisible,
-                                    std::move(last), progress_);
-      if (!is_to_be_divided(baked, divisible)) return baked;
+      const PartialBake partial{divisible_steps(), std::move(last)};
+      BakedSteps baked =
+          bake_steps({*fit_.elastic, fit_.step_sources, problem_.source.faces}, bake_, partial, progress_);
+      if (!is_to_be_divided(baked, partial.divisible)) return {std::move(fit_), std::move(baked)};
       const std::size_t folded = steps() - baked.steps.size();
       baked.steps.erase(baked.steps.begin());
       baked.summaries.erase(baked.summaries.begin());
@@ -89,7 +89,7 @@ class BakeOfAPlan {
 
   /// What is baked remains unless all steps are planned anew.
   void divide(std::size_t step, BakedSteps& baked) {
-    require_hopeful(fit_, source_, options_);
+    require_hopeful(*fit_.elastic, problem_.source, problem_.registration.fitted_vertices, options_);
     if (plan_anew())
       baked = {};
     else
@@ -103,8 +103,8 @@ class BakeOfAPlan {
     std::size_t count = planned_;
     while (count < with_one_more) count *= 2;
     if (count > max_planned_steps || count == refused_) return false;
-    std::optional<FittedMapping> planned =
-        refitted_in_steps(fit_, source_, anchors_, options_, static_cast<int>(count), progress_);
+    std::optional<MapFit> planned =
+        refitted_in_steps(fit_, problem_, options_, static_cast<int>(count), progress_);
     if (!planned) {
       refused_ = count;  // the same would be found after every other fold
       return false;
@@ -116,15 +116,14 @@ class BakeOfAPlan {
 
   void halve(std::size_t step) {
     const bool leave_path = has_layers_ && halvings_left_[step] <= halvings_by_layers;
-    divide_step(fit_, source_, anchors_, options_, step, leave_path, progress_);
+    fit_ = divided_map(fit_, {problem_, options_, step, leave_path}, progress_);
     ++halved_;
     const int left = --halvings_left_[step];
     halvings_left_.insert(halvings_left_.begin() + static_cast<std::ptrdiff_t>(step), left);
   }
 
-  FittedMapping& fit_;
-  const TriangleMesh& source_;
-  const Anchors& anchors_;
+  MapFit fit_;
+  const MapProblem& problem_;
   const FitOptions& options_;
   const BakeOptions& bake_;
   const Progress& progress_;
@@ -138,20 +137,16 @@ class BakeOfAPlan {
 
 }  // namespace
 
-BakedSteps bake_fitted_map(FittedMapping& fit, const TriangleMesh& source, const Anchors& anchors,
-                           const FitOptions& options, const BakeOptions& bake, const Progress& progress) {
-  const auto baked_as_planned = [&](FittedMapping& map) {
-    return BakeOfAPlan(map, source, anchors, options, bake, progress).finish();
-  };
-  BakedSteps baked = baked_as_planned(fit);
-  if (baked.whole.relaxed.empty() || baked.steps.size() > 1) return baked;
+BakedFit bake_map(const MapFit& fit, const MapProblem& problem, const MakeMapOptions& options,
+                  const Progress& progress) {
+  BakedFit as_fitted = BakeOfAPlan(fit, problem, options, progress).finish();
+  if (as_fitted.baked.whole.relaxed.empty() || as_fitted.baked.steps.size() > 1) return as_fitted;
   // The tolerance comes before guides.
-  std::optional<FittedMapping> unguided = refitted_without_guides(fit, source, anchors, options, progress);
-  if (!unguided) return baked;
-  BakedSteps within = baked_as_planned(*unguided);
-  if (!within.whole.relaxed.empty()) return baked;
-  fit = std::move(*unguided);
-  return within;
+  const std::optional<MapFit> unguided =
+      refitted_without_guides(as_fitted.fit, problem, options.fit, progress);
+  if (!unguided) return as_fitted;
+  BakedFit within = BakeOfAPlan(*unguided, problem, options, progress).finish();
+  return within.baked.whole.relaxed.empty() ? within : as_fitted;
 }
 
 }  // namespace bespoke

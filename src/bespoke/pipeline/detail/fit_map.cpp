@@ -1,0 +1,118 @@
+#include "bespoke/pipeline/detail/fit_map.h"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "bespoke/pipeline/detail/fit_steps.h"
+#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/stopwatch.h"
+
+namespace bespoke {
+namespace {
+
+std::size_t step_count(const MapFit& fit) { return fit.elastic->steps().size(); }
+
+/// One vertex in a hundred is missed by more, mesh units.
+double missed(const MapFit& fit) { return fit.summary.vertex_residuals.p99; }
+
+/// Parts that slide along each other neither turn nor stretch, but shear the space between them. Layers that
+/// do not fold cannot follow where that is too steep: where more than one vertex in a hundred is missed there
+/// are twice as many steps, for as long as that halves what is missed.
+MapFit fit_until_met(const MapProblem& problem, const FitOptions& options, const StepRequest& request,
+                     const Progress& progress) {
+  MapFit fit = fit_steps(problem, options, request, progress);
+  while (missed(fit) > options.fit_tolerance && 2 * step_count(fit) <= max_useful_steps) {
+    const int twice = 2 * static_cast<int>(step_count(fit));
+    MapFit finer = fit_steps(problem, options, {twice, fit.summary.motion}, progress);
+    const double before = missed(fit), after = missed(finer);
+    if (after < before) {
+      fit = std::move(finer);
+      fit.summary.divided_where_missed = true;
+    }
+    if (after > before / 2) break;
+  }
+  return fit;
+}
+
+std::size_t blocked_steps(const MapFit& fit) {
+  const auto is_blocked = [](const ElasticFindings& found) {
+    const auto* elements = std::get_if<FiniteElementSummary>(&found);
+    return elements != nullptr && elements->blocked;
+  };
+  const ElasticSummary& summary = fit.summary;
+  return static_cast<std::size_t>(
+             std::count_if(summary.later_steps.begin(), summary.later_steps.end(), is_blocked)) +
+         (is_blocked(summary.found) ? 1 : 0);
+}
+
+/// Where cells at their bounds hold finite elements up, motion is too large for a step: twice as many steps
+/// take its place, for as long as fewer of them are held up. Where they are not, places give way.
+MapFit fit_unblocked(const MapProblem& problem, const FitOptions& options, const StepRequest& request,
+                     const Progress& progress) {
+  int count = request.count;
+  RegionalMotion motion = request.motion;
+  std::size_t before = 0;
+  for (int steps = count; static_cast<std::size_t>(steps) <= max_useful_steps; steps = 2 * count) {
+    MapFit fit = fit_steps(problem, options, {steps, motion, true}, progress);
+    const std::size_t blocked = blocked_steps(fit);
+    if (blocked == 0) return fit;
+    motion = fit.summary.motion;
+    if (steps > count && 2 * blocked > before) break;
+    before = blocked;
+    count = static_cast<int>(step_count(fit));
+  }
+  return fit_steps(problem, options, {count, motion}, progress);
+}
+
+/// One map or a chain of as many steps as the motion requires.
+StepRequest required_steps(const MapProblem& problem, const FitOptions& options) {
+  const RegionalMotion motion = regional_motion(problem.source, problem.registration.fitted_vertices);
+  return {options.steps.value_or(bespoke::step_count(motion)), motion};
+}
+
+/// The loop that finds how many steps there are: none where that is given.
+auto* fit_of(const FitOptions& options) {
+  if (options.steps) return &fit_steps;
+  if (options.elastic == ElasticMethod::finite_elements) return &fit_unblocked;
+  return elastic_method(options.elastic).composition && options.fit_tolerance > 0 ? &fit_until_met
+                                                                                  : &fit_steps;
+}
+
+bool is_guided(const MapFit& fit, const FitOptions& options) {
+  return elastic_method(options.elastic).takes_guides && !fit.summary.left_guides &&
+         elastic_options(options, step_count(fit) > 1).guided;
+}
+
+}  // namespace
+
+MapFit fit_map(const MapProblem& problem, const FitOptions& options, const Progress& progress) {
+  const bool is_registered = problem.registration.summary.surface.has_value();  // not given as it is
+  const Points& fitted = problem.registration.fitted_vertices;
+  if (is_registered) require_hopeful_surface(problem.source, fitted, options);
+  const Stopwatch watch;
+  progress.step("elastic", 0, 0);
+  MapFit fit = fit_of(options)(problem, options, required_steps(problem, options), progress);
+  // The surface comes first: where parts slide along each other, space between them cannot go with both.
+  if (!elastic_method(options.elastic).weighs_guides && missed(fit) > met_within(options)) {
+    std::optional<MapFit> unguided = refitted_without_guides(fit, problem, options, progress);
+    if (unguided && missed(*unguided) < missed(fit)) fit = std::move(*unguided);
+  }
+  fit.summary.seconds = watch.seconds();
+  if (is_registered) require_hopeful(*fit.elastic, problem.source, fitted, options);
+  return fit;
+}
+
+std::optional<MapFit> refitted_without_guides(const MapFit& fit, const MapProblem& problem,
+                                              const FitOptions& options, const Progress& progress) {
+  if (!is_guided(fit, options)) return std::nullopt;
+  const Stopwatch watch;
+  MapFit unguided =
+      fit_of(options)(problem, without_guides(options), required_steps(problem, options), progress);
+  unguided.summary.left_guides = true;
+  unguided.summary.divided_steps = fit.summary.divided_steps;
+  unguided.summary.seconds = fit.summary.seconds + watch.seconds();
+  return unguided;
+}
+
+}  // namespace bespoke
