@@ -2,9 +2,11 @@
 include(CMakePackageConfigHelpers)
 set(BESPOKE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bespoke)
 
-# The tree says who may use a header: those under detail/ are private to their modules.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/bespoke DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-        FILES_MATCHING PATTERN "*.h" PATTERN "detail" EXCLUDE)
+include(BespokePublicHeaders)
+foreach(header IN LISTS BESPOKE_PUBLIC_HEADERS)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/src/bespoke/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bespoke/${folder})
+endforeach()
 
 install(TARGETS bespoke EXPORT bespokeTargets)
 install(EXPORT bespokeTargets NAMESPACE bespoke:: DESTINATION ${BESPOKE_PACKAGE_DIR})

@@ -15,6 +15,8 @@ namespace bespoke {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AnyOfArray;
+using ::testing::Each;
 using ::testing::IsEmpty;
 using ::testing::IsSubsetOf;
 
@@ -162,6 +164,31 @@ TEST(ModulePages, PublicHeadersNameNoDetails) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(library))
     if (entry.path().extension() == ".h" && entry.path().parent_path().parent_path() == library) {
       EXPECT_THAT(matches(test::read_text(entry.path()), "\"bespoke/([a-z0-9_]+)/[a-z0-9_]+/"), IsEmpty())
+          << entry.path();
+    }
+}
+
+std::set<std::string> installed_headers() {
+  const std::vector<std::string> names =
+      matches(test::read_text(fs::path(BESPOKE_SOURCE_DIR) / "cmake" / "BespokePublicHeaders.cmake"),
+              "\n  ([a-z0-9_/]+\\.h)");
+  return {names.begin(), names.end()};
+}
+
+TEST(ModulePages, InstalledHeadersIncludeOnlyInstalledOnes) {
+  const std::set<std::string> installed = installed_headers();
+  ASSERT_GT(installed.size(), 0u);
+  for (const std::string& header : installed)
+    EXPECT_THAT(matches(test::read_text(library / header), "#include \"bespoke/([^\"]+)\""),
+                Each(AnyOfArray(installed)))
+        << header;
+}
+
+TEST(ModulePages, SampleProgramsIncludeOnlyInstalledHeaders) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(BESPOKE_SOURCE_DIR) / "samples"))
+    if (entry.path().extension() == ".cpp") {
+      EXPECT_THAT(matches(test::read_text(entry.path()), "#include <bespoke/([^>]+)>"),
+                  Each(AnyOfArray(installed_headers())))
           << entry.path();
     }
 }
