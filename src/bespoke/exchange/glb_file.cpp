@@ -10,7 +10,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/product/morph_track.h"
+#include "bespoke/product/morph_product.h"
 
 namespace bespoke {
 namespace {

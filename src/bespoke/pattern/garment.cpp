@@ -4,7 +4,6 @@
 
 #include "bespoke/error.h"
 #include "bespoke/pattern/detail/flat_faces.h"
-#include "bespoke/product/corner_texture.h"
 #include "bespoke/product/face_groups.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,5 +23,14 @@ struct MorphSummary {
 /// .glb, a buffer that is not in the file, and meshes that have morph targets already.
 MorphSummary morph_product(const std::filesystem::path& input, const std::filesystem::path& output,
                            const PointMotion& motion, double seconds, const Progress& progress = {});
+
+/// How glTF goes through morph targets at t = 1/n, 2/n, …, 1 one after the other, in straight pieces.
+struct MorphTrack {
+  std::vector<std::string> names;  ///< of the targets: "t = 0.25"
+  std::vector<float> times;        ///< n + 1 keys, seconds from 0
+  std::vector<float> weights;      ///< n a key: at key k only target k has 1, at key 0 none
+};
+
+MorphTrack morph_track(std::size_t targets, double seconds);
 
 }  // namespace bespoke

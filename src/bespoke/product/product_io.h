@@ -61,6 +61,11 @@ std::string written_product_endings();
 /// What follows the endings in the message about a file of another ending: how to convert USD, else nothing.
 std::string conversion_advice(const std::filesystem::path& path);
 
+/// 2×3m: the first texture coordinates of a glTF file, of the corners of the triangles as read_product orders
+/// them, upwards as OBJ has them; (0, 0) where a primitive has none. Empty where none has any, and for other
+/// formats, of which read_product gives them. Throws as read_product.
+Eigen::Matrix2Xd corner_texture(const std::filesystem::path& path);
+
 /// Polygons as triangle fans about their first corner, in place, without triangles that name a vertex twice.
 Faces triangulated(const Product& product);
 

@@ -1,6 +1,7 @@
 #include "bespoke/product/morph_product.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <map>
 #include <optional>
 #include <utility>
@@ -8,7 +9,6 @@
 #include "bespoke/error.h"
 #include "bespoke/product/gltf/document/gltf_additions.h"
 #include "bespoke/product/gltf/scene/gltf_carrier.h"
-#include "bespoke/product/morph_track.h"
 #include "bespoke/unknown_ending.h"
 
 namespace bespoke {
@@ -160,6 +160,21 @@ class Morpher {
 };
 
 }  // namespace
+
+MorphTrack morph_track(std::size_t targets, double seconds) {
+  MorphTrack track;
+  track.weights.resize((targets + 1) * targets);
+  for (std::size_t k = 0; k <= targets; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(targets);
+    track.times.push_back(static_cast<float>(seconds * t));
+    if (k == 0) continue;
+    track.weights[k * targets + k - 1] = 1;
+    char name[32];
+    std::snprintf(name, sizeof name, "t = %.4g", t);
+    track.names.emplace_back(name);
+  }
+  return track;
+}
 
 MorphSummary morph_product(const std::filesystem::path& input, const std::filesystem::path& output,
                            const PointMotion& motion, double seconds, const Progress& progress) {

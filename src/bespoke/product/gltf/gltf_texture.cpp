@@ -1,6 +1,6 @@
-#include "bespoke/product/corner_texture.h"
 #include "bespoke/product/faces/gathered_faces.h"
 #include "bespoke/product/gltf/scene/gltf_triangles.h"
+#include "bespoke/product/product_io.h"
 #include "bespoke/strings.h"
 
 namespace bespoke {
@@ -37,9 +37,8 @@ Eigen::Matrix2Xd corner_texture(const std::filesystem::path& path) {
   std::vector<Eigen::Matrix2Xd> parts;
   bool has_any = false;
   for (const GltfTriangles& triangles : shown_triangles(file, accessors, scene)) {
-    const GltfPart primitive = file.root()
-                                   .elements("meshes")[scene.shown[triangles.shown].mesh]
-                                   .elements("primitives")[triangles.primitive];
+    const GltfPart primitive = file.root().elements("meshes")[scene.shown[triangles.shown].mesh].elements(
+        "primitives")[triangles.primitive];
     has_any = has_any || primitive.member("attributes").has("TEXCOORD_0");
     gathered.add_points(triangles.places);
     parts.push_back(texture_of(file, accessors, primitive, triangles.corners));
