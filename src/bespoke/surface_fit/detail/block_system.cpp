@@ -52,6 +52,16 @@ Matrix3& BlockSystem::at(int row, int column) {
   return blocks_[first];
 }
 
+Points BlockSystem::gradient(const Points& x) const {
+  Points sum = -Eigen::Map<const Points>(right_side_.data(), 3, size());
+  for (int column = 0; column < size(); ++column)
+    for (int k = start_[column]; k < start_[column + 1]; ++k) {
+      sum.col(rows_[k]) += blocks_[k] * x.col(column);
+      if (rows_[k] != column) sum.col(column) += blocks_[k].transpose() * x.col(rows_[k]);
+    }
+  return 2 * sum;
+}
+
 Points BlockSystem::solve() {
   double* value = matrix_.valuePtr();
   for (int column = 0; column < size(); ++column)

@@ -27,6 +27,10 @@ class BlockSystem {
   }
   void add_right_side(int row, const Vector3& value) { right_side_.segment<3>(3 * row) += value; }
 
+  /// 3×n: 2 (matrix x − right side), the gradient of the quadratic form that the system minimises, at x
+  /// (3×n).
+  Points gradient(const Points& x) const;
+
   /// 3×n. Throws SolverError when the matrix is not positive definite.
   Points solve();
 
