@@ -44,9 +44,17 @@ struct Scene {
   const PlacementScore& score;  // in the source frame
 };
 
-SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, const TriangleMesh& fixed,
-                            const Leads& leads, const SurfaceFitOptions& options, const Progress& progress) {
-  const TriangleMesh started{start, moving.faces};
+/// A surface to be fitted onto another, and where it starts.
+struct Start {
+  const Points& vertices;  // 3×n
+  const Faces& faces;
+  const TriangleMesh& fixed;
+};
+
+SurfaceFit fit_surface_from(const Start& from, const Leads& leads, const SurfaceFitOptions& options,
+                            const Progress& progress) {
+  const auto& [start, faces, fixed] = from;
+  const TriangleMesh started{start, faces};
   const Points sources = start(Eigen::all, leads.vertices);
   // Where σ is not requested, each counts like one per cent of the surface.
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(sources.cols());
@@ -56,7 +64,8 @@ SurfaceFit fit_surface_from(const Points& start, const TriangleMesh& moving, con
 
 Candidate fit_from(const Points& start, const Scene& scene, const Leads& leads, const Progress& progress) {
   Candidate candidate;
-  candidate.surface = fit_surface_from(start, scene.source, scene.target, leads, scene.options, progress);
+  candidate.surface =
+      fit_surface_from({start, scene.source.faces, scene.target}, leads, scene.options, progress);
   candidate.placement = scene.score(candidate.surface.vertices);
   return candidate;
 }
@@ -72,31 +81,44 @@ Leads leads_of(const Scene& scene, const Points& forward, const Points& back) {
   return leads;
 }
 
-/// Keeps the better of two; whether that is the other.
-bool take_better(Candidate& best, Candidate other) {
-  const bool better = other.placement.misfit() < best.placement.misfit();
-  if (better) best = std::move(other);
-  return better;
+/// The best fit of all starts, and how it was found (UnanchoredSummary).
+struct BestFit {
+  Candidate best;
+  bool from_deformed = false, of_both_directions = false;
+  double disagreement = 0;
+};
+
+bool is_better(const Candidate& other, const Candidate& than) {
+  return other.placement.misfit() < than.placement.misfit();
 }
 
-/// The best fit of all starts, which `summary` then names. `similar`, `deformed`: 3×n, source frame.
-Candidate best_fit(const Points& similar, const Points& deformed, const Alignment& alignment,
-                   const Scene& scene, UnanchoredSummary& summary, const Progress& progress) {
-  Candidate best = fit_from(similar, scene, {}, progress);
-  if (best.surface.summary.similarity_suffices) return best;
-  summary.from_deformed = take_better(best, fit_from(deformed, scene, {}, progress));
+/// similar, deformed: the source's vertices, 3×n, source frame.
+struct Starts {
+  const Points& similar;
+  const Points& deformed;
+  const Alignment& alignment;
+};
 
-  const Points back_start = summary.from_deformed
+BestFit best_fit(const Starts& starts, const Scene& scene, const Progress& progress) {
+  BestFit result{fit_from(starts.similar, scene, {}, progress)};
+  if (result.best.surface.summary.similarity_suffices) return result;
+  Candidate deformed = fit_from(starts.deformed, scene, {}, progress);
+  result.from_deformed = is_better(deformed, result.best);
+  if (result.from_deformed) result.best = std::move(deformed);
+
+  const Alignment& alignment = starts.alignment;
+  const Points back_start = result.from_deformed
                                 ? alignment.target_deformed
                                 : Points(alignment.source_from_target * scene.target_in_place.vertices);
   const SurfaceFit back =
-      fit_surface_from(back_start, scene.target, scene.source, {}, scene.options, progress);
-  const Leads leads = leads_of(scene, best.surface.vertices, back.vertices);
+      fit_surface_from({back_start, scene.target.faces, scene.source}, {}, scene.options, progress);
+  const Leads leads = leads_of(scene, result.best.surface.vertices, back.vertices);
   const std::vector<double> sigmas(leads.sigmas.begin(), leads.sigmas.end());
-  summary.disagreement = 2 * summarize(sigmas).median / diagonal(scene.target.vertices);
-  const Points& start = summary.from_deformed ? deformed : similar;
-  summary.of_both_directions = take_better(best, fit_from(start, scene, leads, progress));
-  return best;
+  result.disagreement = 2 * summarize(sigmas).median / diagonal(scene.target.vertices);
+  Candidate led = fit_from(result.from_deformed ? starts.deformed : starts.similar, scene, leads, progress);
+  result.of_both_directions = is_better(led, result.best);
+  if (result.of_both_directions) result.best = std::move(led);
+  return result;
 }
 
 void require_covered(const UnanchoredSummary& summary) {
@@ -138,11 +160,11 @@ UnanchoredFit fit_unanchored(const TriangleMesh& source, const TriangleMesh& tar
 
   const Points similar = source_from_target * (alignment.target_from_source * source.vertices);
   const PlacementScore score(source, target_in_source);
-  Candidate best = best_fit(similar, fit.start, alignment, {source, target_in_source, rules, target, score},
-                            fit.summary, progress);
-  fit.surface = std::move(best.surface);
-  fit.summary.alignment = alignment.summary;
-  fit.summary.placement = best.placement;
+  BestFit found =
+      best_fit({similar, fit.start, alignment}, {source, target_in_source, rules, target, score}, progress);
+  fit.surface = std::move(found.best.surface);
+  fit.summary = {alignment.summary,        found.best.placement, found.from_deformed,
+                 found.of_both_directions, found.disagreement,   0};
   fit.summary.seconds = watch.seconds() - fit.surface.summary.seconds;
   require_covered(fit.summary);
   return fit;
