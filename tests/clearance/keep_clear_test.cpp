@@ -7,8 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "bespoke/clearance/detail/face_passages.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/quality/self_intersection.h"
 #include "clearance/balls.h"
 
 namespace bespoke {
@@ -187,6 +189,54 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   for (const auto& vertex : cleared.vertices.colwise()) ASSERT_LT(std::abs(vertex.z()), 0.05);
   EXPECT_LT(cleared.summary.strain_after.max, 0.1);
   EXPECT_EQ(cleared.summary.new_self_intersections, 0u);
+}
+
+// What lies over a finer layer has its vertices outside of it, and the layer's own pass through its faces.
+TEST(KeepClear, FinerLayersDoNotPassThroughCoarserOnes) {
+  const TriangleMesh lower = test::shell(1.0, 5), upper = test::shell(1.06, 2);
+  const Points lower_after = 1.04 * lower.vertices;
+  const Obstacle layer = layer_obstacle("shirt", lower, lower_after, {3.5, 3.5});
+  const ClearedProduct cleared = keep_clear(PreparedProduct(upper), upper.vertices, {layer});
+  EXPECT_TRUE(cleared.summary.passed_through.empty()) << to_string(cleared.summary);
+  TriangleMesh both = shapes::joined({lower_after, lower.faces}, {cleared.vertices, upper.faces});
+  EXPECT_TRUE(self_intersections(both).empty());
+}
+
+TEST(FacePassages, TellWhereALayerIsPassedThroughThatWasNot) {
+  const TriangleMesh lower = shapes::square_grid(20);
+  TriangleMesh upper = lower;
+  upper.vertices.colwise() += Vector3(0.013, 0.017, 0.01);
+  Points lower_after = lower.vertices;
+  for (auto vertex : lower_after.colwise()) vertex.z() += vertex.x() < 0.5 ? 0.2 : -0.2;
+  const std::vector<Obstacle> layers = {layer_obstacle("shirt", lower, lower_after, {3, 3})};
+  FacePassages passages(upper, upper.vertices, layers);
+  const FacePairs pairs = passages.found(upper.vertices);
+  ASSERT_FALSE(pairs.empty());
+  EXPECT_TRUE(passages.of_product(pairs).empty());
+  const std::vector<PassedThrough> places = passages.places(pairs, 10);
+  ASSERT_EQ(places.size(), 1u);
+  EXPECT_EQ(places.front().other, "shirt");
+  EXPECT_EQ(places.front().pairs, pairs.size());
+  EXPECT_NEAR(places.front().place.x(), 0.5, 0.1);
+  ClearanceSummary summary;
+  summary.passed_through = places;
+  EXPECT_THAT(to_string(summary), HasSubstr("passes through shirt at ("));
+}
+
+// A sock touches on purpose; a strap is thinner than a voxel.
+TEST(KeepClear, WhatTouchesOrIsThinIsKeptOutside) {
+  const TriangleMesh sock = test::shell(1.0);
+  const ClearedProduct touching =
+      keep_clear(PreparedProduct(sock), test::dented(sock.vertices, pole_angle, 0.01), {test::unit_ball()});
+  EXPECT_TRUE(is_met(touching.summary)) << to_string(touching.summary);
+  TriangleMesh strap = shapes::square_grid(40);
+  strap.vertices.row(0).array() -= 0.5;
+  strap.vertices.row(1) = 0.01 * (strap.vertices.row(1).array() - 0.5);
+  for (auto vertex : strap.vertices.colwise())
+    vertex.z() = std::sqrt(1.002 * 1.002 - vertex.x() * vertex.x() - vertex.y() * vertex.y());
+  const ClearedProduct thin =
+      keep_clear(PreparedProduct(strap), test::dented(strap.vertices, pole_angle, 0.01), {test::unit_ball()});
+  EXPECT_TRUE(is_met(thin.summary)) << to_string(thin.summary);
 }
 
 TEST(KeepClear, PointsWithoutFacesMoveAlone) {

@@ -63,8 +63,44 @@ TEST(LayerObstacle, KeepsOrderAndDistance) {
 TEST(LayerObstacle, RequiresNothingOfWhatIsUnderIt) {
   const TriangleMesh lower = test::shell(1.02, 3);
   const Obstacle layer = layer_obstacle("shirt", lower, lower.vertices, ball_sizes);
-  EXPECT_EQ(layer.required(on_axis(1)).front(), -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(layer.required(on_axis(3)).front(), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(layer.planes(on_axis(1)).required.front(), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(layer.planes(on_axis(3)).required.front(), -std::numeric_limits<double>::infinity());
+}
+
+// The target presses two limbs together, so that each is nearer to what lies on the other.
+TEST(LayerObstacle, TakesTheSheetThatWasNearest) {
+  TriangleMesh left = test::shell(1), right = left;
+  left.vertices.row(0).array() -= 1.1;
+  right.vertices.row(0).array() += 1.1;
+  const TriangleMesh lower = shapes::joined(left, right);
+  Points after = lower.vertices;
+  after.rightCols(right.vertices.cols()).row(0).array() -= 0.18;
+  const Obstacle layer = layer_obstacle("shirt", lower, after, ball_sizes);
+  const Vector3 place(-0.085, 0, 0);
+  const SidePlanes planes = layer.planes(place);
+  // On the target the other limb's surface is at x = -0.08.
+  EXPECT_NEAR(planes.required.front(), 0.015, 1e-3);
+  EXPECT_NEAR(planes.normals.col(0).dot(place - planes.origins.col(0)), 0.015, 1e-3);
+}
+
+TEST(BodyAttraction, DrawsPlacesBackThatCameFarther) {
+  const TriangleMesh product = test::shell(1.02);
+  const auto distances = ball_distances();
+  Points carried = product.vertices;
+  for (auto vertex : carried.colwise())
+    if (vertex.z() > 0.9) vertex *= 1.005;
+  const Obstacle ball = body_obstacle(distances, ball_sizes, {}),
+                 back = body_attraction(distances, ball_sizes);
+  const ClearedProduct kept = keep_clear(PreparedProduct(product), carried, {ball});
+  const ClearedProduct drawn = keep_clear(PreparedProduct(product), carried, {ball, back});
+  EXPECT_TRUE(drawn.summary.is_clear());
+  EXPECT_EQ(drawn.summary.after.samples, kept.summary.after.samples);
+  EXPECT_GT(drawn.summary.moved, kept.summary.moved);
+  for (Eigen::Index v = 0; v < carried.cols(); ++v) {
+    ASSERT_LE((drawn.vertices.col(v) - kept.vertices.col(v)).norm(), 2 * 0.002 * 3.5 + 1e-12);
+  }
+  // 0.5 % of the radius is 0.14 % of the diagonal, of which 0.1 % may remain.
+  EXPECT_LT(drawn.vertices.colwise().norm().maxCoeff(), 1.02 + 0.001 * 3.5 + 2 * ball.tolerance);
 }
 
 }  // namespace

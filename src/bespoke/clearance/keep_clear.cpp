@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 
-#include "bespoke/clearance/detail/correction.h"
-#include "bespoke/clearance/detail/missed_samples.h"
+#include "bespoke/clearance/detail/draw_near.h"
 #include "bespoke/clearance/detail/prepared_data.h"
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/number_format.h"
-#include "bespoke/quality/self_intersection.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -20,8 +18,8 @@ namespace {
 constexpr int rounds_of_a_solve = 12;
 constexpr int max_checks = 4;
 
-// Faces that pass through each other are joined with their neighbours that come to do so.
-constexpr int max_partings = 4;
+// Of the least tolerance: how far faces that are parted are apart at least.
+constexpr double parted_share = 0.2;
 
 // Of the product's diagonal: places nearer than this are one.
 constexpr double place_radius = 0.03;
@@ -44,39 +42,6 @@ Statistics edge_strain(const TriangleMesh& before, const Points& after) {
     if (was > 0 && is > 0) strains.push_back(std::abs(std::log(is / (size * was))));
   }
   return summarize(std::move(strains));
-}
-
-using FacePairs = std::vector<std::pair<int, int>>;
-
-FacePairs new_pairs(const FacePairs& before, const TriangleMesh& corrected) {
-  const FacePairs after = self_intersections(corrected);
-  FacePairs further;
-  std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(further));
-  return further;
-}
-
-/// Lets faces that pass through each other only since the correction move alike, as long as fewer do then and
-/// no more samples miss. How many pairs are left.
-std::size_t part_again(const TriangleMesh& mesh, const Points& carried, Correction& correction,
-                       SampleDistances& distances, SampleDistances& checks) {
-  if (mesh.faces.cols() == 0) return 0;
-  const FacePairs before = self_intersections({carried, mesh.faces});
-  FacePairs pairs = new_pairs(before, {correction.vertices(), mesh.faces});
-  const auto breaches = [&] { return distances.count().breaches + checks.count().breaches; };
-  for (int attempt = 0; attempt < max_partings && !pairs.empty(); ++attempt) {
-    const NodeVectors u = correction.displacement();
-    checks.look(correction.vertices(), correction.moved());
-    const std::size_t breaches_before = breaches();
-    correction.move_to(correction.joined(pairs), distances);
-    checks.look(correction.vertices(), correction.moved());
-    FacePairs left = new_pairs(before, {correction.vertices(), mesh.faces});
-    if (left.size() >= pairs.size() || breaches() > breaches_before) {
-      correction.move_to(u, distances);
-      break;
-    }
-    pairs = std::move(left);
-  }
-  return pairs.size();
 }
 
 void describe_moves(const PreparedProduct& product, const Points& carried, const Correction& correction,
@@ -104,6 +69,24 @@ void unite(std::vector<char>& flags, const std::vector<char>& further) {
   for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = flags[i] || further[i];
 }
 
+/// Those of the product, and those nearest to its layers.
+ProductSamples checked_samples(const PreparedProduct::Data& data, const std::vector<Obstacle>& obstacles) {
+  ProductSamples samples = data.checks;
+  for (const Obstacle& obstacle : obstacles) {
+    if (!obstacle.layer) continue;
+    const TriangleMesh& layer = obstacle.layer->before;
+    const Points places = places_of(constraint_samples(layer, Eigen::Matrix2Xi(2, 0), 0), layer.vertices);
+    append(nearest_samples(data.mesh, places, obstacle.layer_reach), samples);
+  }
+  return samples;
+}
+
+double parting_margin(const std::vector<Obstacle>& obstacles) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : obstacles) least = std::min(least, obstacle.tolerance);
+  return std::isfinite(least) ? parted_share * least : 0;
+}
+
 MissedDistances together(const MissedDistances& a, const MissedDistances& b) {
   return {a.samples + b.samples, a.inside + b.inside, a.breaches + b.breaches, std::max(a.most, b.most)};
 }
@@ -117,10 +100,9 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   ClearedProduct cleared;
   ClearanceSummary& summary = cleared.summary;
   summary.vertices = static_cast<std::size_t>(carried.cols());
-  summary.looked_at = static_cast<std::size_t>(data.samples.count() + data.checks.count());
-
   Stopwatch watch;
-  SampleDistances checks(data.checks, data.mesh.vertices, obstacles);
+  SampleDistances checks(checked_samples(data, obstacles), data.mesh.vertices, obstacles);
+  summary.looked_at = static_cast<std::size_t>(data.samples.count() + checks.samples().count());
   checks.look(carried);
   summary.check_seconds = watch.seconds();
   watch = {};
@@ -144,8 +126,15 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
     summary.solve_seconds += watch.seconds();
   }
   watch = {};
-  if (!correction.moved().empty())
-    summary.new_self_intersections = part_again(data.mesh, carried, correction, distances, checks);
+  FacePassages passages(data.mesh, carried, obstacles);
+  FacePairs left = part_faces(passages, parting_margin(obstacles), correction, {distances, checks});
+  if (std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& one) { return one.is_soft; })) {
+    unite(touched, correction.moved());
+    checks.look(correction.vertices(), touched);
+    left = draw_near(passages, left, correction, {distances, checks});
+  }
+  summary.new_self_intersections = passages.of_product(left).size();
+  summary.passed_through = passages.places(left, place_radius * diagonal(carried));
   unite(touched, correction.moved());
   cleared.vertices = correction.vertices();
   checks.look(cleared.vertices, touched);
@@ -160,6 +149,10 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
 namespace {
 
 std::string number(double value) { return format_number(value, message_digits); }
+
+std::string place_text(const Vector3& place) {
+  return "(" + number(place[0]) + ", " + number(place[1]) + ", " + number(place[2]) + ")";
+}
 
 std::string missed_text(const MissedDistances& missed) {
   if (missed.samples == 0) return "none misses its distance";
@@ -182,10 +175,13 @@ std::string to_string(const ClearanceSummary& summary) {
   if (summary.new_self_intersections > 0)
     text += "\n" + std::to_string(summary.new_self_intersections) +
             " pairs of its faces pass through each other that did not before";
+  for (const PassedThrough& passed : summary.passed_through)
+    text += "\npasses through " + passed.other + " at " + place_text(passed.place) + ", " +
+            std::to_string(passed.pairs) + " pairs of faces, where it did not before";
   for (const MissedPlace& place : summary.places)
-    text += "\nno space at (" + number(place.place[0]) + ", " + number(place.place[1]) + ", " +
-            number(place.place[2]) + "): " + number(place.missing) + " short of its distance from " +
-            place.obstacle + ", at " + std::to_string(place.samples) + " samples";
+    text += "\nno space at " + place_text(place.place) + ": " + number(place.missing) +
+            " short of its distance from " + place.obstacle + ", at " + std::to_string(place.samples) +
+            " samples";
   return text;
 }
 

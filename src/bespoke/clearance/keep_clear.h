@@ -18,6 +18,13 @@ struct MissedPlace {
   std::size_t samples = 0;          ///< that miss nearest to it
 };
 
+/// Where faces of a corrected product pass through others that they did not pass through before.
+struct PassedThrough {
+  std::string other;                ///< the layer's name, or "itself"
+  Vector3 place = Vector3::Zero();  ///< on the corrected product, target frame
+  std::size_t pairs = 0;            ///< of faces, nearest to it
+};
+
 /// Samples that miss what is required of them by more than the tolerance.
 struct MissedDistances {
   std::size_t samples = 0;   ///< of all that were looked at
@@ -39,8 +46,9 @@ struct ClearanceSummary {
   Statistics strain_before, strain_after;
   /// Pairs of faces that pass through each other, and did not as carried.
   std::size_t new_self_intersections = 0;
-  double solve_seconds = 0;  ///< of the correction
-  double check_seconds = 0;  ///< of what was looked at before and afterwards
+  std::vector<PassedThrough> passed_through;  ///< itself or a layer, the most pairs first, ten at most
+  double solve_seconds = 0;                   ///< of the correction
+  double check_seconds = 0;                   ///< of what was looked at before and afterwards
 
   /// Nothing is inside that was outside or short of a required ease, nothing passes through itself that did
   /// not before. What is short of the distance that it had, where there is no space, is listed and allowed.

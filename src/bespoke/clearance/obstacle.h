@@ -11,26 +11,48 @@
 
 namespace bespoke {
 
+/// A layer as it lies on the source, and where its vertices are (3×n) on the target.
+struct LayerFaces {
+  TriangleMesh before;
+  Points after;
+};
+
+/// What places of a product have to stay above, a plane each.
+struct SidePlanes {
+  Points origins, normals;       ///< 3×k, target frame; normals of unit length
+  std::vector<double> required;  ///< distances from the planes, mesh units; minus infinity where none is
+};
+
 /// What a product must stay clear of: a body, or a layer below it.
 struct Obstacle {
   std::string name;  ///< for messages: "the target", "shirt.obj"
   /// The distance that points of the product need after the map, by where they were on the source (3×n,
   /// source frame); minus infinity where nothing is required. Target's mesh units.
   SignedDistances required;
+  /// Of a layer, instead of `required` and `distance`: by where places were on the source (3×k).
+  std::function<SidePlanes(const Points& x)> planes = {};
   /// Signed distance at points in the target frame (3×n), positive outside, mesh units.
   SignedDistances distance;
   /// By what such a distance may be off, ≥ 0; or empty. What was outside keeps at least that distance.
   SignedDistances uncertainty = {};
   double step = 0;       ///< over which a difference of distances is a gradient, mesh units, > 0
   double tolerance = 0;  ///< by which a requirement may be missed, mesh units
+  /// Of a layer, else null: no face of the product passes through one of it that did not on the source, and
+  /// the product is looked at where the layer's vertices, edges and faces are nearest on the source, too.
+  std::shared_ptr<const LayerFaces> layer = nullptr;
+  double layer_reach = 0;  ///< from the product to them, on the source, mesh units
   /// Whether what is short of its distance, and yet outside, breaches the rule: where an ease is required.
   bool short_is_breach = false;
+  /// Whether what misses it moves as a bystander may and no farther, and is no miss to tell of.
+  bool is_soft = false;
 };
 
 /// What clearance is required.
 struct ClearanceRule {
   /// At least that distance, target's mesh units. Without it each point keeps the one that it had.
   std::optional<double> ease;
+  /// Without an ease: places near the source come no farther away either, as far as bystanders may move.
+  bool same = false;
 };
 
 /// Of the sizes of two models: what is a length of the source on the target (power_of_two_scale).
@@ -50,9 +72,14 @@ inline constexpr double clearance_tolerance = 1e-4;
 Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const ModelSizes& sizes,
                        const ClearanceRule& rule);
 
-/// A layer below: `before` as it lies on the source, `after` (3×n, its vertices) on the target. Points that
-/// were on its outer side within `reach` stay there, as far away as they were, and as they were where they
-/// passed through it: samples within a face's length of such places require nothing.
+/// The same target from its other side, soft: places within 2 % of the source's diagonal are drawn back to
+/// where they are 0.1 % of the target's diagonal farther away than on the source.
+Obstacle body_attraction(std::shared_ptr<const ModelDistances> distances, const ModelSizes& sizes);
+
+/// A layer below: `before` as it lies on the source, `after` (3×n, its vertices) on the target. Places that
+/// were on its outer side stay above the plane at the place of it that was nearest, as far as they were:
+/// where sheets lie near each other, in an armpit, none is taken for another. What was under it is left to
+/// the pairs of faces.
 Obstacle layer_obstacle(std::string name, const TriangleMesh& before, const Points& after,
                         const ModelSizes& sizes);
 

@@ -54,6 +54,11 @@ Json clearance_json(const ProductClearance& clearance) {
                       {"place", {place.place[0], place.place[1], place.place[2]}},
                       {"missing", place.missing},
                       {"samples", place.samples}});
+  Json passed_through = Json::array();
+  for (const PassedThrough& passed : summary.passed_through)
+    passed_through.push_back({{"other", passed.other},
+                              {"place", {passed.place[0], passed.place[1], passed.place[2]}},
+                              {"pairs", passed.pairs}});
   for (const LayerContact& layer : clearance.layers)
     layers.push_back({{"lower", layer.lower},
                       {"intersections_on_source", layer.before},
@@ -69,6 +74,7 @@ Json clearance_json(const ProductClearance& clearance) {
           {"strain_before", to_json(summary.strain_before)},
           {"strain_after", to_json(summary.strain_after)},
           {"new_self_intersections", summary.new_self_intersections},
+          {"passed_through", std::move(passed_through)},
           {"layers", std::move(layers)},
           {"solve_seconds", summary.solve_seconds},
           {"check_seconds", summary.check_seconds}};

@@ -12,9 +12,6 @@
 namespace bespoke {
 namespace {
 
-// Of the target's diagonal: what misses nothing moves no farther.
-constexpr double bystander_share = 0.002;
-
 // By ring of edges around what misses: whole for two, since a face sample misses between its corners, then
 // down to nothing where the reach ends, smoothly.
 constexpr std::array<double, reach_in_edges> share_of_ring = {1, 1, 0.85, 0.5, 0.15};
@@ -23,9 +20,6 @@ constexpr int iterations_a_round = 30;
 
 // A gradient shorter than this is that of a place as near to one side as to another.
 constexpr double min_gradient = 0.2;
-
-// Of the target's diagonal: what a place is pushed in a round at most. Beyond, its gradient is another.
-constexpr double push_a_round = 0.02;
 
 // A round that brings a sample less than this share of the way that it was pushed was in vain, and after so
 // many there is no space for it.
@@ -52,19 +46,27 @@ Correction::Correction(const PreparedProduct::Data& product, const Points& carri
     size_ = std::max(size_, obstacle.tolerance / clearance_tolerance);
 }
 
+double Correction::tolerance() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Obstacle& obstacle : obstacles_) least = std::min(least, obstacle.tolerance);
+  return solved_share * least;
+}
+
 void Correction::solve(SampleDistances& distances, int rounds) {
-  double tolerance = std::numeric_limits<double>::infinity();
-  for (const Obstacle& obstacle : obstacles_) tolerance = std::min(tolerance, obstacle.tolerance);
   bool let_go = false;
   for (int round = 0; round < rounds && (choose_active(distances) || let_go); ++round) {
-    NodeVectors u = NodeVectors::Zero(u_.rows(), 3);
-    if (!active_.empty())
-      u = minimised_energy(product_.energy, linearised(distances), solved_share * tolerance,
-                           iterations_a_round, multipliers_);
-    limit(u);
-    move_to(std::move(u), distances);
+    move_to_least_energy(distances);
     let_go = count_vain_rounds(distances);
   }
+}
+
+void Correction::move_to_least_energy(SampleDistances& distances) {
+  NodeVectors u = NodeVectors::Zero(u_.rows(), 3);
+  if (!active_.empty())
+    u = minimised_energy(product_.energy, linearised(distances), tolerance(), iterations_a_round,
+                         multipliers_);
+  limit(u);
+  move_to(std::move(u), distances);
 }
 
 void Correction::move_to(NodeVectors u, SampleDistances& distances) {
@@ -91,9 +93,7 @@ NodeVectors Correction::joined(const std::vector<std::pair<int, int>>& pairs) co
   std::vector<int> nodes;
   const auto join = [&](int face, int& first) {
     for (const int vertex : product_.mesh.faces.col(face))
-      for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
-                                                                          vertex);
-           it; ++it) {
+      for (NodeIterator it(product_.graph.vertex_from_node, vertex); it; ++it) {
         const int node = static_cast<int>(it.col());
         nodes.push_back(node);
         if (first < 0) first = node;
@@ -121,7 +121,7 @@ std::vector<char> Correction::involved() const {
   for (Eigen::Index v = 0; v < rows.rows(); ++v) {
     // What goes with others has several nodes, or one that is not at its place.
     int nodes = 0;
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(rows, v); it; ++it, ++nodes)
+    for (NodeIterator it(rows, v); it; ++it, ++nodes)
       if (is_bound_node_[static_cast<std::size_t>(it.col())]) flags[static_cast<std::size_t>(v)] = 1;
     if (nodes > 1) flags[static_cast<std::size_t>(v)] = 1;
   }
@@ -129,13 +129,14 @@ std::vector<char> Correction::involved() const {
 }
 
 void Correction::note_missing(const SampleDistances& distances, int sample) {
-  for (int k = 0; k < 3; ++k) {
-    if (!(distances.samples().weights(k, sample) > 0)) continue;
-    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(
-             product_.graph.vertex_from_node, distances.samples().vertices(k, sample));
-         it; ++it)
-      is_missing_node_[static_cast<std::size_t>(it.col())] = 1;
-  }
+  for (int k = 0; k < 3; ++k)
+    if (distances.samples().weights(k, sample) > 0)
+      note_missing_vertex(distances.samples().vertices(k, sample));
+}
+
+void Correction::note_missing_vertex(int vertex) {
+  for (NodeIterator it(product_.graph.vertex_from_node, vertex); it; ++it)
+    is_missing_node_[static_cast<std::size_t>(it.col())] = 1;
 }
 
 void Correction::bind_ties() {
@@ -155,9 +156,7 @@ int Correction::nearest_node(const ProductSamples& samples, int sample) const {
   samples.weights.col(sample).maxCoeff(&corner);
   int nearest = 0;
   double most = 0;
-  for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
-                                                                      samples.vertices(corner, sample));
-       it; ++it)
+  for (NodeIterator it(product_.graph.vertex_from_node, samples.vertices(corner, sample)); it; ++it)
     if (it.value() > most) {
       most = it.value();
       nearest = static_cast<int>(it.col());
@@ -201,6 +200,7 @@ bool Correction::choose_active(const SampleDistances& distances) {
   }
   bool any = false;
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    if (obstacles_[o].is_soft) continue;
     std::vector<int> worst(is_missing_node_.size(), -1);
     for (int i = 0; i < static_cast<int>(distances.samples().count()); ++i) {
       if (!distances.misses(o, i)) continue;
@@ -225,31 +225,39 @@ bool Correction::choose_active(const SampleDistances& distances) {
   return any;
 }
 
-/// Of distances at the samples, by central differences.
+/// Of distances at the samples: what is known, else central differences.
 void Correction::set_gradients(const SampleDistances& distances, LinearConstraints& constraints) const {
-  const Points places = places_of(distances.samples(), vertices());
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
     std::vector<Eigen::Index> rows;
-    for (std::size_t i = 0; i < active_.size(); ++i)
-      if (active_[i].obstacle == o) rows.push_back(static_cast<Eigen::Index>(i));
-    if (rows.empty()) continue;
-    const double step = obstacles_[o].step;
-    Points around(3, 6 * static_cast<Eigen::Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        for (int side = 0; side < 2; ++side)
-          around.col(6 * static_cast<Eigen::Index>(i) + 2 * axis + side) =
-              places.col(active_[static_cast<std::size_t>(rows[i])].sample) +
-              (side ? -step : step) * Vector3::Unit(axis);
-    const std::vector<double> values = obstacles_[o].distance(around);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      Vector3 gradient;
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        gradient[static_cast<Eigen::Index>(axis)] =
-            (values[6 * i + 2 * axis] - values[6 * i + 2 * axis + 1]) / (2 * step);
-      if (!(gradient.norm() > min_gradient)) gradient.setZero();
-      constraints.gradients.row(rows[i]) = gradient.normalized();
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+      if (active_[i].obstacle != o) continue;
+      const auto row = static_cast<Eigen::Index>(i);
+      constraints.gradients.row(row) = distances.gradient(o, active_[i].sample);
+      if (!obstacles_[o].planes) rows.push_back(row);
     }
+    if (!rows.empty()) set_differences(distances, rows, constraints);
+  }
+}
+
+void Correction::set_differences(const SampleDistances& distances, const std::vector<Eigen::Index>& rows,
+                                 LinearConstraints& constraints) const {
+  const Obstacle& obstacle = obstacles_[active_[static_cast<std::size_t>(rows.front())].obstacle];
+  const Points places = places_of(distances.samples(), vertices());
+  Points around(3, 6 * static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int side = 0; side < 2; ++side)
+        around.col(6 * static_cast<Eigen::Index>(i) + 2 * axis + side) =
+            places.col(active_[static_cast<std::size_t>(rows[i])].sample) +
+            (side ? -obstacle.step : obstacle.step) * Vector3::Unit(axis);
+  const std::vector<double> values = obstacle.distance(around);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Vector3 gradient;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      gradient[static_cast<Eigen::Index>(axis)] =
+          (values[6 * i + 2 * axis] - values[6 * i + 2 * axis + 1]) / (2 * obstacle.step);
+    if (!(gradient.norm() > min_gradient)) gradient.setZero();
+    constraints.gradients.row(rows[i]) = gradient.normalized();
   }
 }
 
@@ -263,9 +271,7 @@ LinearConstraints Correction::linearised(const SampleDistances& distances) const
     const int sample = active_[static_cast<std::size_t>(i)].sample;
     for (int k = 0; k < 3; ++k)
       if (samples.weights(k, sample) > 0)
-        for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(product_.graph.vertex_from_node,
-                                                                            samples.vertices(k, sample));
-             it; ++it)
+        for (NodeIterator it(product_.graph.vertex_from_node, samples.vertices(k, sample)); it; ++it)
           entries.emplace_back(i, it.col(), samples.weights(k, sample) * it.value());
   }
   constraints.places.setFromTriplets(entries.begin(), entries.end());
@@ -283,11 +289,11 @@ LinearConstraints Correction::linearised(const SampleDistances& distances) const
 }
 
 /// Of every node: edges to the next one that misses, reach_in_edges from there on.
-std::vector<int> Correction::rings() const {
+std::vector<int> Correction::rings(const std::vector<char>& is_start) const {
   std::vector<int> ring(is_missing_node_.size(), reach_in_edges);
   std::vector<int> front;
   for (std::size_t node = 0; node < ring.size(); ++node)
-    if (is_missing_node_[node]) {
+    if (is_start[node]) {
       ring[node] = 0;
       front.push_back(static_cast<int>(node));
     }
@@ -305,7 +311,7 @@ std::vector<int> Correction::rings() const {
 }
 
 void Correction::limit(NodeVectors& u) const {
-  const std::vector<int> ring = rings();
+  const std::vector<int> ring = rings(is_missing_node_);
   const double most = bystander_share * size_;
   for (Eigen::Index node = 0; node < u.rows(); ++node) {
     const auto at = static_cast<std::size_t>(node);

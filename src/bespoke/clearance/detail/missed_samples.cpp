@@ -21,6 +21,12 @@ Points columns_of(const Points& points, const std::vector<int>& columns) {
   return some;
 }
 
+void append_columns(const Points& from, const std::vector<int>& columns, Points& to) {
+  const Eigen::Index before = to.cols(), more = static_cast<Eigen::Index>(columns.size());
+  to.conservativeResize(3, before + more);
+  to.rightCols(more) = columns_of(from, columns);
+}
+
 }  // namespace
 
 SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source,
@@ -28,7 +34,8 @@ SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source
     : samples_(std::move(samples)), obstacles_(obstacles) {
   const Points places = places_of(samples_, on_source);
   for (const Obstacle& obstacle : obstacles) {
-    required_.push_back(obstacle.required(places));
+    planes_.push_back(obstacle.planes ? obstacle.planes(places) : SidePlanes());
+    required_.push_back(obstacle.planes ? planes_.back().required : obstacle.required(places));
     distance_.emplace_back(required_.back().size(), std::numeric_limits<double>::infinity());
     least_.emplace_back(required_.back().size(), nothing_needed);
   }
@@ -44,11 +51,22 @@ void SampleDistances::look(const Points& on_target, const std::vector<char>& mov
   }
   const Points places = columns_of(places_of(samples_, on_target), columns);
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-    const std::vector<double> found = obstacles_[o].distance(places);
+    const std::vector<double> found = distances(o, columns, places);
     for (std::size_t i = 0; i < columns.size(); ++i)
       distance_[o][static_cast<std::size_t>(columns[i])] = found[i];
     if (obstacles_[o].uncertainty) look_at_uncertainty(o, columns, places);
   }
+}
+
+std::vector<double> SampleDistances::distances(std::size_t obstacle, const std::vector<int>& columns,
+                                               const Points& places) const {
+  if (!obstacles_[obstacle].planes) return obstacles_[obstacle].distance(places);
+  const SidePlanes& planes = planes_[obstacle];
+  std::vector<double> found(columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    found[i] = planes.normals.col(columns[i])
+                   .dot(places.col(static_cast<Eigen::Index>(i)) - planes.origins.col(columns[i]));
+  return found;
 }
 
 void SampleDistances::look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns,
@@ -76,13 +94,25 @@ void SampleDistances::append(const SampleDistances& other, const std::vector<int
       distance_[o].push_back(other.distance_[o][static_cast<std::size_t>(column)]);
       least_[o].push_back(other.least_[o][static_cast<std::size_t>(column)]);
     }
+  for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+    if (!obstacles_[o].planes) continue;
+    append_columns(other.planes_[o].origins, columns, planes_[o].origins);
+    append_columns(other.planes_[o].normals, columns, planes_[o].normals);
+  }
+}
+
+double SampleDistances::most_missing(Eigen::Index sample) const {
+  double most = 0;
+  for (std::size_t o = 0; o < obstacles_.size(); ++o)
+    if (!obstacles_[o].is_soft) most = std::max(most, missing(o, sample));
+  return most;
 }
 
 std::vector<int> SampleDistances::missed() const {
   std::vector<int> columns;
   for (int i = 0; i < static_cast<int>(samples_.count()); ++i)
     for (std::size_t o = 0; o < obstacles_.size(); ++o)
-      if (misses(o, i)) {
+      if (!obstacles_[o].is_soft && misses(o, i)) {
         columns.push_back(i);
         break;
       }
@@ -95,10 +125,12 @@ MissedDistances SampleDistances::count() const {
     ++count.samples;
     bool is_inside = false, is_breach = false;
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-      if (!misses(o, i)) continue;
+      if (obstacles_[o].is_soft || !misses(o, i)) continue;
       count.most = std::max(count.most, missing(o, i));
       is_breach = is_breach || obstacles_[o].short_is_breach;
-      is_inside = is_inside || (required(o, i) >= 0 && distance_[o][static_cast<std::size_t>(i)] < 0);
+      // Of layers pairs of faces tell.
+      is_inside = is_inside || (!obstacles_[o].planes && required(o, i) >= 0 &&
+                                distance_[o][static_cast<std::size_t>(i)] < 0);
     }
     if (is_inside) ++count.inside;
     if (is_inside || is_breach) ++count.breaches;
@@ -116,7 +148,7 @@ std::vector<MissedPlace> worst_places(const SampleDistances& distances, const Po
   std::vector<Miss> misses;
   for (const int i : distances.missed())
     for (std::size_t o = 0; o < obstacles.size(); ++o)
-      if (distances.misses(o, i)) misses.push_back({distances.missing(o, i), i, o});
+      if (!obstacles[o].is_soft && distances.misses(o, i)) misses.push_back({distances.missing(o, i), i, o});
   std::stable_sort(misses.begin(), misses.end(),
                    [](const Miss& a, const Miss& b) { return a.missing > b.missing; });
   const Points places = places_of(distances.samples(), on_target);

@@ -19,6 +19,11 @@ class SampleDistances {
   /// empty.
   void look(const Points& on_target, const std::vector<char>& moved = {});
 
+  /// The direction in which the sample's distance grows, where it is known without looking; else zero.
+  Vector3 gradient(std::size_t obstacle, Eigen::Index sample) const {
+    return obstacles_[obstacle].planes ? Vector3(planes_[obstacle].normals.col(sample)) : Vector3::Zero();
+  }
+
   /// Some of another's after these.
   void append(const SampleDistances& other, const std::vector<int>& columns);
 
@@ -34,18 +39,23 @@ class SampleDistances {
   bool misses(std::size_t obstacle, Eigen::Index sample) const {
     return missing(obstacle, sample) > obstacles_[obstacle].tolerance;
   }
+  /// By what it misses obstacles that are not soft.
+  double most_missing(Eigen::Index sample) const;
   /// Columns that miss what some obstacle requires.
   std::vector<int> missed() const;
 
   MissedDistances count() const;
 
  private:
+  std::vector<double> distances(std::size_t obstacle, const std::vector<int>& columns,
+                                const Points& places) const;
   void look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns, const Points& places);
 
   ProductSamples samples_;
   const std::vector<Obstacle>& obstacles_;
   /// Of each obstacle, of each sample; `least`: what keeps it outside although the distance is uncertain.
   std::vector<std::vector<double>> required_, distance_, least_;
+  std::vector<SidePlanes> planes_;  // of layers
 };
 
 /// The worst places of what misses, one in a neighbourhood of `radius` (mesh units), ten at most.

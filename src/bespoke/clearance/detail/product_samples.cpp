@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/parallel.h"
 
@@ -90,6 +92,16 @@ ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi
   return list.samples();
 }
 
+ProductSamples nearest_samples(const TriangleMesh& product, const Points& points, double reach) {
+  SampleList list;
+  if (product.faces.cols() == 0) return list.samples();
+  const ClosestPointTree tree(product);
+  for (const auto& point : points.colwise())
+    if (const auto near = tree.closest(point, {.max_distance = reach}))
+      list.add(product.faces.col(near->face), near->barycentric);
+  return list.samples();
+}
+
 Points places_of(const ProductSamples& samples, const Points& vertices) {
   Points places(3, samples.count());
   parallel_for(static_cast<std::size_t>(samples.count()), samples_per_range,
@@ -112,6 +124,12 @@ void append(const ProductSamples& from, const std::vector<int>& columns, Product
     to.vertices.col(before + i) = from.vertices.col(columns[static_cast<std::size_t>(i)]);
     to.weights.col(before + i) = from.weights.col(columns[static_cast<std::size_t>(i)]);
   }
+}
+
+void append(const ProductSamples& from, ProductSamples& to) {
+  std::vector<int> columns(static_cast<std::size_t>(from.count()));
+  std::iota(columns.begin(), columns.end(), 0);
+  append(from, columns, to);
 }
 
 }  // namespace bespoke

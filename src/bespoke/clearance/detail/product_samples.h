@@ -22,10 +22,15 @@ ProductSamples constraint_samples(const TriangleMesh& product, const Eigen::Matr
 /// of a face with an edge longer than 8 spacings.
 ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi& lines, double spacing);
 
+/// Of the product's faces the places nearest to points (3×k, in the product's frame), where one is within
+/// `reach` (mesh units).
+ProductSamples nearest_samples(const TriangleMesh& product, const Points& points, double reach);
+
 /// Where they are (3×k), on the vertices (3×n) at hand.
 Points places_of(const ProductSamples& samples, const Points& vertices);
 
-/// Some of them after others.
+/// Some of them, or all, after others.
 void append(const ProductSamples& from, const std::vector<int>& columns, ProductSamples& to);
+void append(const ProductSamples& from, ProductSamples& to);
 
 }  // namespace bespoke

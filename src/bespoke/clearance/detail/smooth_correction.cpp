@@ -71,8 +71,12 @@ NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstra
     return energy(NodeVectors(to_nodes * (gradients.array().colwise() * at.array()).matrix()));
   };
   const Eigen::VectorXd lengths = gradients.rowwise().norm();
+  // H has no positive entry off its diagonal, so that its inverse has no negative one.
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> amounts_of_places = places.cwiseAbs();
   const Eigen::VectorXd row_sums =
-      (places * energy(Eigen::VectorXd(to_nodes * lengths))).cwiseProduct(lengths).cwiseMax(1e-300);
+      (amounts_of_places * energy(Eigen::VectorXd(amounts_of_places.transpose() * lengths)))
+          .cwiseProduct(lengths)
+          .cwiseMax(1e-300);
   multipliers = multipliers.cwiseMax(0);
   Eigen::VectorXd ahead = multipliers;
   double momentum = 1;
