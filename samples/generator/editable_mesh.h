@@ -9,8 +9,8 @@
 namespace bespoke {
 
 /// A triangle mesh whose edges can be split, collapsed and flipped. Manifold, with or without boundary; stays
-/// so. Not on OpenMesh: its edits number faces otherwise, and the order of faces alone moves the maps that the
-/// pages print in their third digit.
+/// so. Not on OpenMesh: its edits number faces otherwise, and the order of faces alone moves the maps that
+/// the pages print in their third digit.
 class EditableMesh {
  public:
   using Edge = std::pair<int, int>;  ///< first < second

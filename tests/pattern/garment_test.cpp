@@ -51,7 +51,8 @@ TEST_F(Garments, TakeTheFirstRuleThatTheFileHas) {
   EXPECT_EQ(charted.texture.col(2), Eigen::Vector2d(1, 1));
 }
 
-// glTF has one texture coordinate a vertex: its corners are apart along the edges of charts, and joined again.
+// glTF has one texture coordinate a vertex: its corners are apart along the edges of charts, and joined
+// again.
 TEST_F(Garments, OfGltfHaveCharts) {
   MorphingMesh mesh;
   mesh.product.vertices.resize(3, 4);

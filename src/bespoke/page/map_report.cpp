@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "bespoke/number_format.h"
 #include "bespoke/base64.h"
+#include "bespoke/number_format.h"
 #include "bespoke/page/detail/input_quality.h"
 #include "bespoke/page/detail/picture.h"
 #include "bespoke/page/detail/places.h"

@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "bespoke/error.h"
 #include "bespoke/base64.h"
+#include "bespoke/error.h"
 
 namespace bespoke {
 namespace {
