@@ -48,4 +48,19 @@ void run_dispatched(Arguments&&... arguments) {
   }
 }
 
+/// The same of a loop that is written for one instruction set at a time.
+template <template <InstructionSet> class Loop, class... Arguments>
+void run_dispatched_by_set(Arguments&&... arguments) {
+  switch (instruction_set()) {
+#if defined(__x86_64__)
+    case InstructionSet::avx512:
+      return run_with_avx512<Loop<InstructionSet::avx512>>(std::forward<Arguments>(arguments)...);
+    case InstructionSet::avx2:
+      return run_with_avx2<Loop<InstructionSet::avx2>>(std::forward<Arguments>(arguments)...);
+#endif
+    default:
+      return Loop<InstructionSet::baseline>::run(std::forward<Arguments>(arguments)...);
+  }
+}
+
 }  // namespace bespoke
