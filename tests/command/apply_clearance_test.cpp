@@ -82,6 +82,25 @@ TEST_F(ApplyClearance, LayersKeepTheirOrder) {
   EXPECT_EQ(clearance(1)["layers"][0]["new_intersections"], 0);
 }
 
+// In whichever order they are named.
+TEST_F(ApplyClearance, LayersAreFoundByHowTheyLieOnTheSource) {
+  const ProgramResult result = apply({"jacket.obj", "shirt.obj"}, {"--clearance", "keep", "--require-clear",
+                                                                   "--out-dir", pair_.file("out")});
+  ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
+  EXPECT_THAT(result.out, HasSubstr("shirt.obj under jacket.obj: 0 pairs"));
+  EXPECT_EQ(clearance(0)["layers"][0]["lower"], "shirt.obj");
+  EXPECT_TRUE(clearance(0)["passed_through"].empty());
+  EXPECT_TRUE(clearance(1)["layers"].empty());
+}
+
+TEST_F(ApplyClearance, SameKeepsAndDrawsBack) {
+  ASSERT_EQ(apply({"jacket.obj"}, {"--clearance", "keep", "-o", out()}).exit_code, 0);
+  const json kept = clearance();
+  ASSERT_EQ(apply({"jacket.obj"}, {"--clearance", "same", "--require-clear", "-o", out()}).exit_code, 0);
+  EXPECT_TRUE(clearance()["clear"]);
+  EXPECT_GE(clearance()["moved"], kept["moved"]);
+}
+
 // No shift of a stiff shell clears a body of other proportions.
 TEST_F(ApplyClearance, WhatCannotBeClearedIsReportedAndExitsWithThree) {
   const ProgramResult result = apply({"rigid.obj"}, {"--clearance", "keep", "--rigid", "shell", "-o", out()});

@@ -135,6 +135,14 @@ void print_summary(const fs::path& output, const ProductSummary& summary, const 
     std::printf("%s: %s\n", output.c_str(), to_string(part).c_str());
 }
 
+/// The order of the products in which they are corrected.
+std::vector<std::size_t> correction_order(ClearanceKeeper& keeper, ProductMap& map,
+                                          const std::vector<std::string>& products) {
+  std::vector<std::size_t> order;
+  map.use(products.front(), [&](const OpenedMap& opened) { order = keeper.order(products, opened); });
+  return order;
+}
+
 void run(const ApplyArguments& arguments, const RunContext& context) {
   const auto start = std::chrono::steady_clock::now();
   const Progress& progress = context.progress;
@@ -153,17 +161,20 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
 
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
   PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "", arguments.catalog.target);
-  ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit);
+  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
+  ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit, pose);
   OutputFiles files;
-  std::vector<AppliedProduct> applied;
+  std::vector<AppliedProduct> applied(arguments.products.size());
   std::vector<std::string> penetrations(arguments.products.size());
-  for (std::size_t i = 0; i < arguments.products.size(); ++i) {
-    progress.step("apply", i, arguments.products.size());
+  const std::vector<std::size_t> order = correction_order(keeper, map, arguments.products);
+  std::size_t done = 0;
+  for (const std::size_t i : order) {
+    progress.step("apply", done++, arguments.products.size());
     const std::string& name = arguments.products[i];
     ProductSummary summary;
     map.use(name, [&](const OpenedMap& opened) {
       const OpenedMap cleared = keeper.corrected(name, opened);
-      penetrations[i] = new_penetration(name, cleared, arguments.unit);
+      penetrations[i] = new_penetration(name, cleared, arguments.unit, pose);
       summary = apply_one(arguments, name, plan[i], cleared, progress);
       if (!penetrations[i].empty()) summary.warnings.push_back(penetrations[i]);
     });
@@ -171,8 +182,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     files.add(summary.companions);
     std::vector<fs::path>& further = context.findings.further_outputs;
     further.insert(further.end(), summary.companions.begin(), summary.companions.end());
-    applied.push_back({fs::path(name).filename().string(), std::move(summary), {}});
-    applied.back().clearance = keeper.last();
+    applied[i] = {fs::path(name).filename().string(), std::move(summary), keeper.last()};
   }
   progress.step("apply", arguments.products.size(), arguments.products.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -91,11 +91,6 @@ void require_known_rig(const ApplyArguments& arguments, const fs::path& product,
   const bool is_stored = arguments.pose == ModelPose::stored;
   if (arguments.skeleton.empty() && !is_stored) return;
   const char* const option = is_stored ? "--pose stored" : "--skeleton";
-  const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
-  if (is_stored && (has_parts || arguments.refine))
-    throw CLI::ValidationError(option,
-                               "is not known with --rigid, --similar and --refine, which find "
-                               "parts and edges where a viewer shows them");
   if (!keeps_kind(product, output))
     throw CLI::ValidationError(
         option, "is known only where the product keeps its kind of file: " + product.string() + " does not");

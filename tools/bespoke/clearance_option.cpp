@@ -1,11 +1,14 @@
 #include "clearance_option.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <sstream>
 #include <utility>
 
+#include "bespoke/clearance/nesting.h"
 #include "bespoke/error.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
@@ -19,8 +22,9 @@ namespace fs = std::filesystem;
 /// Products that jobs of a batch carry to many targets, each prepared once.
 class PreparedProducts {
  public:
-  WornProduct get(const fs::path& file, const std::vector<RigidPart>& parts, double scale) {
-    std::string key = file.string() + "\n" + std::to_string(scale);
+  WornProduct get(const fs::path& file, const std::vector<RigidPart>& parts, double scale, ModelPose pose) {
+    std::string key =
+        file.string() + "\n" + std::to_string(scale) + (pose == ModelPose::shown ? "" : " stored");
     for (const RigidPart& part : parts)
       key += "\n" + part.name + (part.motion == PartMotion::rigid ? "r" : "s");
     std::error_code error;
@@ -29,7 +33,7 @@ class PreparedProducts {
     const auto found = products_.find(key);
     if (!error && found != products_.end() && found->second.first == time) return found->second.second;
     if (products_.size() >= most_) products_.clear();
-    WornProduct product = read_worn_product(file, parts, scale);
+    WornProduct product = read_worn_product(file, parts, scale, pose);
     if (!error) products_.insert_or_assign(key, std::pair(time, product));
     return product;
   }
@@ -45,9 +49,10 @@ PreparedProducts& prepared_products() {
   return products;
 }
 
-/// The ease that the option names; nothing to keep distances.
+/// The ease that the option names; none to keep distances.
 ClearanceRule rule_of(const ClearanceOption& option, const ModelSizes& sizes) {
   if (option.distance == "keep") return {};
+  if (option.distance == "same") return {.ease = std::nullopt, .same = true};
   const Length ease = parse_length("--clearance", option.distance, LengthRange::not_negative);
   return {ease.in_mesh_units(sizes.source_diagonal) * (ease.percent ? sizes.scale() : 1)};
 }
@@ -65,21 +70,22 @@ ModelSizes sizes_of(const OpenedMap& map) {
 
 void add_clearance_options(CLI::App& apply, ClearanceOption& option) {
   apply.add_option("--clearance", option.distance, std::string(clearance_help) + " (default: off)")
-      ->type_name("keep|LENGTH|off");
+      ->type_name("keep|same|LENGTH|off");
   apply.add_flag("--require-clear", option.require_clear, require_clear_help);
-  apply.add_flag("--layers", option.layers,
-                 "The products are layers, from the inside to the outside: each keeps its order and its "
-                 "distance to those before it. Pairs that pass through each other on the source are listed "
-                 "and left");
+  apply.add_flag(
+      "--layers", option.layers,
+      "The products are layers, from the inside to the outside, in the order of the call: each keeps "
+      "its order and its distance to those before it. Pairs that pass through each other on the "
+      "source are listed and left (default: the order in which they lie over each other on the source)");
 }
 
 void require_valid(const ClearanceOption& option) {
-  if (option.is_used() && option.distance != "keep") {
+  if (option.is_used() && option.distance != "keep" && option.distance != "same") {
     try {
       parse_length("--clearance", option.distance, LengthRange::not_negative);
     } catch (const CLI::ValidationError&) {
       throw CLI::ValidationError("--clearance",
-                                 "is keep, off, a length such as 0.02, or a percentage of the "
+                                 "is keep, same, off, a length such as 0.02, or a percentage of the "
                                  "source's diagonal such as 0.5%; not '" +
                                      option.distance + "'");
     }
@@ -87,6 +93,22 @@ void require_valid(const ClearanceOption& option) {
   if (!option.is_used() && (option.require_clear || option.layers))
     throw CLI::ValidationError(option.layers ? "--layers" : "--require-clear",
                                "needs --clearance keep, or a length");
+}
+
+std::vector<std::size_t> ClearanceKeeper::order(const std::vector<std::string>& products,
+                                                const OpenedMap& map) {
+  std::vector<std::size_t> order(products.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (!option_.is_used() || products.size() < 2) return order;
+  are_layers_ = true;
+  if (option_.layers || !std::all_of(products.begin(), products.end(),
+                                     [](const std::string& name) { return can_read_product(name); }))
+    return order;
+  std::vector<TriangleMesh> meshes;
+  for (const std::string& name : products)
+    meshes.push_back(
+        prepared_products().get(name, parts_, product_scale(name, map.unit, unit_), pose_).prepared->mesh());
+  return nesting_order(meshes, sizes_of(map).source_diagonal);
 }
 
 OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap& map) {
@@ -99,11 +121,11 @@ OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap
   const ModelSizes sizes = sizes_of(map);
   if (!clearer_)
     clearer_.emplace(rule_of(option_, sizes),
-                     option_.layers ? ProductClearer::Products::layers : ProductClearer::Products::alone);
+                     are_layers_ ? ProductClearer::Products::layers : ProductClearer::Products::alone);
   OpenedMap own = map;
-  own.elastic =
-      clearer_->corrected(prepared_products().get(product, parts_, product_scale(product, map.unit, unit_)),
-                          {map.elastic, map.target_from_source, map.distances, sizes});
+  own.elastic = clearer_->corrected(
+      prepared_products().get(product, parts_, product_scale(product, map.unit, unit_), pose_),
+      {map.elastic, map.target_from_source, map.distances, sizes});
   return own;
 }
 

@@ -11,7 +11,7 @@
 namespace bespoke::command {
 
 struct ClearanceOption {
-  std::string distance = "off";  ///< keep, off, or a length
+  std::string distance = "off";  ///< keep, same, off, or a length
   bool require_clear = false;
   bool layers = false;
 
@@ -20,7 +20,8 @@ struct ClearanceOption {
 
 inline constexpr const char* clearance_help =
     "What carried products keep from the target: keep (each place at least as far outside as it was from the "
-    "source), a length (mesh units or % of the source's diagonal), or off. What misses that is moved, as "
+    "source), same (and, within 2 % of the source, hardly farther), a length (mesh units or % of the "
+    "source's diagonal), or off. What misses that is moved, as "
     "little and as smoothly as it can be; the map must hold the distances of its models";
 inline constexpr const char* require_clear_help =
     "Exit with code 3 if a product is not clear although it was corrected; it is written all the same";
@@ -33,9 +34,14 @@ void require_valid(const ClearanceOption& option);
 /// Keeps the products of a run clear, in the order of the calls.
 class ClearanceKeeper {
  public:
-  /// `unit`: of the products' coordinates, as product_scale takes it.
-  ClearanceKeeper(ClearanceOption option, std::vector<RigidPart> parts, std::string unit)
-      : option_(std::move(option)), parts_(std::move(parts)), unit_(std::move(unit)) {}
+  /// `unit`: of the products' coordinates, as product_scale takes it; `pose`: of skinned products.
+  ClearanceKeeper(ClearanceOption option, std::vector<RigidPart> parts, std::string unit,
+                  ModelPose pose = ModelPose::shown)
+      : option_(std::move(option)), parts_(std::move(parts)), unit_(std::move(unit)), pose_(pose) {}
+
+  /// The order in which they are to be corrected, numbers of the list: of the call where they are named as
+  /// layers, else as they lie over each other on the source.
+  std::vector<std::size_t> order(const std::vector<std::string>& products, const OpenedMap& map);
 
   /// The map that takes the product where it is clear; the map itself where clearance is off. Throws
   /// InvalidInput for maps without distances and products without places that can be read.
@@ -51,6 +57,8 @@ class ClearanceKeeper {
   ClearanceOption option_;
   std::vector<RigidPart> parts_;
   std::string unit_;
+  ModelPose pose_;
+  bool are_layers_ = false;
   std::optional<ProductClearer> clearer_;
 };
 

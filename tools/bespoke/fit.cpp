@@ -220,12 +220,13 @@ void run(const FitArguments& arguments, const RunContext& context) {
   estimate_anchor_sigmas(anchors, arguments, size, size_scale);
   if (arguments.add_corners) add_box_corners(anchors, source.vertices, target.vertices);
 
-  const Problem input{source,
-                      target,
-                      anchors,
-                      fitted ? &*fitted : nullptr,
-                      target_model.cloud ? &*target_model.cloud : nullptr,
-                      [&] { return vertex_groups(arguments.source, source.vertices); }};
+  const Problem input{
+      source,
+      target,
+      anchors,
+      fitted ? &*fitted : nullptr,
+      target_model.cloud ? &*target_model.cloud : nullptr,
+      [&] { return vertex_groups(arguments.source, arguments.pose.value_or(ModelPose::shown)); }};
   const MakeMapOptions options = make_options(arguments, size, size_scale);
   const MadeMap made = make_map(input, options, context.progress);
   if (arguments.require_certified && !whole_certificate(made.asset).is_bijection())

@@ -5,6 +5,7 @@
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "commands.h"
 
@@ -65,8 +66,9 @@ MapModels read_map_models(const MapModelArguments& arguments) {
   return models;
 }
 
-NamedProduct read_product_in(const std::string& path, const std::string& map_unit, const std::string& given) {
-  const Product product = read_product(path);
+NamedProduct read_product_in(const std::string& path, const std::string& map_unit, const std::string& given,
+                             ModelPose pose) {
+  const Product product = read_product(path, pose);
   return {std::filesystem::path(path).filename().string(),
           {product_scale(path, map_unit, given) * product.vertices, triangulated(product)},
           product.line_edges};

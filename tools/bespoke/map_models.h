@@ -28,9 +28,9 @@ struct MapModelArguments {
 void add_map_model_options(CLI::App& app, MapModelArguments& arguments);
 void add_unit_option(CLI::App& app, std::string& unit);
 
-/// A product's triangles and lines in the map's unit (product_scale).
+/// A product's triangles and lines in the map's unit (product_scale), of a skinned one in that pose.
 NamedProduct read_product_in(const std::string& path, const std::string& map_unit,
-                             const std::string& given = "");
+                             const std::string& given = "", ModelPose pose = ModelPose::shown);
 
 std::vector<JobFile> inputs_of(const MapModelArguments& arguments);
 

@@ -36,11 +36,11 @@ PenetrationCheck::PenetrationCheck(const std::string& source, const std::string&
 PenetrationCheck::~PenetrationCheck() = default;
 
 std::string PenetrationCheck::operator()(const std::string& product, const OpenedMap& map,
-                                         const std::string& unit) {
+                                         const std::string& unit, ModelPose pose) {
   if (source_.empty() || target_.empty()) return {};
   if (!models_) models_ = std::make_unique<const Models>(source_, target_, map);
   if (!can_read_product(product)) return {};
-  const NamedProduct before = read_product_in(product, map.unit, unit);
+  const NamedProduct before = read_product_in(product, map.unit, unit, pose);
   const Points after = map.target_from_source * (*map.elastic)(before.mesh.vertices);
   const NewPenetration new_penetration = product_new_penetration(
       {before.mesh, before.line_edges}, after,

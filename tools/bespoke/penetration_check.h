@@ -18,9 +18,10 @@ class PenetrationCheck {
   ~PenetrationCheck();
 
   /// A warning, or nothing. map: in its own unit; unit: of the product's coordinates, as product_scale takes
-  /// it. The first call reads the models. Throws InvalidInput for models that the map was not made of, and
-  /// whatever reading throws.
-  std::string operator()(const std::string& product, const OpenedMap& map, const std::string& unit);
+  /// it; pose: of a skinned one. The first call reads the models. Throws InvalidInput for models that the map
+  /// was not made of, and whatever reading throws.
+  std::string operator()(const std::string& product, const OpenedMap& map, const std::string& unit,
+                         ModelPose pose = ModelPose::shown);
 
  private:
   struct Models;

@@ -9,7 +9,7 @@
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
-#include "bespoke/product/product_io.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -40,9 +40,10 @@ struct ReadProduct {
 };
 
 ReadProduct read(const std::filesystem::path& input, const ApplyToProductOptions& options) {
-  ReadProduct read{read_product(input), {}};
+  ReadProduct read{read_product(input, options.pose), {}};
   if (!options.parts.empty())
-    read.parts = parts_of_places(input, options.parts, read.product.vertices, options.progress);
+    read.parts = parts_of_places(input, read.product.vertices,
+                                 {options.parts, options.progress, nullptr, options.pose});
   return read;
 }
 
@@ -110,8 +111,8 @@ ProductSummary apply_to_product(const std::filesystem::path& input,
     std::string other_unit;
     point_motion.accept = [&] {
       if (options.model_box && in_band == 0 && can_read_product(input))
-        other_unit =
-            require_unit_of_map(input.string(), read_product(input).vertices, elastic, *options.model_box);
+        other_unit = require_unit_of_map(input.string(), read_product(input, options.pose).vertices, elastic,
+                                         *options.model_box);
     };
     const std::vector<std::filesystem::path> own_outputs(outputs.begin() + first, outputs.begin() + last);
     CarrySummary carried = carry_product(

@@ -36,7 +36,7 @@ struct ApplyToProductOptions {
   /// another unit (unit_check.h), with nothing written.
   std::optional<Box> model_box;
   Progress progress;
-  ModelPose pose = ModelPose::shown;  ///< of skinned meshes; edges are split as shown only
+  ModelPose pose = ModelPose::shown;  ///< of skinned meshes
   std::optional<std::filesystem::path> skeleton =
       std::nullopt;  ///< that the product is bound to (CarryOptions)
 };

@@ -7,6 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/product/carry_product.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/self_intersection.h"
 #include "bespoke/rigid/rigid_alignment.h"
@@ -51,10 +52,11 @@ std::vector<std::pair<int, int>> pairs_between(const TriangleMesh& both, int spl
 }  // namespace
 
 WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts,
-                              double scale) {
-  const Product product = read_product(file);
+                              double scale, ModelPose pose) {
+  const Product product = read_product(file, pose);
   WornProduct worn{file.filename().string(), nullptr, {}, parts};
-  if (!parts.empty()) worn.part_of_vertex = parts_of_places(file, parts, product.vertices);
+  if (!parts.empty())
+    worn.part_of_vertex = parts_of_places(file, product.vertices, {parts, {}, nullptr, pose});
   const Eigen::Matrix2Xi lines = Eigen::Map<const Eigen::Matrix2Xi>(
       product.line_edges.data(), 2, static_cast<Eigen::Index>(product.line_edges.size() / 2));
   try {

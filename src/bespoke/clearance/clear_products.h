@@ -7,6 +7,7 @@
 
 #include "bespoke/clearance/keep_clear.h"
 #include "bespoke/mapping/elastic_map.h"
+#include "bespoke/product/model_pose.h"
 #include "bespoke/product/rigid_part.h"
 #include "bespoke/rigid/rigid_transform.h"
 
@@ -20,10 +21,10 @@ struct WornProduct {
   std::vector<RigidPart> parts;
 };
 
-/// Reads the faces and lines, without splits. `scale`: how many units of the map one of the file is; what
-/// comes back is in the map's. Throws as read_product and parts_of_places.
+/// Reads the faces and lines, without splits, of skinned meshes in that pose. `scale`: how many units of the
+/// map one of the file is; what comes back is in the map's. Throws as read_product and parts_of_places.
 WornProduct read_worn_product(const std::filesystem::path& file, const std::vector<RigidPart>& parts = {},
-                              double scale = 1);
+                              double scale = 1, ModelPose pose = ModelPose::shown);
 
 /// The vertices of the product where a map takes them (3×n, target frame), those of its parts by the motion
 /// of least squares of each.

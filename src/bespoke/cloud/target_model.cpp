@@ -12,7 +12,7 @@ namespace {
 /// The pose of a model whose mesh has this hash, perhaps once it is scaled.
 ModelPose pose_of_hash(const std::filesystem::path& path, double scale, const std::string& hash) {
   if (hash.empty() || !has_two_poses(path)) return ModelPose::shown;
-  const Product stored = read_product(path, ModelPose::stored);
+  const Product stored = read_model(path, ModelPose::stored);
   const TriangleMesh mesh{stored.vertices, triangulated(stored)};
   const bool is_stored =
       content_hash(mesh) == hash || content_hash(TriangleMesh{scale * mesh.vertices, mesh.faces}) == hash;
@@ -22,7 +22,7 @@ ModelPose pose_of_hash(const std::filesystem::path& path, double scale, const st
 }  // namespace
 
 TargetModel read_target(const std::filesystem::path& path, ModelPose pose) {
-  Product product = read_product(path, pose);
+  Product product = read_model(path, pose);
   if (!product.corners.empty())
     return {{product.vertices, triangulated(product)}, std::nullopt, product.degenerate};
   if (product.normals.cols() == 0)
@@ -34,7 +34,7 @@ TargetModel read_target(const std::filesystem::path& path, ModelPose pose) {
 }
 
 SourceModel read_source_model(const std::filesystem::path& path, ModelPose pose) {
-  const Product product = read_product(path, pose);
+  const Product product = read_model(path, pose);
   if (product.normals.cols() > 0)
     throw InvalidInput(path.string() +
                        ": is a point cloud, which can be a target only: a map is carried by the faces of its "

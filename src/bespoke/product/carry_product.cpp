@@ -26,17 +26,18 @@ struct Format {
                                         const Progress&) = nullptr;  ///< where the format knows parts
   /// Writes the file with edges split, where that is known.
   void (*split)(const InputFile&, const FaceSplits&, OutputFile&) = nullptr;
-  /// As `carry`, in the pose in which skinned meshes are stored, where the format knows skins.
-  CarrySummary (*carry_stored)(const InputFile&, std::vector<OutputFile>&, const PointMotion&,
-                               const Progress&) = nullptr;
 };
+
+constexpr Format shown_gltf(std::string_view ending) {
+  return {ending, carry_gltf, find_gltf_parts, split_gltf};
+}
 
 constexpr std::array formats{Format{".obj", carry_obj, find_obj_parts, split_obj},
                              Format{".ply", carry_ply, find_ply_parts, split_ply},
                              Format{".stl", carry_stl, nullptr, split_stl},
                              Format{".off", carry_off, nullptr, split_off},
-                             Format{".gltf", carry_gltf, find_gltf_parts, split_gltf, carry_stored_gltf},
-                             Format{".glb", carry_gltf, find_gltf_parts, split_gltf, carry_stored_gltf},
+                             shown_gltf(".gltf"),
+                             shown_gltf(".glb"),
                              Format{".xyz", carry_xyz},
                              Format{".csv", carry_csv}};
 
@@ -52,7 +53,9 @@ bool has_gltf_ending(const fs::path& path) {
   return ending == ".glb" || ending == ".gltf";
 }
 
-const Format& known_format(const fs::path& path) {
+Format known_format(const fs::path& path, ModelPose pose) {
+  if (has_gltf_ending(path) && pose == ModelPose::stored)
+    return {"glTF", carry_stored_gltf, find_stored_gltf_parts, split_stored_gltf};
   if (const Format* const format = find_format(path)) return *format;
   throw UnknownEnding(path.string() + ": the name must end in " + product_endings() +
                       conversion_advice(path));
@@ -65,12 +68,6 @@ std::vector<PartPoints> find_parts(const Format& format, const InputFile& file,
     throw InvalidInput(file.path().string() +
                        ": only OBJ, PLY and glTF files have parts that can keep their shape");
   return format.find_parts(file, parts, progress);
-}
-
-CarrySummary carry_in_pose(const Format& format, const InputFile& file, std::vector<OutputFile>& outputs,
-                           const PointMotion& motion, const CarryOptions& options) {
-  const bool is_as_stored = options.pose == ModelPose::stored && format.carry_stored;
-  return (is_as_stored ? format.carry_stored : format.carry)(file, outputs, motion, options.progress);
 }
 
 CarrySummary carry_and_bind(const Format& format, const InputFile& file, std::vector<OutputFile>& outputs,
@@ -87,7 +84,7 @@ CarrySummary carry_and_bind(const Format& format, const InputFile& file, std::ve
                                              [&](OutputFile& output) {
                                                std::vector<OutputFile> one;
                                                one.push_back(std::move(output));
-                                               summary = carry_in_pose(format, file, one, motion, options);
+                                               summary = format.carry(file, one, motion, options.progress);
                                                output = std::move(one.front());
                                              });
   summary.joints = bind_gltf(*carried, target, options.pose, outputs.front());
@@ -114,9 +111,9 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   if (outputs.size() != motion.frames)
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for a motion of " +
                        std::to_string(motion.frames) + " frames; the numbers must be equal");
-  const Format& format = known_format(input);
+  const Format format = known_format(input, options.pose);
   for (const fs::path& output : outputs)
-    if (find_format(output) != &format && !is_stream(output))
+    if (find_format(output) != find_format(input) && !is_stream(output))
       throw UnknownEnding(output.string() + ": must have the ending of " + input.string());
   auto file = std::make_unique<InputFile>(input);
   const std::vector<PartPoints> parts = find_parts(format, *file, options.parts, options.progress);
@@ -132,17 +129,17 @@ CarrySummary carry_product(const fs::path& input, const std::vector<fs::path>& o
   CarrySummary summary;
   write_outputs(outputs, [&](std::vector<OutputFile>& open) {
     summary = options.skeleton ? carry_and_bind(format, *file, open, own.motion, options)
-                               : carry_in_pose(format, *file, open, own.motion, options);
+                               : format.carry(*file, open, own.motion, options.progress);
     own.motion.accept();
   });
   summary.parts = std::move(own.parts);
   return summary;
 }
 
-std::vector<int> parts_of_places(const fs::path& input, const std::vector<RigidPart>& parts,
-                                 const Points& places, const Progress& progress) {
+std::vector<int> parts_of_places(const fs::path& input, const Points& places, const CarryOptions& options) {
   const InputFile file(input);
-  return parts_at(places, find_parts(known_format(input), file, parts, progress), input);
+  const Format format = known_format(input, options.pose);
+  return parts_at(places, find_parts(format, file, options.parts, options.progress), input);
 }
 
 }  // namespace bespoke

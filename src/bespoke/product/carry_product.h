@@ -49,10 +49,10 @@ CarrySummary carry_product(const std::filesystem::path& input,
                            const std::vector<std::filesystem::path>& outputs, const PointMotion& motion,
                            const CarryOptions& options = {});
 
-/// For each of the places (3×n) of points of the product in `input`, as read_product reads it, the number of
-/// the part that it belongs to, or -1. Throws as carry_product.
-std::vector<int> parts_of_places(const std::filesystem::path& input, const std::vector<RigidPart>& parts,
-                                 const Points& places, const Progress& progress = {});
+/// For each of the places (3×n) of points of the product in `input`, as read_product reads it in the options'
+/// pose, the number of the options' part that it belongs to, or -1. Throws as carry_product.
+std::vector<int> parts_of_places(const std::filesystem::path& input, const Points& places,
+                                 const CarryOptions& options);
 
 /// Whether the ending of the name is that of a kind of product.
 bool has_product_ending(const std::filesystem::path& path);

@@ -5,7 +5,7 @@
 namespace bespoke {
 
 TriangleMesh read_triangle_mesh(const std::filesystem::path& path) {
-  const Product product = read_product(path, ModelPose::shown);
+  const Product product = read_model(path, ModelPose::shown);
   return {product.vertices, triangulated(product)};
 }
 

@@ -16,6 +16,13 @@ bool is_gltf(const std::filesystem::path& path) {
 }  // namespace
 
 Product read_product(const std::filesystem::path& path, ModelPose pose) {
+  if (pose == ModelPose::shown || !is_gltf(path)) return read_product(path);
+  Product product = read_stored_gltf_faces(InputFile(path));
+  product.unit = unit_of_format(path);
+  return product;
+}
+
+Product read_model(const std::filesystem::path& path, ModelPose pose) {
   if (!is_gltf(path)) return read_product(path);
   Product product = read_gltf_model_faces(InputFile(path), pose);
   product.unit = unit_of_format(path);

@@ -83,7 +83,7 @@ class Map:
         components of PLY. `refine` splits edges of a product until their middles lie no farther than this from
         where the map takes them. `unit` is that of the product's coordinates ("mm", ..., "map" for the map's own), by
         default what a glTF or 3MF file says, else the map's; the product stays in it.
-        `clearance` ("keep", a length, or "off") keeps the product clear of the target at t = 1, as `bespoke apply
+        `clearance` ("keep", "same", a length, or "off") keeps the product clear of the target at t = 1, as `bespoke apply
         --clearance` does, and clear of the products in `layers`, which lie below it, from the inside to the outside;
         what was found is in the summary's `json["products"][0]["clearance"]`.
         With both models that the map was made of, products that penetrate the target at the last time, if that is

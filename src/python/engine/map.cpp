@@ -125,11 +125,13 @@ std::shared_ptr<const ElasticMap> cleared_map(const Asset& asset, std::shared_pt
   const ModelSizes sizes{asset.record.source.box.diagonal().norm(),
                          asset.record.target.box.diagonal().norm()};
   ClearanceRule rule;
-  if (request.clearance != "keep") {
+  rule.same = request.clearance == "same";
+  if (request.clearance != "keep" && !rule.same) {
     const auto ease = parse_length(request.clearance, LengthRange::not_negative);
     if (!ease)
       throw InvalidInput(
-          "clearance is \"keep\", \"off\", a length or a percentage of the source's diagonal, not '" +
+          "clearance is \"keep\", \"same\", \"off\", a length or a percentage of the source's diagonal, not "
+          "'" +
           request.clearance + "'");
     rule.ease = ease->in_mesh_units(sizes.source_diagonal) * (ease->percent ? sizes.scale() : 1);
   }

@@ -25,7 +25,7 @@ CarrySummary carry_csv(const InputFile& file, std::vector<OutputFile>& outputs, 
 CarrySummary carry_gltf(const InputFile& file, std::vector<OutputFile>& outputs, const PointMotion& motion,
                         const Progress& progress);
 
-/// The same of skinned meshes in the pose in which they are stored.
+/// The same of skinned meshes in the pose in which they are stored; as well below.
 CarrySummary carry_stored_gltf(const InputFile& file, std::vector<OutputFile>& outputs,
                                const PointMotion& motion, const Progress& progress);
 
@@ -36,6 +36,7 @@ void split_ply(const InputFile& file, const FaceSplits& splits, OutputFile& outp
 void split_stl(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 void split_off(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 void split_gltf(const InputFile& file, const FaceSplits& splits, OutputFile& output);
+void split_stored_gltf(const InputFile& file, const FaceSplits& splits, OutputFile& output);
 
 /// The points of parts that keep their shape. Throws InvalidInput, listing the names that are known, for one
 /// that is not, and what the reading of the file throws.
@@ -45,9 +46,12 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
                                        const Progress& progress);
 std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
                                         const Progress& progress);
+std::vector<PartPoints> find_stored_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                               const Progress& progress);
 
-/// The groups of vertex_groups (vertex_groups.h): of every position of the file; of the vertices, 3×n.
+/// The groups of vertex_groups (vertex_groups.h): of every position of the file; of the vertices, 3×n, in
+/// that pose.
 std::vector<std::string> find_obj_groups(const InputFile& file);
-std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices);
+std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices, ModelPose pose);
 
 }  // namespace bespoke

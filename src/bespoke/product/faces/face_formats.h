@@ -14,6 +14,7 @@ Product read_ply_faces(const InputFile& file);
 Product read_stl_faces(const InputFile& file);
 Product read_off_faces(const InputFile& file);
 Product read_gltf_faces(const InputFile& file);
+Product read_stored_gltf_faces(const InputFile& file);  ///< skinned meshes in the pose that is stored
 Product read_gltf_model_faces(const InputFile& file, ModelPose pose);  ///< of a model: without lines
 Product read_3mf_faces(const InputFile& file);
 

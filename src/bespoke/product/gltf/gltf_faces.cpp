@@ -7,10 +7,12 @@
 
 namespace bespoke {
 
-Product read_gltf_faces(const InputFile& input) {
+namespace {
+
+Product read_faces_in_pose(const InputFile& input, ModelPose pose) {
   const GltfFile file = read_gltf(input);
   const std::vector<GltfAccessor> accessors = read_accessors(file);
-  const GltfScene scene = read_scene(file, accessors);
+  const GltfScene scene = read_scene(file, accessors, pose);
   GatheredFaces triangles(file.path), lines(file.path);
   for (const GltfTriangles& shown : shown_triangles(file, accessors, scene))
     triangles.add_points(shown.places);
@@ -19,6 +21,14 @@ Product read_gltf_faces(const InputFile& input) {
   if (corners.cols() == 0 && line_ends.cols() == 0)
     throw FormatError(file.path.string() + ": the scene shows neither triangles nor lines");
   return joined_triangles(corners, line_ends);
+}
+
+}  // namespace
+
+Product read_gltf_faces(const InputFile& input) { return read_faces_in_pose(input, ModelPose::shown); }
+
+Product read_stored_gltf_faces(const InputFile& input) {
+  return read_faces_in_pose(input, ModelPose::stored);
 }
 
 Product read_gltf_model_faces(const InputFile& input, ModelPose pose) {

@@ -17,10 +17,10 @@ void append(Points& points, const Points& more) {
 
 class PartReader {
  public:
-  explicit PartReader(const InputFile& file)
+  PartReader(const InputFile& file, ModelPose pose)
       : file_(read_gltf(file)),
         accessors_(read_accessors(file_)),
-        scene_(read_scene(file_, accessors_)),
+        scene_(read_scene(file_, accessors_, pose)),
         meshes_(file_.root().elements("meshes")) {}
 
   PartPoints read(const RigidPart& part) const {
@@ -82,11 +82,9 @@ class PartReader {
   std::vector<GltfPart> meshes_;
 };
 
-}  // namespace
-
-std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
-                                        const Progress& progress) {
-  const PartReader reader(file);
+std::vector<PartPoints> find_parts_in(ModelPose pose, const InputFile& file,
+                                      const std::vector<RigidPart>& parts, const Progress& progress) {
+  const PartReader reader(file, pose);
   std::vector<PartPoints> result;
   for (const RigidPart& part : parts) {
     progress.check();
@@ -95,8 +93,20 @@ std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector
   return result;
 }
 
-std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices) {
-  const std::map<std::array<double, 3>, std::string> names = PartReader(file).names_of_places();
+}  // namespace
+
+std::vector<PartPoints> find_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                        const Progress& progress) {
+  return find_parts_in(ModelPose::shown, file, parts, progress);
+}
+
+std::vector<PartPoints> find_stored_gltf_parts(const InputFile& file, const std::vector<RigidPart>& parts,
+                                               const Progress& progress) {
+  return find_parts_in(ModelPose::stored, file, parts, progress);
+}
+
+std::vector<std::string> find_gltf_groups(const InputFile& file, const Points& vertices, ModelPose pose) {
+  const std::map<std::array<double, 3>, std::string> names = PartReader(file, pose).names_of_places();
   std::vector<std::string> groups;
   for (const auto& x : vertices.colwise()) {
     const auto at = names.find({x[0], x[1], x[2]});

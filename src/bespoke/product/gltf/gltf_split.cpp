@@ -82,10 +82,10 @@ struct GltfUses {
 
 class GltfSplitter {
  public:
-  GltfSplitter(GltfFile& file, const FaceSplits& splits)
+  GltfSplitter(GltfFile& file, const FaceSplits& splits, ModelPose pose)
       : file_(file),
         accessors_(read_accessors(file)),
-        scene_(read_scene(file, accessors_)),
+        scene_(read_scene(file, accessors_, pose)),
         triangles_(shown_triangles(file, accessors_, scene_)),
         lines_(shown_lines(file, accessors_, scene_)),
         split_lines_(triangles_, lines_, splits),
@@ -360,20 +360,28 @@ class GltfSplitter {
   std::optional<std::size_t> buffer_;   ///< once there are new values
 };
 
-}  // namespace
-
-void split_gltf(const InputFile& input, const FaceSplits& splits, OutputFile& output) {
+void split_in(ModelPose pose, const InputFile& input, const FaceSplits& splits, OutputFile& output) {
   GltfFile file = read_gltf(input);
   const GltfPlan plan =
-      plan_gltf(file, read_accessors(file));  // refuses what could not be carried afterwards
+      plan_gltf(file, read_accessors(file), pose);  // refuses what could not be carried afterwards
   for (const GltfPlacement& place : plan.places)
     if (!place.of_vertices.empty())
       throw InvalidInput(input.path().string() +
                          ": shows a skinned mesh in another pose than its bind pose, in which edges are not "
-                         "split; export it without its skin, or in its bind pose");
-  GltfSplitter splitter(file, splits);
+                         "split; take it as it is stored (--pose stored), or export it without its skin");
+  GltfSplitter splitter(file, splits, pose);
   splitter.run();
   write_gltf(file, splitter.text(), file.buffers.front(), output);
+}
+
+}  // namespace
+
+void split_gltf(const InputFile& input, const FaceSplits& splits, OutputFile& output) {
+  split_in(ModelPose::shown, input, splits, output);
+}
+
+void split_stored_gltf(const InputFile& input, const FaceSplits& splits, OutputFile& output) {
+  split_in(ModelPose::stored, input, splits, output);
 }
 
 }  // namespace bespoke
