@@ -1,5 +1,6 @@
 import { pick_page } from "./pick/pick_page";
 import { decode_scene } from "./scene/decode";
+import { seam_page } from "./seams/seam_page";
 import { view_page } from "./view/view_page";
 
 async function start(): Promise<void> {
@@ -8,6 +9,7 @@ async function start(): Promise<void> {
   document.title = `${record.title} – bespoke`;
   root.replaceChildren();
   if (record.page === "view") view_page(root, record, bytes);
+  else if (record.page === "seams") seam_page(root, record, bytes);
   else pick_page(root, record, bytes);
   document.documentElement.dataset.ready = "yes";
 }

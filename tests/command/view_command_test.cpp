@@ -71,6 +71,77 @@ TEST(ViewCommand, RefusesOtherModelsAndFindings) {
   EXPECT_FALSE(pair.has("view.html"));
 }
 
+TEST(ViewCommand, ShowsThePiecesOfItsProducts) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto view = [&](const std::string& product, const std::string& pattern) {
+    return bespoke({"view", pair.file("map.vdb"), "--source", pair.file("source.obj"), "--target",
+                    pair.file("target.obj"), "--product", pair.file(product), "--pattern", pair.file(pattern),
+                    "-o", pair.file("view.html")});
+  };
+  // Two triangles around the source, which is about the origin.
+  write_text(pair.file("square.obj"), "v 0 0 0\nv 0.2 0 0\nv 0.2 0.2 0\nv 0 0.2 0\nf 1 2 3 4\n");
+  ASSERT_EQ(
+      bespoke({"flatten", pair.file("square.obj"), "--unit", "cm", "-o", pair.file("pieces.json")}).exit_code,
+      0);
+  const ProgramResult result = view("square.obj", "pieces.json");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProgramResult other = view("product.obj", "pieces.json");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("pieces.json: its pieces are not the"));
+  EXPECT_THAT(view("square.obj", "anchors.json").err, HasSubstr("is no pattern"));
+}
+
+TEST(ViewCommand, ShowsProductsThatAreKeptClear) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
+  const auto view = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"view",     pair.file("map.vdb"),    "--source",  pair.file("source.obj"),
+                                   "--target", pair.file("target.obj"), "--product", pair.file("product.obj"),
+                                   "-o",       pair.file("view.html")};
+    words.insert(words.end(), more.begin(), more.end());
+    return bespoke(words);
+  };
+  const ProgramResult kept = view({"--clearance", "keep"});
+  EXPECT_EQ(kept.exit_code, 0) << kept.err;
+  EXPECT_THAT(kept.out, HasSubstr("product.obj: clearance: of "));
+  EXPECT_THAT(view({}).out, Not(HasSubstr("clearance")));
+  EXPECT_EQ(view({"--clearance", "near"}).exit_code, 1);
+  EXPECT_EQ(view({"--layers"}).exit_code, 1);
+}
+
+TEST(PickCommand, WritesAPageForSeams) {
+  const ExamplePair pair;
+  if (!has_pages(pair)) GTEST_SKIP() << "built without pages";
+  const auto pick = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"pick", pair.file("product.obj"), "-o", pair.file("seams.html")};
+    words.insert(words.end(), more.begin(), more.end());
+    return bespoke(words);
+  };
+  EXPECT_EQ(pick({"--seams"}).exit_code, 0);
+  EXPECT_THAT(read_text(pair.file("seams.html")), HasSubstr("<!doctype html>"));
+  write_text(pair.file("seams.json"), R"({"seams":[{"edges":[[1,2]]}]})");
+  EXPECT_EQ(pick({"--seams", pair.file("seams.json")}).exit_code, 0);
+  write_text(pair.file("bad.json"), R"({"seams":[{"edges":[[1,99999]]}]})");
+  EXPECT_THAT(pick({"--seams", pair.file("bad.json")}).err, HasSubstr("vertex 99999 is none"));
+}
+
+TEST(PickCommand, RefusesModelsThatDoNotSuit) {
+  const ExamplePair pair;
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"pick", pair.file("source.obj"), "-o", pair.file("pick.html")};
+    words.insert(words.end(), more.begin(), more.end());
+    const ProgramResult result = bespoke(words);
+    EXPECT_EQ(result.exit_code, 1);
+    return result.err;
+  };
+  EXPECT_THAT(refusal({}), HasSubstr("B: is required"));
+  EXPECT_THAT(refusal({pair.file("target.obj"), "--seams"}), HasSubstr("is a second"));
+  EXPECT_THAT(refusal({"--anchors", pair.file("anchors.json"), "--seams"}), HasSubstr("excludes --anchors"));
+}
+
 TEST(ReportCommand, WritesPicturesBesideMarkdownAndIntoHtml) {
   const ExamplePair pair;
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);

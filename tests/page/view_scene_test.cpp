@@ -24,10 +24,14 @@ struct Scenery {
   TriangleMesh target = test::sphere(Vector3(0.9, 0.1, 0.1), 0.6, 2);
   std::vector<NamedProduct> products{{"ring.obj", test::sphere(Vector3(0.2, -0.4, -0.2), 0.7, 2)}};
   FitFindings findings;
+  std::vector<ProductPattern> patterns;
+  std::vector<Points> corrected;
+  std::vector<std::string> notes;
 
   UnpackedScene scene(const ViewOptions& options = {}) const {
-    return unpacked(
-        view_scene({asset, source, target, products, findings, "map.vdb", "bespoke view map.vdb"}, options));
+    return unpacked(view_scene({asset, source, target, products, findings, "map.vdb", "bespoke view map.vdb",
+                                patterns, corrected, notes},
+                               options));
   }
 };
 
@@ -120,6 +124,77 @@ TEST(ViewScene, ColoursBySourceTargetProductAndFindings) {
   EXPECT_EQ(scene.record["anchors"].size(), 2u);
   EXPECT_EQ(scene.record["levels"].size(), 2u);
   EXPECT_TRUE(scene.record["quality"].contains("hausdorff"));
+}
+
+/// All triangles of a mesh as one piece, its x and y in place of a flattening.
+WrittenPattern shadow_of(const TriangleMesh& mesh) {
+  WrittenPiece piece{"shadow", mesh.vertices, mesh.faces, {0, 1, 2}, {}, {}};
+  piece.places.row(2).setZero();
+  for (int f = 0; f < mesh.faces.cols(); ++f) {
+    piece.product_faces.push_back(f);
+    piece.strain.push_back(0.001 * f);
+  }
+  return {"pieces.json", {piece}};
+}
+
+TEST(ViewScene, HasThePiecesOfItsProductsWhichStayWhole) {
+  Scenery scenery;
+  EXPECT_EQ(scenery.scene().record["patterns"], nlohmann::json::array());
+  scenery.products.push_back({"ball.obj", test::sphere(Vector3(0.2, -0.4, -0.2), 0.8, 4)});
+  const TriangleMesh& ball = scenery.products[1].mesh;
+  scenery.patterns = {{1, shadow_of(ball)}};
+  const UnpackedScene scene = scenery.scene({.max_faces = 2000});
+  EXPECT_TRUE(scene.record["meshes"][3]["original"].is_null());
+  ASSERT_EQ(scene.record["patterns"].size(), 1u);
+  EXPECT_EQ(scene.record["patterns"][0]["mesh"], 3);
+  const nlohmann::json& piece = scene.record["patterns"][0]["pieces"].at(0);
+  EXPECT_EQ(piece["name"], "shadow");
+  EXPECT_EQ(scene.numbers(piece["outline"]), (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(scene.numbers(piece["product_faces"]).size(), static_cast<std::size_t>(ball.faces.cols()));
+  EXPECT_LT((scene.points(piece["places"]) - scenery.patterns[0].pattern.pieces[0].places)
+                .colwise()
+                .norm()
+                .maxCoeff(),
+            1e-4);
+}
+
+TEST(ViewScene, EndsWhereProductsAreCorrected) {
+  Scenery scenery;
+  const auto ids = [](const UnpackedScene& scene) {
+    std::set<std::string> found;
+    for (const nlohmann::json& field : scene.record["meshes"][2]["fields"]) found.insert(field["id"]);
+    return found;
+  };
+  EXPECT_EQ(ids(scenery.scene()).count("moved"), 0u);
+  const TriangleMesh& ring = scenery.products[0].mesh;
+  const Points carried = scenery.asset.target_from_source * loaded_chain(scenery.asset.steps)(ring.vertices);
+  scenery.corrected = {carried.colwise() + Vector3(0.02, 0, 0)};
+  scenery.notes = {"ring.obj: moved"};
+  const UnpackedScene scene = scenery.scene();
+  EXPECT_THAT((std::set<std::string>{"moved", "clearance_carried", "clearance_after"}),
+              IsSubsetOf(ids(scene)));
+  const nlohmann::json& mesh = scene.record["meshes"][2];
+  const Points start = composed(scene, mesh, scenery.asset, 0), end = composed(scene, mesh, scenery.asset, 1);
+  EXPECT_LT((start - ring.vertices).colwise().norm().maxCoeff(), 1e-4);
+  EXPECT_LT((end - scenery.corrected[0]).colwise().norm().maxCoeff(), 1e-4);
+  EXPECT_EQ(scene.record["notes"].back(), "ring.obj: moved");
+  for (const nlohmann::json& field : mesh["fields"])
+    if (field["id"] == "moved") {
+      EXPECT_NEAR(field["values"]["min"].get<double>(), 0.02, 1e-9);
+      EXPECT_NEAR(field["values"]["max"].get<double>(), 0.02, 1e-9);
+    }
+  scenery.corrected.push_back(carried);
+  EXPECT_THROW(scenery.scene(), InvalidInput);
+  scenery.corrected = {carried.leftCols(3)};
+  EXPECT_THROW(scenery.scene(), InvalidInput);
+}
+
+TEST(ViewScene, RefusesPatternsOfOtherProducts) {
+  Scenery scenery;
+  scenery.patterns = {{1, shadow_of(scenery.products[0].mesh)}};
+  EXPECT_THROW(scenery.scene(), InvalidInput);
+  scenery.patterns = {{0, shadow_of(scenery.source)}};
+  EXPECT_THROW(scenery.scene(), InvalidInput);
 }
 
 TEST(ViewScene, RefusesFindingsOfAnotherSource) {

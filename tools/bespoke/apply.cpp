@@ -305,6 +305,7 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
   add_shape_options(*apply, *arguments);
   add_rig_options(*apply, *arguments);
   add_clearance_options(*apply, arguments->clearance);
+  add_require_clear(*apply, arguments->clearance);
   add_run_options(*apply, arguments->run);
   apply->footer(
       "Examples:\n"

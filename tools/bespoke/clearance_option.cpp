@@ -68,15 +68,18 @@ ModelSizes sizes_of(const OpenedMap& map) {
 
 }  // namespace
 
-void add_clearance_options(CLI::App& apply, ClearanceOption& option) {
-  apply.add_option("--clearance", option.distance, std::string(clearance_help) + " (default: off)")
+void add_clearance_options(CLI::App& app, ClearanceOption& option) {
+  app.add_option("--clearance", option.distance, std::string(clearance_help) + " (default: off)")
       ->type_name("keep|same|LENGTH|off");
-  apply.add_flag("--require-clear", option.require_clear, require_clear_help);
-  apply.add_flag(
+  app.add_flag(
       "--layers", option.layers,
       "The products are layers, from the inside to the outside, in the order of the call: each keeps "
       "its order and its distance to those before it. Pairs that pass through each other on the "
       "source are listed and left (default: the order in which they lie over each other on the source)");
+}
+
+void add_require_clear(CLI::App& app, ClearanceOption& option) {
+  app.add_flag("--require-clear", option.require_clear, require_clear_help);
 }
 
 void require_valid(const ClearanceOption& option) {

@@ -26,7 +26,11 @@ inline constexpr const char* clearance_help =
 inline constexpr const char* require_clear_help =
     "Exit with code 3 if a product is not clear although it was corrected; it is written all the same";
 
-void add_clearance_options(CLI::App& apply, ClearanceOption& option);
+/// Adds --clearance and --layers.
+void add_clearance_options(CLI::App& app, ClearanceOption& option);
+
+/// Adds --require-clear.
+void add_require_clear(CLI::App& app, ClearanceOption& option);
 
 /// Throws CLI::ValidationError for a distance that is none, and for what needs one.
 void require_valid(const ClearanceOption& option);

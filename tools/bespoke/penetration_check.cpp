@@ -48,15 +48,19 @@ std::string PenetrationCheck::operator()(const std::string& product, const Opene
   return new_penetration.is_notable() ? to_string(new_penetration) : std::string();
 }
 
-void warn_of_penetration(const RunContext& context, const MapModels& models) {
+void warn_of_penetration(const RunContext& context, const MapModels& models,
+                         const std::vector<Points>& corrected) {
   if (models.products.empty()) return;
   const ElasticChain elastic = baked_chain(models.asset.steps);
   const SignedDistance from_source(models.source), from_target(models.target);
-  for (const NamedProduct& product : models.products) {
+  for (std::size_t i = 0; i < models.products.size(); ++i) {
     context.progress.check();
+    const NamedProduct& product = models.products[i];
+    const Points after = corrected.empty()
+                             ? Points(models.asset.target_from_source * elastic(product.mesh.vertices))
+                             : corrected[i];
     const NewPenetration new_penetration = product_new_penetration(
-        {product.mesh, product.line_edges}, models.asset.target_from_source * elastic(product.mesh.vertices),
-        {models.source, models.target, from_source, from_target});
+        {product.mesh, product.line_edges}, after, {models.source, models.target, from_source, from_target});
     if (new_penetration.is_notable())
       context.warn(product.name + ": " + to_string(new_penetration), Entry::product_inside_the_target);
   }

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bespoke/pipeline/open_map.h"
 #include "map_models.h"
@@ -29,7 +30,9 @@ class PenetrationCheck {
   std::unique_ptr<const Models> models_;
 };
 
-/// Warns of the products that penetrate their target.
-void warn_of_penetration(const RunContext& context, const MapModels& models);
+/// Warns of the products that penetrate their target. corrected: where they are in place of where the map
+/// takes them, 3×n each, in the order of the products; or empty.
+void warn_of_penetration(const RunContext& context, const MapModels& models,
+                         const std::vector<Points>& corrected = {});
 
 }  // namespace bespoke::command

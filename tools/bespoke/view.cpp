@@ -6,7 +6,9 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/page/view_scene.h"
+#include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/mesh_io.h"
+#include "clearance_option.h"
 #include "commands.h"
 #include "help.h"
 #include "map_models.h"
@@ -20,25 +22,72 @@ namespace {
 
 struct ViewArguments {
   MapModelArguments models;
+  std::vector<std::string> patterns;
+  ClearanceOption clearance;
   std::string output;
   std::size_t max_faces = ViewOptions{}.max_faces;
   RunOptions run;
 };
 
+std::vector<JobFile> inputs(const ViewArguments& arguments) {
+  std::vector<JobFile> files = inputs_of(arguments.models);
+  for (const std::string& pattern : arguments.patterns) files.push_back({"pattern", pattern});
+  return files;
+}
+
 std::vector<JobFile> outputs(const ViewArguments& arguments) { return {{"output", arguments.output}}; }
+
+/// Products where --clearance takes them, in their order, and what was found; or empty.
+struct CorrectedProducts {
+  std::vector<Points> places;  ///< 3×n, target frame
+  std::vector<ProductClearance> found;
+};
+
+CorrectedProducts corrected_products(const ViewArguments& arguments, const MapModels& models) {
+  CorrectedProducts corrected;
+  if (!arguments.clearance.is_used()) return corrected;
+  const OpenedMap map =
+      open_map(arguments.models.map, MapForm::grids, {.untrusted = arguments.models.untrusted});
+  ClearanceKeeper keeper(arguments.clearance, {}, arguments.models.unit);
+  const std::vector<std::string>& names = arguments.models.products;
+  corrected.places.resize(names.size());
+  corrected.found.resize(names.size());
+  for (const std::size_t i : keeper.order(names, map)) {
+    const OpenedMap own = keeper.corrected(names[i], map);
+    corrected.places[i] = own.target_from_source * (*own.elastic)(models.products[i].mesh.vertices);
+    corrected.found[i] = *keeper.last();
+  }
+  return corrected;
+}
+
+std::vector<std::string> notes_of(const std::vector<ProductClearance>& found) {
+  std::vector<std::string> notes;
+  for (const ProductClearance& product : found) {
+    notes.push_back(product.product + ": " + to_string(product.summary));
+    for (const LayerContact& contact : product.layers) notes.push_back(to_string(contact));
+  }
+  return notes;
+}
 
 void run(const ViewArguments& arguments, const RunContext& context) {
   require_pages();
-  require_safe_outputs(inputs_of(arguments.models), outputs(arguments));
+  require_safe_outputs(inputs(arguments), outputs(arguments));
+  std::vector<ProductPattern> patterns;
+  for (const std::string& path : arguments.patterns)
+    patterns.push_back({patterns.size(), read_pattern(path)});
   const MapModels models = read_map_models(arguments.models);
+  const CorrectedProducts corrected = corrected_products(arguments, models);
   const std::string scene =
       view_scene({models.asset, models.source, models.target, models.products, models.findings,
-                  std::filesystem::path(arguments.models.map).filename().string(), context.command},
+                  std::filesystem::path(arguments.models.map).filename().string(), context.command,
+                  std::move(patterns), corrected.places, notes_of(corrected.found)},
                  {.max_faces = arguments.max_faces}, context.progress);
   OutputFiles files;
   files.write_text(arguments.output, whole_page(scene));
   files.keep();
-  warn_of_penetration(context, models);
+  if (!arguments.run.quiet)
+    for (const ProductClearance& found : corrected.found) print_clearance(found.product, found);
+  warn_of_penetration(context, models, corrected.places);
 }
 
 }  // namespace
@@ -49,6 +98,12 @@ void add_view_command(CLI::App& app, const PlanHandler& handle_plan) {
       app.add_subcommand("view", "Write a page that shows a map in a browser, to judge it by eye");
   begin_group(*view, input_group);
   add_map_model_options(*view, arguments->models);
+  view->add_option(
+          "--pattern", arguments->patterns,
+          "Flat pieces of the products, in their order, as `flatten -o pieces.json` writes them: shown "
+          "beside, with the place of the pointer on both")
+      ->type_name("PIECES.json");
+  add_clearance_options(*view, arguments->clearance);
   begin_group(*view, output_group);
   view->add_option("-o,--output", arguments->output, page_help)->required()->type_name("PAGE.html");
   view->add_option(
@@ -60,13 +115,18 @@ void add_view_command(CLI::App& app, const PlanHandler& handle_plan) {
   view->footer(
       "Examples:\n"
       "  bespoke view dress.vdb --source woman.obj --target man.obj --product dress.obj -o dress.html\n"
+      "  bespoke view dress.vdb --source woman.obj --target man.obj --product dress.obj --pattern "
+      "pieces.json -o "
+      "dress.html\n"
+      "  bespoke view map.vdb --source woman.obj --target man.obj --product shirt.obj --product jacket.obj "
+      "--clearance keep -o outfit.html\n"
       "  bespoke view map.vdb --source a.obj --target b.obj --confidence a.conf --fit-report fit.json -o "
       "map.html");
   view->callback([arguments, handle_plan] {
     const ViewArguments given = std::exchange(*arguments, {});
-    handle_plan({given.run, inputs_of(given.models), outputs(given), {}, [given](const RunContext& c) {
-                   run(given, c);
-                 }});
+    require_valid(given.clearance);
+    handle_plan(
+        {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });
 }
 

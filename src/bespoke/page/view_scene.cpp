@@ -64,6 +64,7 @@ class SceneMaker {
                                   {"value", nullptr}});
     record["lattice"] = lattice();
     record["levels"] = levels();
+    record["patterns"] = patterns();
     record["info"] = Json::parse(inspection_json(input_.asset));
     record["quality"] = quality(progress);
     record["notes"] = {
@@ -71,6 +72,7 @@ class SceneMaker {
         "apply writes, at every t.",
         "Values are those at vertices. Stretch is of the surface, clearance the distance from the model with "
         "its side; grey is not known."};
+    for (const std::string& note : input_.notes) record["notes"].push_back(note);
     return packed_scene(record, arrays_);
   }
 
@@ -103,9 +105,9 @@ class SceneMaker {
     progress.step("colours", 0, input_.products.size() + 2);
     meshes.push_back(source_mesh(from_target));
     meshes.push_back(target_mesh());
-    for (const NamedProduct& product : input_.products) {
+    for (std::size_t i = 0; i < input_.products.size(); ++i) {
       progress.step("colours", meshes.size(), input_.products.size() + 2);
-      meshes.push_back(product_mesh(product, from_source, from_target));
+      meshes.push_back(product_mesh(i, from_source, from_target));
     }
     return meshes;
   }
@@ -153,14 +155,31 @@ class SceneMaker {
                   {distance_field("source_distance", "distance to the source, carried", from_carried, x)});
   }
 
-  Json product_mesh(const NamedProduct& product, const SignedDistance& from_source,
+  /// Pieces name the triangles of their product, so that stays whole.
+  std::size_t faces_for_product(std::size_t number) const {
+    const TriangleMesh& mesh = input_.products[number].mesh;
+    for (const ProductPattern& pattern : input_.patterns)
+      if (pattern.product == number) return static_cast<std::size_t>(mesh.faces.cols());
+    return faces_for(mesh);
+  }
+
+  Json product_mesh(std::size_t number, const SignedDistance& from_source,
                     const SignedDistance& from_target) {
-    const DisplayMesh display = display_mesh(product.mesh, faces_for(product.mesh));
-    const Points x = display.shown(product.mesh.vertices);
-    std::vector<VertexField> fields = clearance_fields(from_source, from_target, x, carried(x));
+    const NamedProduct& product = input_.products[number];
+    const DisplayMesh display = display_mesh(product.mesh, faces_for_product(number));
+    const Points x = display.shown(product.mesh.vertices), as_carried = carried(x);
+    const bool is_corrected = !input_.corrected.empty();
+    const Points after = is_corrected ? display.shown(input_.corrected[number]) : as_carried;
+    std::vector<VertexField> fields = clearance_fields(from_source, from_target, x, after);
+    if (is_corrected) {
+      fields.push_back(carried_clearance_field(from_target, as_carried));
+      fields.push_back(move_field(as_carried, after));
+    }
     for (VertexField& field : deformation_fields(chain_, x, display.shown(vertex_normals(product.mesh))))
       fields.push_back(std::move(field));
-    return record("product", product.name, product.mesh, display, at_knots(x), fields);
+    std::vector<Points> knots = at_knots(x);
+    if (is_corrected) knots.back() = inverse(rigid_) * after;
+    return record("product", product.name, product.mesh, display, knots, fields);
   }
 
   Json record(const char* role, const std::string& name, const TriangleMesh& whole,
@@ -231,6 +250,29 @@ class SceneMaker {
     return list;
   }
 
+  Json piece(const WrittenPiece& piece) {
+    const auto numbers = [&](const std::vector<int>& all) {
+      return arrays_.add(std::vector<std::uint32_t>(all.begin(), all.end()), 32);
+    };
+    return {{"name", piece.name},
+            {"places", arrays_.add_points(piece.places)},
+            {"faces", arrays_.add_faces(piece.faces)},
+            {"outline", numbers(piece.outline)},
+            {"product_faces", numbers(piece.product_faces)},
+            {"strain", arrays_.add_values(piece.strain)}};
+  }
+
+  Json patterns() {
+    constexpr std::size_t first_product = 2;  // behind source and target
+    Json list = Json::array();
+    for (const ProductPattern& of_product : input_.patterns) {
+      Json pieces = Json::array();
+      for (const WrittenPiece& written : of_product.pattern.pieces) pieces.push_back(piece(written));
+      list.push_back({{"mesh", first_product + of_product.product}, {"pieces", std::move(pieces)}});
+    }
+    return list;
+  }
+
   Json quality(const Progress& progress) const {
     return Json::parse(quality_json(input_quality(input_, chain_, progress), product_names(input_),
                                     input_.asset.record.unit));
@@ -252,6 +294,19 @@ std::string view_scene(const ViewInput& input, const ViewOptions& options, const
   if (options.max_faces == 0 || options.space_samples < 8)
     throw InvalidInput("a scene of " + std::to_string(options.max_faces) + " faces and " +
                        std::to_string(options.space_samples) + " samples of space: at least 1 and 8");
+  for (const ProductPattern& of_product : input.patterns) {
+    if (of_product.product >= input.products.size())
+      throw InvalidInput(of_product.pattern.path + ": there is no product that its pieces are of");
+    const NamedProduct& product = input.products[of_product.product];
+    require_pattern_of(of_product.pattern, product.name, product.mesh.faces.cols());
+  }
+  if (!input.corrected.empty() && input.corrected.size() != input.products.size())
+    throw InvalidInput(std::to_string(input.corrected.size()) + " corrected products of " +
+                       std::to_string(input.products.size()));
+  for (std::size_t i = 0; i < input.corrected.size(); ++i)
+    if (input.corrected[i].cols() != input.products[i].mesh.vertices.cols())
+      throw InvalidInput(input.products[i].name + ": " + std::to_string(input.corrected[i].cols()) +
+                         " corrected vertices of " + std::to_string(input.products[i].mesh.vertices.cols()));
   return SceneMaker(input, options).make(progress);
 }
 

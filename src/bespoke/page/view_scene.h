@@ -6,10 +6,17 @@
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/page/fit_findings.h"
+#include "bespoke/pattern/read_pattern.h"
 #include "bespoke/progress.h"
 #include "bespoke/quality/mapping_quality.h"
 
 namespace bespoke {
+
+/// The flat pieces of one of the products.
+struct ProductPattern {
+  std::size_t product = 0;  ///< its number in `ViewInput::products`
+  WrittenPattern pattern;
+};
 
 /// A map with what it joins and carries, to be looked at.
 struct ViewInput {
@@ -20,6 +27,9 @@ struct ViewInput {
   const FitFindings& findings;
   std::string title;
   std::string command;  ///< that made the page, as one would type it
+  std::vector<ProductPattern> patterns = {};
+  std::vector<Points> corrected = {};   ///< 3×n, target frame: where every product is at the end; or empty
+  std::vector<std::string> notes = {};  ///< on what was done, for a person
 };
 
 struct ViewOptions {
@@ -32,8 +42,8 @@ struct ViewOptions {
 /// The scene of the page `view` (README.md, "The scene"). Points of the meshes are carried exactly, then
 /// rounded to 16 bits a coordinate: at every t they lie within 1e-5 of their mesh's bounding-box diagonal of
 /// what `apply` writes, for the page composes Ψ(t) itself, from knots between which the elastic part is
-/// straight. Throws InvalidInput for models that are not valid, options out of range, or findings of another
-/// source; Interrupted.
+/// straight. A product with a pattern is not decimated. Throws InvalidInput for models that are not valid,
+/// options out of range, findings of another source, or patterns and places of other products; Interrupted.
 std::string view_scene(const ViewInput& input, const ViewOptions& options = {},
                        const Progress& progress = {});
 

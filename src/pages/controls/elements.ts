@@ -101,3 +101,10 @@ export function theme_button(changed: () => void): HTMLButtonElement {
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
   return element("button", { type: "button", title: "Light or dark colours", "aria-label": "Light or dark colours", onclick: flip }, "◐");
 }
+
+/** A file that the browser puts where it puts downloads. */
+export function save_text(name: string, text: string): void {
+  const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 1000);
+}

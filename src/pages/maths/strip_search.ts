@@ -5,7 +5,7 @@ import type { Strip } from "./unfolded_strip";
 const points_per_edge = 2;
 
 /** Numbers by priority, the least first: a binary heap. */
-class Queue {
+export class Queue {
   private readonly keys: number[] = [];
   private readonly values: number[] = [];
 

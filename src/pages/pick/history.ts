@@ -1,5 +1,6 @@
 import type { Triple } from "../scene/scene";
 import type { PickedCurve } from "./curves";
+import { UndoLog } from "./undo_log";
 
 /** A pair as it is being picked: either end may still be missing. */
 export interface PickedPair {
@@ -34,25 +35,10 @@ function copy_of({ pairs, curves, patches }: Work): Work {
   return { pairs: pairs.map((pair) => ({ ...pair })), curves: curves.map((curve) => ({ ...curve })), patches };
 }
 
-/** The work with everything that can be undone; every change is kept in the browser's storage. */
-export class History {
-  private past: Work[] = [];
-  private future: Work[] = [];
-
-  constructor(private readonly key: string, public work: Work, read: (kept: string) => Work, private readonly changed: () => void) {
-    try {
-      const kept = localStorage.getItem(key);
-      if (kept !== null) this.work = read(kept);
-    } catch {
-      // A browser that keeps nothing for files: the page works, a reload begins anew.
-    }
-  }
-
-  get can_undo(): boolean {
-    return this.past.length > 0;
-  }
-  get can_redo(): boolean {
-    return this.future.length > 0;
+/** The pairs, curves and patches, with everything that can be undone. */
+export class History extends UndoLog<Work> {
+  constructor(key: string, work: Work, read: (kept: string) => Work, changed: () => void) {
+    super(key, work, read, copy_of, changed);
   }
 
   get pairs(): PickedPair[] {
@@ -60,43 +46,5 @@ export class History {
   }
   get curves(): PickedCurve[] {
     return this.work.curves;
-  }
-
-  /** Changes the work; what `edit` leaves is the new state, and what was there before can be had back. */
-  change(edit: (work: Work) => void): void {
-    this.past.push(copy_of(this.work));
-    this.future = [];
-    edit(this.work);
-    this.keep();
-  }
-
-  /** While a point is dragged: the same step, again and again. */
-  change_again(edit: (work: Work) => void): void {
-    edit(this.work);
-    this.keep();
-  }
-
-  undo(): void {
-    this.step(this.past, this.future);
-  }
-  redo(): void {
-    this.step(this.future, this.past);
-  }
-
-  private step(from: Work[], to: Work[]): void {
-    const next = from.pop();
-    if (next === undefined) return;
-    to.push(this.work);
-    this.work = next;
-    this.keep();
-  }
-
-  private keep(): void {
-    try {
-      localStorage.setItem(this.key, JSON.stringify(this.work));
-    } catch {
-      // As above.
-    }
-    this.changed();
   }
 }

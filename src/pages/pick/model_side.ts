@@ -18,6 +18,8 @@ export type DragMode = "surface" | "normal" | "view";
 export interface SideListener {
   /** reach: what a finger or a mouse means by "there", mesh units. */
   clicked(point: Triple, reach: number): void;
+  /** Beside the model, in pixels of the canvas. */
+  missed?(x: number, y: number): void;
   chosen(number: number): void;
   drag_started(number: number): void;
   dragged(number: number, point: Triple): void;
@@ -129,6 +131,7 @@ export class ModelSide {
     if (marker !== null) return this.listener.chosen(marker.number);
     const point = this.surface_point(x, y);
     if (point !== null) this.listener.clicked(point, grab_radius * this.stage.pixel_length(this.stage.panes[0]));
+    else this.listener.missed?.(x, y);
   }
 
   private surface_point(x: number, y: number): Triple | null {

@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 
-import { button_group, checkbox, element, tabs, theme_button } from "../controls/elements";
+import { button_group, checkbox, element, save_text, tabs, theme_button } from "../controls/elements";
 import { mirrored, symmetry_plane, type Plane } from "../maths/mirror";
 import { shown } from "../maths/numbers";
 import { distance } from "../maths/warp";
@@ -70,7 +70,7 @@ class PickPage {
     this.curve_panel = new CurvePanel(this.history, this.editor, stages, this.curve_message, mirror);
     const stage = element("main", { class: "stage pick" }, this.sides.a.box, this.sides.b.box);
     const files = new ModelsOfFiles(bytes, record.unit, { a: models[0], b: models[1] }, this.editor.tracers);
-    this.export_panel = new ExportPanel(() => this.history.work, record.unit, files, (name, text) => this.save(name, text));
+    this.export_panel = new ExportPanel(() => this.history.work, record.unit, files, save_text);
     this.import_panel = new ImportPanel(files, this.file_message, {
       read: (work, names) => this.take(work, names),
       refused: (reason) => this.say_of_files(`Nothing was imported: ${reason}.`, "warn"),
@@ -79,7 +79,7 @@ class PickPage {
     this.checks = check_pairs(this.history.pairs);
     root.classList.add("pick");
     root.append(this.head(), stage, this.panel());
-    document.addEventListener("keydown", (event) => this.shortcut(event));
+    document.addEventListener("keydown", (event) => this.history.shortcut(event));
     this.refresh();
     Object.assign(window, {
       bespoke: {
@@ -155,7 +155,7 @@ class PickPage {
       checkbox("Show where the next pair would help most", false, (on) => { this.has_hint = on; this.refresh(); }));
     const saving = element("section", {},
       element("h2", {}, "Save"),
-      element("p", {}, button("Save anchors.json", () => this.save("anchors.json", anchors_json(this.history.work, this.record.unit)), "main")),
+      element("p", {}, button("Save anchors.json", () => save_text("anchors.json", anchors_json(this.history.work, this.record.unit)), "main")),
       this.export_panel.body,
       element("h2", {}, "Then fit"), this.command,
       element("h2", {}, "Import"),
@@ -354,23 +354,7 @@ class PickPage {
     if (JSON.stringify(to.stage.view) !== before) to.stage.draw_soon();
   }
 
-  // ---- keys and files
-
-  private shortcut(event: KeyboardEvent): void {
-    const is_typing = event.target instanceof HTMLInputElement && event.target.type !== "checkbox";
-    if (is_typing || !(event.ctrlKey || event.metaKey)) return;
-    const key = event.key.toLowerCase();
-    if (key === "z" && !event.shiftKey) this.history.undo();
-    else if (key === "y" || (key === "z" && event.shiftKey)) this.history.redo();
-    else return;
-    event.preventDefault();
-  }
-
-  private save(name: string, text: string): void {
-    const url = URL.createObjectURL(new Blob([text], { type: "text/plain" }));
-    element("a", { href: url, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(url), 1000);
-  }
+  // ---- files
 
   /** Lists that a file has no place for stay as they were; so do patches, for which only JSON has one. */
   private take(work: Partial<Work>, files: string): void {

@@ -113,6 +113,7 @@ export interface ViewRecord {
   places: PlaceRecord[];
   lattice: LatticeRecord;
   levels: LevelRecord[];
+  patterns: PatternRecord[];
   info: Record<string, unknown>;
   quality: Record<string, unknown>;
   notes: string[];
@@ -132,4 +133,38 @@ export interface PickRecord {
   anchors: { units: string; pairs: unknown[]; curves: unknown[]; patches: unknown[] } | null;
 }
 
-export type SceneRecord = ViewRecord | PickRecord;
+/** A piece of a pattern, flat, as `flatten -o pieces.json` wrote it. */
+export interface PieceRecord {
+  name: string;
+  /** x and y on the sheet, y up, millimetres; z is 0. */
+  places: PointsReference;
+  faces: ArrayReference;
+  /** Vertices along the border. */
+  outline: ArrayReference;
+  /** For every face the product's, by its number in the file as triangles. */
+  product_faces: ArrayReference;
+  /** For every face the larger |stretch − 1|. */
+  strain: ValuesReference;
+}
+
+/** The pieces of a product. */
+export interface PatternRecord {
+  /** In `meshes`. */
+  mesh: number;
+  pieces: PieceRecord[];
+}
+
+export interface SeamsRecord {
+  page: "seams";
+  title: string;
+  unit: string;
+  command: string;
+  /** Of the garment and the given seams: names a piece of work in the browser's storage. */
+  key: string;
+  garment_path: string;
+  meshes: MeshRecord[];
+  /** A seam file to begin with. */
+  seams: unknown;
+}
+
+export type SceneRecord = ViewRecord | PickRecord | SeamsRecord;

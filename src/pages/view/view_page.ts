@@ -6,6 +6,7 @@ import type { ViewRecord } from "../scene/scene";
 import { add_controls } from "../stage/controls";
 import { type Side, Stage } from "../stage/stage";
 import { Legend } from "./legend";
+import { PiecesPanel } from "./pieces_panel";
 import { default_range, type Field, joint_field, type Model } from "./models";
 import { anchor_panel, place_panel } from "./lists";
 import { object_view } from "./tables";
@@ -49,12 +50,15 @@ class ViewPage {
   private field: Field | null = null;
   private playing = false;
   private pins: Pin[] = [];
+  private readonly pieces: PiecesPanel | null;
 
   constructor(root: HTMLElement, private readonly record: ViewRecord, bytes: Uint8Array) {
     this.stage_box.append(this.canvas, this.legend.element, this.readout);
     root.append(this.head(), this.stage_box, this.time_bar());
     this.stage = new Stage(this.canvas);
     this.view = new ViewStage(this.stage, record, bytes, this.state);
+    const names = record.meshes.map((mesh) => mesh.name);
+    this.pieces = record.patterns.length === 0 ? null : new PiecesPanel(record.patterns, bytes, names, (mesh, faces) => this.view.highlight(mesh, faces));
     this.choose_first_field();
     root.append(this.panel());
     this.stage.on_draw(() => this.draw_pins());
@@ -104,6 +108,7 @@ class ViewPage {
         { title: "Colour", body: body(this.colour_controls, this.shown_controls(), this.clip_controls()) },
         { title: "Slices", body: body(this.slice_controls(), this.level_controls()) },
         { title: "Anchors", body: body(this.anchor_switch(), anchor_panel(this.record, (index) => this.choose_anchor(index))) },
+        ...(this.pieces === null ? [] : [{ title: "Pieces", body: this.pieces.body }]),
         { title: "Places", body: body(place_panel(this.record, (place) => this.view.fly_to(place.side === "source" ? new Vector3(...place.at) : null, new Vector3(...place.at)))) },
         { title: "Numbers", body: body(object_view(this.record.quality, this.record.unit, ["unit"])) },
         { title: "About", body: this.about() },
@@ -316,7 +321,7 @@ class ViewPage {
       if (waiting === null) requestAnimationFrame(() => { if (waiting !== null) this.hover(...waiting); waiting = null; });
       waiting = [x, y];
     };
-    add_controls(this.stage, { click: (x, y) => this.pin(x, y), hover, leave: () => { this.readout.hidden = true; waiting = null; } });
+    add_controls(this.stage, { click: (x, y) => this.pin(x, y), hover, leave: () => { this.readout.hidden = true; this.pieces?.show(-1, null); waiting = null; } });
     this.canvas.addEventListener("keydown", (event) => {
       const step = event.key === "[" ? -0.05 : event.key === "]" ? 0.05 : 0;
       if (event.key === " ") this.toggle_play();
@@ -339,6 +344,7 @@ class ViewPage {
 
   private hover(x: number, y: number): void {
     const found = this.view.find(x, y);
+    this.pieces?.show(found?.shown.index ?? -1, found?.hit.face ?? null);
     this.readout.hidden = found === null;
     if (found === null) return;
     const at = found.hit.point.toArray().map((value) => number_text(value)).join(", ");
@@ -406,6 +412,10 @@ class ViewPage {
         frames_drawn: () => this.stage.frames_drawn,
         view: () => structuredClone({ ...this.stage.view, centre: this.stage.view.centre.toArray() }),
         draw: () => this.stage.draw(),
+        piece_pixel: (mesh: number, face: number) => this.pieces?.pixel_of(mesh, face) ?? null,
+        highlighted_pieces: () => this.pieces?.highlights ?? [],
+        highlighted_faces: () => this.view.highlights,
+        pixel: (mesh: number, face: number) => this.view.pixel_of_face(mesh, face),
       },
     });
   }

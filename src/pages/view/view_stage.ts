@@ -14,6 +14,7 @@ import type { ViewState } from "./view_state";
 
 const level_colours = ["#30678d", "#2a9d8f", "#8ab17d", "#e9c46a", "#f4a261", "#c8553d", "#8d3b72", "#5b4b8a"];
 const anchor_colour = "#1d6fd1", suspicious_colour = "#d1491d";
+const highlight_colour = "#1d6fd1";
 const marker_lift = 0.005; // of the diagonal: in front of the surface, which would else cut them where it leans
 const start: Place = { knot: 0, fraction: 0 };
 
@@ -48,6 +49,8 @@ export class ViewStage {
   readonly motion: Motion;
   readonly samples: SpaceSamples;
   contents: PaneContent[] = [];
+  private readonly highlighted: { surface: Surface; shown: Shown }[] = [];
+  private highlighted_faces: number[] = [];
 
   constructor(readonly stage: Stage, readonly record: ViewRecord, readonly bytes: Uint8Array, readonly state: ViewState) {
     this.models = record.meshes.map((mesh) => new Model(mesh, bytes));
@@ -58,6 +61,7 @@ export class ViewStage {
 
   /** Panes anew: after another layout, or another way to show the rigid part. */
   lay_out(): void {
+    this.highlighted.splice(0).forEach(({ surface }) => surface.dispose());
     for (const content of this.contents) for (const shown of content.shown) shown.surface.dispose();
     const narrow = this.stage.canvas.clientWidth < 560;
     const whole = { left: 0, width: 1, top: 0, height: 1 };
@@ -108,6 +112,7 @@ export class ViewStage {
       this.update_extras(content);
       this.update_markers(content);
     }
+    this.move_highlighted();
     this.stage.draw_soon();
   }
 
@@ -194,6 +199,49 @@ export class ViewStage {
       moved(new Vector3(...anchor.image), standing).toArray(ends, 6 * i + 3);
     });
     content.extras.add(line_object(ends, [...Array(2 * points.length).keys()], "#d1491d"));
+  }
+
+  /** Shows faces of a model wherever it stands; none takes the last ones away. */
+  highlight(index: number, faces: number[]): void {
+    for (const { surface } of this.highlighted.splice(0)) {
+      surface.object.removeFromParent();
+      surface.dispose();
+    }
+    this.highlighted_faces = faces;
+    const model = this.models[index];
+    const vertices = faces.flatMap((face) => [...model.faces.subarray(3 * face, 3 * face + 3)]);
+    const knots = model.knots.map((places) => Float32Array.from(vertices.flatMap((vertex) => [...places.subarray(3 * vertex, 3 * vertex + 3)])));
+    for (const content of faces.length === 0 ? [] : this.contents)
+      for (const shown of content.shown) {
+        if (shown.index !== index) continue;
+        const surface = new Surface(knots, Uint32Array.from(vertices.keys()), highlight_colour);
+        Object.assign(surface.material, { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
+        content.pane.scene.add(surface.object);
+        this.highlighted.push({ surface, shown });
+      }
+    this.move_highlighted();
+    this.stage.draw_soon();
+  }
+
+  /** For tests: of the model, and in how many panes. */
+  get highlights(): { faces: number[]; panes: number } {
+    return { faces: this.highlighted_faces, panes: this.highlighted.length };
+  }
+
+  /** For tests: where the middle of a face is drawn first, pixels of the window. */
+  pixel_of_face(index: number, face: number): [number, number] {
+    const content = this.contents.find((each) => each.shown.some((shown) => shown.index === index)) as PaneContent;
+    const { surface } = content.shown.find((shown) => shown.index === index) as Shown;
+    const middle = new Vector3();
+    for (const vertex of surface.faces.subarray(3 * face, 3 * face + 3)) middle.addScaledVector(surface.at(vertex), 1 / 3);
+    const at = this.stage.pixel_of(content.pane, middle), box = this.stage.canvas.getBoundingClientRect();
+    return [box.left + at.x, box.top + at.y];
+  }
+
+  private move_highlighted(): void {
+    for (const { surface, shown } of this.highlighted)
+      if (shown.moves) surface.set_motion(this.motion.place(this.state.t), this.moving_pose());
+      else surface.set_motion(start, at_rest);
   }
 
   /** What a place of the canvas shows. */

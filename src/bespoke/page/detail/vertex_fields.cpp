@@ -83,6 +83,19 @@ std::vector<VertexField> clearance_fields(const SignedDistance& from_source,
   return {std::move(change), std::move(second), std::move(first)};
 }
 
+VertexField carried_clearance_field(const SignedDistance& from_target, const Points& carried) {
+  const SignedDistance::Values at_target = from_target(carried);
+  VertexField field{"clearance_carried", "clearance to the target, not corrected", true, 0, {}};
+  for (std::size_t v = 0; v < at_target.distance.size(); ++v)
+    field.values.push_back(at_target.sided[v] ? at_target.distance[v] : not_known);
+  return field;
+}
+
+VertexField move_field(const Points& carried, const Points& corrected) {
+  const Eigen::VectorXd moves = (corrected - carried).colwise().norm();
+  return {"moved", "moved by the correction", true, std::nullopt, {moves.begin(), moves.end()}};
+}
+
 VertexField distance_field(std::string id, std::string label, const SignedDistance& surface,
                            const Points& points) {
   VertexField field{std::move(id), std::move(label), true, std::nullopt, surface(points).distance};

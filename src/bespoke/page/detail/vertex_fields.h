@@ -34,6 +34,13 @@ std::vector<VertexField> clearance_fields(const SignedDistance& from_source,
                                           const SignedDistance& from_target, const Points& before,
                                           const Points& after);
 
+/// Signed distance from the target of a product as the map carries it, where it is corrected after that:
+/// field `clearance_carried`.
+VertexField carried_clearance_field(const SignedDistance& from_target, const Points& carried);
+
+/// How far a correction moves vertices: field `moved`.
+VertexField move_field(const Points& carried, const Points& corrected);
+
 /// Unsigned distance of points from a surface.
 VertexField distance_field(std::string id, std::string label, const SignedDistance& surface,
                            const Points& points);
