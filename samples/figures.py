@@ -1,9 +1,10 @@
-"""Draws the paper's Figs. 1, 4, 5, 6, 7, 8, 9 and 10 from what tools/figures made. Blender runs it:
+"""Draws the paper's Figs. 1 and 3 to 10, and a penetration, from what tools/figures made. Blender runs it:
 
     xvfb-run -a blender -b --python samples/figures.py -- build/figures
 
 Figs. 1 and 4 are drawn where the models stand; in the others targets are turned back into the source's position.
 """
+import json
 import math
 import sys
 from pathlib import Path
@@ -84,6 +85,79 @@ def row_of_views(name, pair, products, scale, turns, ball, height, step):
     draw(HERE / f"{name}.png")
 
 
+def flat_pieces(path):
+    """(vertices, faces, outline) of each piece on its sheet, centimetres, and the sheet's size."""
+    pieces = []
+    for piece in json.loads(path.read_text())["pieces"]:
+        places = (np.array(piece["vertices"]) + piece["on_sheet"]) / 10
+        pieces.append((np.column_stack([places, np.zeros(len(places))]), piece["faces"], piece["outline"]))
+    everywhere = np.concatenate([piece[0] for piece in pieces])
+    return pieces, everywhere.min(0), everywhere.max(0)
+
+
+def ribbon(points, width):
+    """A closed line in the plane as quadrilaterals in front of it."""
+    along = np.roll(points, -1, 0) - np.roll(points, 1, 0)
+    across = np.column_stack([-along[:, 1], along[:, 0], 0 * along[:, 0]])
+    across *= width / 2 / np.linalg.norm(across, axis=1)[:, None]
+    count, lift = len(points), np.array([0, 0, 0.5])
+    return (np.concatenate([points - across, points + across]) + lift,
+            [(k, (k + 1) % count, (k + 1) % count + count, k + count) for k in range(count)])
+
+
+def sheet(path, x, y, scale, material, line):
+    """The pieces of a pattern, their lower left corner at x and y."""
+    pieces, low, _ = flat_pieces(path)
+    frame = (Matrix.Translation((x, 0, y)) @ Matrix.Scale(scale, 4) @ Matrix.Rotation(math.pi / 2, 4, "X")
+             @ Matrix.Translation((-low[0], -low[1], 0)))
+    for vertices, faces, outline in pieces:
+        place(vertices, faces, material, frame)
+        place(*ribbon(vertices[outline], 1.2 / scale), line, frame)
+
+
+def from_model_to_pieces(name, pair, product):
+    """Fig. 3: both models with their anchors, the product on each, and the pieces of both."""
+    width, height, row_height = 1700, 1250, 700
+    start(width, height, width)
+    base, step = height / 2 - row_height + 50, width / 4
+    spots = [(k - 1.5) * step for k in range(4)]
+    stand([pair.source()], spots[0], base, 3.2, -25, pair.a, 1.6)
+    stand([pair.target()], spots[1], base, 3.2, -25, pair.b, 1.6)
+    stand(pair.on_source((product,)), spots[2], base, 3.2, -25)
+    stand(pair.on_target((product,)), spots[3], base, 3.2, -25)
+    for spot, label in zip(spots, ["source, anchors", "target, anchors", "the garment M", "carried: M_new"]):
+        write(label, spot, base - 40, 22)
+    files = [HERE / pair.sample / "pieces.json", HERE / pair.sample / "pieces_carried.json"]
+    sizes = np.array([high - low for _, low, high in map(flat_pieces, files)])[:, :2]
+    room = np.array([width / 2 - 80, height - row_height - 110])
+    scale = (room / sizes.max(0)).min()
+    line = paint("line", (0.16, 0.17, 0.19))
+    for k, (file, label) in enumerate(zip(files, ["pieces of M", "pieces of M_new"])):
+        middle = (k - 0.5) * width / 2
+        sheet(file, middle - scale * sizes[k][0] / 2, 70 - height / 2, scale, product_paint(product), line)
+        write(label, middle, 25 - height / 2, 22)
+    draw(HERE / f"{name}.png")
+
+
+def penetration(name, pair):
+    """A tight suit as designed, as carried, and kept clear: where it is inside of the body, the skin shows."""
+    width, height, scale = 1700, 660, 3.0
+    start(width, height, width)
+    suit = paint("suit", (0.08, 0.16, 0.34))
+    found = json.loads((HERE / "suit" / "kept.json").read_text())["products"][0]["clearance"]
+    rows = [("designed", [pair.source(), (*read_obj(HERE / "suit" / "suit.obj"), suit)])]
+    for which, label, key in (("carried", "carried", "missed_before"), ("kept", "--clearance keep", "missed_after")):
+        vertices, faces = read_obj(HERE / "suit" / which / "suit.obj")
+        places = f"{found[key]['inside']} of {found['samples']} places inside"
+        rows.append((f"{label}: {places}", [pair.target(), (pair.back(vertices), faces, suit)]))
+    for k, (label, parts) in enumerate(rows):
+        x = (k - 1) * width / 3
+        stand(parts, x - 130, 60 - height / 2, scale, -25)
+        stand(parts, x + 130, 60 - height / 2, scale, 155)
+        write(label, x, 22 - height / 2, 20)
+    draw(HERE / f"{name}.png")
+
+
 def trail(name, rows):
     """One row per order of the motion, (label, folder): body and dress from the source to the turned target."""
     width, row_height, scale = 1700, 430, 1.9
@@ -150,6 +224,8 @@ def main():
                     ("rigid part first, E at the moving point, Eq. 19", "moving-point")])
     space("fig05", [("a plane of space around the source", "source"), ("anchors on the surfaces", "surface"),
                     ("and the corners of the boxes", "corners"), ("and four pulled outwards", "pulled")])
+    from_model_to_pieces("fig03", Pair("dress"), "dress")
+    penetration("clearance", Pair("dress"))
     row_of_views("fig06a", Pair("dress"), ("dress",), 3.2, (-25, 155), 1.6, 700, 340)
     row_of_views("fig06b", Pair("girths", "_106"), ("top", "skirt"), 3.2, (-25, 155), 1.6, 700, 340)
     series("fig07")

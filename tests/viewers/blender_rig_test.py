@@ -13,7 +13,7 @@ import numpy as np
 from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).parent))
-from held_properties import run
+from held_properties import points_of, run
 
 DIRECTORY = Path(sys.argv[sys.argv.index("--") + 1])
 np.bool = bool  # Blender 3.4's importer names it, and NumPy has it no longer
@@ -45,11 +45,7 @@ def load(name):
 
 def shown(thing):
     bpy.context.view_layer.update()
-    mesh = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    x = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", x)
-    matrix = np.array(thing.matrix_world, float)
-    return in_gltf(x.reshape(-1, 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3])
+    return in_gltf(points_of(thing, np.array(thing.matrix_world, float)))
 
 
 def weight_of(thing, name):

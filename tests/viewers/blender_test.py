@@ -17,7 +17,7 @@ from mathutils import Matrix
 DIRECTORY, COMMAND, ADD_ONS = sys.argv[sys.argv.index("--") + 1 :]
 DIRECTORY = Path(DIRECTORY)
 sys.path[:0] = [ADD_ONS, str(Path(__file__).parent)]
-from held_properties import run
+from held_properties import points_of, run
 
 FLOAT_ROUNDING = 2.0**-23  # of the largest coordinate: one rounding by the add-on, one by Blender
 
@@ -64,11 +64,7 @@ def choose(*things):
 
 def shown_points(thing, space):
     """Where the vertices are now, in the space of an object."""
-    mesh = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
-    x = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", x)
-    matrix = np.linalg.solve(np.array(space.matrix_world, float), np.array(thing.matrix_world, float))
-    return x.reshape(-1, 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
+    return points_of(thing, np.linalg.solve(np.array(space.matrix_world, float), np.array(thing.matrix_world, float)))
 
 
 def set_t(asset, t):

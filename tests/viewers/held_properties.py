@@ -1,8 +1,17 @@
-"""Runs properties inside Blender, each in an empty scene."""
+"""Runs properties inside Blender, each in an empty scene; and where things are there."""
 import sys
 import traceback
 
 import bpy
+import numpy as np
+
+
+def points_of(thing, matrix):
+    """Where the vertices are now, n×3, taken by a 4×4 matrix from the object's own space."""
+    mesh = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    x = np.empty(3 * len(mesh.vertices), np.float32)
+    mesh.vertices.foreach_get("co", x)
+    return x.reshape(-1, 3).astype(float) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def run(properties, prepare=lambda: None):
