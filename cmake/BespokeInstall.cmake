@@ -1,4 +1,4 @@
-# The library with its public headers, the command, and a package for find_package(bespoke).
+# The libraries with their public headers, the command, and a package for find_package(bespoke).
 include(CMakePackageConfigHelpers)
 set(BESPOKE_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/bespoke)
 
@@ -8,7 +8,7 @@ foreach(header IN LISTS BESPOKE_PUBLIC_HEADERS)
   install(FILES ${PROJECT_SOURCE_DIR}/src/bespoke/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/bespoke/${folder})
 endforeach()
 
-install(TARGETS bespoke EXPORT bespokeTargets)
+install(TARGETS ${BESPOKE_LIBRARIES} EXPORT bespokeTargets)
 install(EXPORT bespokeTargets NAMESPACE bespoke:: DESTINATION ${BESPOKE_PACKAGE_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/bespokeConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
