@@ -48,7 +48,7 @@ TEST(MeetAnchorsWithin, LetsAnchorsThatContradictEachOtherShareTheBlame) {
   EXPECT_GT(meeting.anchor_sigmas[0], 0);
   EXPECT_EQ(meeting.anchor_sigmas[0], meeting.anchor_sigmas[1]);
   EXPECT_EQ(meeting.anchor_sigmas[2], 0);
-  // No vertex goes farther than an anchor asks for, and the one that nobody contradicts is met.
+  // no vertex goes farther than an anchor requires, and the one that nobody contradicts is met.
   EXPECT_LT((meeting.vertices - scene.surface.vertices).colwise().norm().maxCoeff(), 0.12);
   Eigen::Index nearest = 0;
   (scene.surface.vertices.colwise() - far).colwise().norm().minCoeff(&nearest);

@@ -27,8 +27,8 @@ bool near_rim(const Vector3& x) {
 constexpr CavitySettings far_reach{.reach = 0.3};
 
 std::vector<char> found(const TriangleMesh& source, const TriangleMesh& target) {
-  return vertices_in_lacking_cavities(TargetSurface(source), TargetSurface(target), diagonal(source.vertices),
-                                      far_reach);
+  return vertices_in_unmatched_cavities(TargetSurface(source), TargetSurface(target),
+                                        diagonal(source.vertices), far_reach);
 }
 
 TEST(Cavities, AreFoundWhereTheTargetIsSmooth) {
@@ -56,7 +56,7 @@ TEST(Cavities, AreTheSameInAnyPlaceAndSize) {
     mesh.vertices = ((7.5 * turn.toRotationMatrix() * mesh.vertices).colwise() + Vector3(3, -20, 8)).eval();
     return mesh;
   };
-  const std::vector<char> there = vertices_in_lacking_cavities(
+  const std::vector<char> there = vertices_in_unmatched_cavities(
       TargetSurface(moved(source)), TargetSurface(moved(target)), 7.5 * diagonal(source.vertices), far_reach);
   const std::vector<char> here = found(source, target);
   std::size_t differing = 0;

@@ -27,12 +27,12 @@ TriangleMesh valley(double alpha) {
 
 /// Of the bottom of the valley, with a match at this height on a plane.
 double crease_of(double alpha, double height) {
-  const TargetSurface asking(valley(alpha));
-  const TargetSurface answering(
+  const TargetSurface from(valley(alpha));
+  const TargetSurface onto(
       shapes::moved(shapes::square_grid(4), {2 * Matrix3::Identity(), Vector3(-1, -1, height)}));
-  const SurfaceMatch match = *answering.match(Vector3::Zero(), outside, anywhere);
+  const SurfaceMatch match = *onto.match(Vector3::Zero(), outside, anywhere);
   const FoundPair pair{Vector3::Zero(), match, anywhere};
-  return crease(pair, claimed_share(pair, asking, 1, {}));
+  return crease(pair, back_distance_ratio(pair, from, 1, {}));
 }
 
 TEST(Crease, IsTheFourthPowerOfTheCosineOfHalfAWedge) {

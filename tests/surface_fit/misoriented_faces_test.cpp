@@ -46,10 +46,10 @@ TEST(RepairMisorientedFaces, LeavesASurfaceWithoutMisorientedFacesAsItIs) {
   const TriangleMesh grid = shapes::square_grid(side);
   Points after = grid.vertices;
   for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], 0.2 * std::sin(5 * x[0]));
-  const RepairedSurface mended = mend(grid, after);
-  EXPECT_EQ(mended.vertices, after);
-  EXPECT_EQ(mended.repaired_vertices, 0u);
-  EXPECT_EQ(mended.misoriented_faces, 0u);
+  const RepairedSurface repaired = mend(grid, after);
+  EXPECT_EQ(repaired.vertices, after);
+  EXPECT_EQ(repaired.repaired_vertices, 0u);
+  EXPECT_EQ(repaired.misoriented_faces, 0u);
 }
 
 TEST(RepairMisorientedFaces, ResetsAVertexMovedAcrossItsNeighbours) {
@@ -59,13 +59,13 @@ TEST(RepairMisorientedFaces, ResetsAVertexMovedAcrossItsNeighbours) {
   const int drawn = vertex_at(grid, 0.5, 0.5);
   after.col(drawn) += Vector3(3 * square, 0, 0);
   ASSERT_LT(min_cosine(grid, after), 0);
-  const RepairedSurface mended = mend(grid, after);
-  EXPECT_EQ(mended.misoriented_faces, 0u);
-  EXPECT_GT(min_cosine(grid, mended.vertices), 0);
+  const RepairedSurface repaired = mend(grid, after);
+  EXPECT_EQ(repaired.misoriented_faces, 0u);
+  EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
   // The neighbours all moved by the shift, so their harmonic mean is the shift.
-  EXPECT_TRUE(mended.vertices.isApprox(Points(grid.vertices.colwise() + shift), 1e-6));
-  EXPECT_GT(mended.repaired_vertices, 0u);
-  EXPECT_LT(mended.repaired_vertices, 60u);
+  EXPECT_TRUE(repaired.vertices.isApprox(Points(grid.vertices.colwise() + shift), 1e-6));
+  EXPECT_GT(repaired.repaired_vertices, 0u);
+  EXPECT_LT(repaired.repaired_vertices, 60u);
 }
 
 TEST(RepairMisorientedFaces, ResetsWhatWasStretchedOrCompressedTooFar) {
@@ -81,11 +81,11 @@ TEST(RepairMisorientedFaces, ResetsWhatWasStretchedOrCompressedTooFar) {
       settings.max_stretch = most;
       return mend(grid, after, settings);
     };
-    const RepairedSurface mended = released(1.3);
-    EXPECT_TRUE(mended.vertices.isApprox(grid.vertices, 1e-6));
+    const RepairedSurface repaired = released(1.3);
+    EXPECT_TRUE(repaired.vertices.isApprox(grid.vertices, 1e-6));
     EXPECT_TRUE(
-        std::binary_search(mended.stretched_vertices.begin(), mended.stretched_vertices.end(), drawn));
-    EXPECT_LE(mended.stretched_vertices.size(), mended.repaired_vertices);
+        std::binary_search(repaired.stretched_vertices.begin(), repaired.stretched_vertices.end(), drawn));
+    EXPECT_LE(repaired.stretched_vertices.size(), repaired.repaired_vertices);
     EXPECT_EQ(released(1000).vertices, after);
     EXPECT_TRUE(released(1000).stretched_vertices.empty());
   }
@@ -117,9 +117,9 @@ TEST(RepairMisorientedFaces, LeavesNoMisorientedFaceInAFoldedPatch) {
       if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.75 * square)
         x += square * Vector3(shift(random), shift(random), 2 * shift(random));
     ASSERT_LT(min_cosine(grid, after), 0);
-    const RepairedSurface mended = mend(grid, after);
-    EXPECT_EQ(mended.misoriented_faces, 0u);
-    EXPECT_GT(min_cosine(grid, mended.vertices), 0);
+    const RepairedSurface repaired = mend(grid, after);
+    EXPECT_EQ(repaired.misoriented_faces, 0u);
+    EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
   }
 }
 
@@ -165,10 +165,10 @@ TEST(RepairMisorientedFaces, LeavesTheFitWhereMostOfItTurned) {
   const TriangleMesh grid = shapes::square_grid(4 * side);
   Points after = grid.vertices;
   after.topRows(1) = 1 - after.topRows(1).array();  // a mirror image: every face has turned
-  const RepairedSurface mended = mend(grid, after);
-  EXPECT_EQ(mended.vertices, after);
-  EXPECT_EQ(mended.repaired_vertices, 0u);
-  EXPECT_EQ(mended.misoriented_faces, static_cast<std::size_t>(grid.faces.cols()));
+  const RepairedSurface repaired = mend(grid, after);
+  EXPECT_EQ(repaired.vertices, after);
+  EXPECT_EQ(repaired.repaired_vertices, 0u);
+  EXPECT_EQ(repaired.misoriented_faces, static_cast<std::size_t>(grid.faces.cols()));
 }
 
 TEST(RepairMisorientedFaces, ResetsOnlyWhatTurnedFartherThanItsLimit) {
@@ -190,9 +190,9 @@ TEST(RepairMisorientedFaces, LeavesNoMisorientedFaceWhereShortEdgesMeetLongOnes)
   const int drawn = vertex_at(grid, 0.125, 0.125);
   after.col(drawn) += Vector3(0.1, 0.1, 0);
   ASSERT_LT(min_cosine(grid, after), 0);
-  const RepairedSurface mended = mend(grid, after);
-  EXPECT_EQ(mended.misoriented_faces, 0u);
-  EXPECT_GT(min_cosine(grid, mended.vertices), 0);
+  const RepairedSurface repaired = mend(grid, after);
+  EXPECT_EQ(repaired.misoriented_faces, 0u);
+  EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
 }
 
 TEST(RepairMisorientedFaces, MovesNothingFarFromMisorientedFaces) {
@@ -201,11 +201,11 @@ TEST(RepairMisorientedFaces, MovesNothingFarFromMisorientedFaces) {
   for (auto&& x : after.colwise()) x += Vector3(0, 0, 0.3 * x[0] * x[1]);
   const int drawn = vertex_at(grid, 0.25, 0.25);
   after.col(drawn) += Vector3(2 * square, 2 * square, 0);
-  const RepairedSurface mended = mend(grid, after);
-  ASSERT_GT(mended.repaired_vertices, 0u);
+  const RepairedSurface repaired = mend(grid, after);
+  ASSERT_GT(repaired.repaired_vertices, 0u);
   for (Eigen::Index i = 0; i < after.cols(); ++i)
     if ((grid.vertices.col(i) - grid.vertices.col(drawn)).norm() > 10 * square) {
-      EXPECT_EQ(mended.vertices.col(i), after.col(i));
+      EXPECT_EQ(repaired.vertices.col(i), after.col(i));
     }
 }
 
@@ -214,10 +214,10 @@ TEST(RepairMisorientedFaces, ReportsWhatNoNeighboursCanReset) {
   const TriangleMesh single = shapes::triangle();
   Points after = single.vertices;
   after.col(0).swap(after.col(1));
-  const RepairedSurface mended = mend(single, after);
-  EXPECT_TRUE(mended.vertices.allFinite());
-  EXPECT_EQ(mended.repaired_vertices, 3u);
-  EXPECT_EQ(mended.misoriented_faces, min_cosine(single, mended.vertices) < 0 ? 1u : 0u);
+  const RepairedSurface repaired = mend(single, after);
+  EXPECT_TRUE(repaired.vertices.allFinite());
+  EXPECT_EQ(repaired.repaired_vertices, 3u);
+  EXPECT_EQ(repaired.misoriented_faces, min_cosine(single, repaired.vertices) < 0 ? 1u : 0u);
 }
 
 TEST(RepairMisorientedFaces, TakesFacesWithoutAreaAndLooseVertices) {
@@ -226,9 +226,9 @@ TEST(RepairMisorientedFaces, TakesFacesWithoutAreaAndLooseVertices) {
   mesh.vertices.rightCols(1) = Vector3(5, 5, 5);
   mesh.faces.conservativeResize(3, mesh.faces.cols() + 1);
   mesh.faces.rightCols(1) << 0, 0, 1;
-  const RepairedSurface mended = mend(mesh, mesh.vertices);
-  EXPECT_EQ(mended.vertices, mesh.vertices);
-  EXPECT_EQ(mended.repaired_vertices, 0u);
+  const RepairedSurface repaired = mend(mesh, mesh.vertices);
+  EXPECT_EQ(repaired.vertices, mesh.vertices);
+  EXPECT_EQ(repaired.repaired_vertices, 0u);
 }
 
 TEST(RepairMisorientedFaces, LeavesAPocketThatWasInsideOutBefore) {
@@ -259,14 +259,14 @@ TEST(RepairMisorientedFaces, JudgesEveryPatchOnItsOwnAndInAnyPlace) {
   const Points after = turn * pockets(0.2, -0.2);
   FaceRepairSettings settings;
   settings.max_released = 0.5;
-  const RepairedSurface mended = repair_misoriented_faces({shape, before, after}, settings);
-  ASSERT_GT(mended.repaired_vertices, 0u);
+  const RepairedSurface repaired = repair_misoriented_faces({shape, before, after}, settings);
+  ASSERT_GT(repaired.repaired_vertices, 0u);
   for (Eigen::Index i = 0; i < after.cols(); ++i)
     if ((grid.vertices.col(i) - one).norm() < 0.3) {
-      EXPECT_EQ(mended.vertices.col(i), after.col(i));
+      EXPECT_EQ(repaired.vertices.col(i), after.col(i));
     }
   const auto error = [&](const Points& vertices) { return (vertices - turn * shape).norm(); };
-  EXPECT_LT(error(mended.vertices), 0.2 * error(after));
+  EXPECT_LT(error(repaired.vertices), 0.2 * error(after));
 }
 
 TEST(RepairMisorientedFaces, BendsNothingFartherFromItsShape) {
@@ -291,10 +291,10 @@ TEST(RepairMisorientedFaces, BendsNothingFartherFromItsShape) {
   for (int trial = 0; trial < 40; ++trial) {
     const TriangleMesh before{crumpled(trial % 2 == 0 ? 1 : 0.2), grid.faces};
     const Points after = crumpled(trial % 2 == 0 ? 0.2 : 1);
-    const RepairedSurface mended = repair_misoriented_faces({grid.vertices, before, after}, settings);
-    EXPECT_LE(bent(mended.vertices), bent(after));
-    left += mended.repaired_vertices == 0 && mended.misoriented_faces > 0 ? 1 : 0;
-    taken_back += mended.repaired_vertices > 0 ? 1 : 0;
+    const RepairedSurface repaired = repair_misoriented_faces({grid.vertices, before, after}, settings);
+    EXPECT_LE(bent(repaired.vertices), bent(after));
+    left += repaired.repaired_vertices == 0 && repaired.misoriented_faces > 0 ? 1 : 0;
+    taken_back += repaired.repaired_vertices > 0 ? 1 : 0;
   }
   EXPECT_GT(left, 0);
   EXPECT_GT(taken_back, 0);

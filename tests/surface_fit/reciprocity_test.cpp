@@ -19,12 +19,12 @@ TriangleMesh plane_at(double height) {
   return shapes::moved(shapes::square_grid(4), {Matrix3::Identity(), height * upwards});
 }
 
-/// How much a point at height 1 above the answering square counts, beside what else the asking surface has.
+/// How much a point at height 1 above a square counts, beside what else its own surface has.
 double reciprocity_beside(const TriangleMesh& other) {
-  const TargetSurface asking(shapes::joined(plane_at(1), other)), answering(plane_at(0));
+  const TargetSurface from(shapes::joined(plane_at(1), other)), onto(plane_at(0));
   const Vector3 point = centre + upwards;
-  const SurfaceMatch match = *answering.match(point, upwards, within_one);
-  return reciprocity(claimed_share({point, match, within_one}, asking, 1, half_as_far), half_as_far);
+  const SurfaceMatch match = *onto.match(point, upwards, within_one);
+  return reciprocity(back_distance_ratio({point, match, within_one}, from, 1, half_as_far), half_as_far);
 }
 
 TEST(Reciprocity, IsWholeBetweenParallelSurfaces) { EXPECT_EQ(reciprocity_beside(plane_at(1)), 1); }
@@ -55,41 +55,42 @@ TEST(Reciprocity, HeedsNoBoundary) {
 TEST(Reciprocity, IsWholeOfAPointOnItsMatch) {
   const TargetSurface surface(plane_at(0));
   const SurfaceMatch match = *surface.match(centre, upwards, within_one);
-  EXPECT_EQ(claimed_share({centre, match, within_one}, surface, 1, half_as_far), 1);
+  EXPECT_EQ(back_distance_ratio({centre, match, within_one}, surface, 1, half_as_far), 1);
   EXPECT_EQ(reciprocity(1, half_as_far), 1);
 }
 
 TEST(Reciprocity, NeedsNoReciprocityBeyondMuchNearer) {
-  const TargetSurface answering(plane_at(0));
+  const TargetSurface onto(plane_at(0));
   const Vector3 point = centre + upwards;
-  const SurfaceMatch match = *answering.match(point, upwards, within_one);
+  const SurfaceMatch match = *onto.match(point, upwards, within_one);
   for (const double height : {0.1, 0.4, 0.5, 0.6, 0.9}) {
-    const TargetSurface asking(shapes::joined(plane_at(1), plane_at(height)));
+    const TargetSurface from(shapes::joined(plane_at(1), plane_at(height)));
     const auto found = [&](double share) {
-      return reciprocity(claimed_share({point, match, within_one}, asking, share, half_as_far), half_as_far);
+      return reciprocity(back_distance_ratio({point, match, within_one}, from, share, half_as_far),
+                         half_as_far);
     };
     EXPECT_EQ(found(half_as_far.much_nearer), found(1)) << height;
   }
 }
 
 TEST(ReciprocalShare, IsThatOfTheNearestPlaceWithinTheShareAsked) {
-  const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
+  const TargetSurface from(shapes::joined(plane_at(1), plane_at(0.4))), onto(plane_at(0));
   const Vector3 point = centre + upwards;
-  const SurfaceMatch match = *answering.match(point, upwards, within_one);
+  const SurfaceMatch match = *onto.match(point, upwards, within_one);
   const FoundPair pair{point, match, within_one};
-  EXPECT_NEAR(claimed_share(pair, asking, 1, half_as_far), 0.4, 1e-12);
-  EXPECT_NEAR(claimed_share(pair, asking, 0.5, half_as_far), 0.4, 1e-12);
-  EXPECT_EQ(claimed_share(pair, asking, 0.3, half_as_far), 1);
+  EXPECT_NEAR(back_distance_ratio(pair, from, 1, half_as_far), 0.4, 1e-12);
+  EXPECT_NEAR(back_distance_ratio(pair, from, 0.5, half_as_far), 0.4, 1e-12);
+  EXPECT_EQ(back_distance_ratio(pair, from, 0.3, half_as_far), 1);
 }
 
 TEST(NearerReciprocal, IsThePlaceThatIsNearerThanItsShare) {
-  const TargetSurface asking(shapes::joined(plane_at(1), plane_at(0.4))), answering(plane_at(0));
+  const TargetSurface from(shapes::joined(plane_at(1), plane_at(0.4))), onto(plane_at(0));
   const Vector3 point = centre + upwards;
-  const SurfaceMatch match = *answering.match(point, upwards, within_one);
-  const auto claim = nearer_claim({point, match, within_one}, asking, 0.5);
-  ASSERT_TRUE(claim);
-  EXPECT_TRUE(claim->point.isApprox(centre + 0.4 * upwards, 1e-12));
-  EXPECT_FALSE(nearer_claim({point, match, within_one}, asking, 0.3));
+  const SurfaceMatch match = *onto.match(point, upwards, within_one);
+  const auto back = back_match({point, match, within_one}, from, 0.5);
+  ASSERT_TRUE(back);
+  EXPECT_TRUE(back->point.isApprox(centre + 0.4 * upwards, 1e-12));
+  EXPECT_FALSE(back_match({point, match, within_one}, from, 0.3));
 }
 
 }  // namespace

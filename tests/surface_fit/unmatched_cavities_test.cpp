@@ -16,20 +16,20 @@ namespace {
 
 TriangleMesh ball_with_narrow_pocket() { return shapes::pocketed_ball(9 * std::numbers::pi / 180); }
 
-std::vector<Cavity> lacking(const TriangleMesh& source, const TriangleMesh& target) {
+std::vector<Cavity> unmatched(const TriangleMesh& source, const TriangleMesh& target) {
   return unmatched_cavities(cavities_of(source).parts, source, target, cavities_of(target).contains, {});
 }
 
 TEST(UnmatchedCavities, AreThoseOfASourceWhoseTargetIsSmooth) {
   const TriangleMesh source = ball_with_narrow_pocket();
-  const std::vector<Cavity> found = lacking(source, shapes::icosphere(4));
+  const std::vector<Cavity> found = unmatched(source, shapes::icosphere(4));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found.front().vertices, cavities_of(source).parts.front().vertices);
 }
 
 TEST(UnmatchedCavities, AreNoneWhereTheTargetHasAPocketOfSomeSizeThere) {
   const TriangleMesh source = ball_with_narrow_pocket();
-  const auto none = [&](const TriangleMesh& target) { return lacking(source, target).empty(); };
+  const auto none = [&](const TriangleMesh& target) { return unmatched(source, target).empty(); };
   EXPECT_TRUE(none(source));
   EXPECT_TRUE(none(shapes::moved(source, {0.8 * Matrix3::Identity(), {0, 0, 0.1}})));
   EXPECT_FALSE(none(shapes::moved(source, {0.3 * Matrix3::Identity(), {0, 0, 0.6}})));

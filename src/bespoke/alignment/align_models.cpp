@@ -129,10 +129,12 @@ Alignment align_models(const TriangleMesh& source, const TriangleMesh& target, c
   progress.step("alignment", 0, 0);
   require_valid(source, "model to align");
   require_valid(target, "model to align");
-  const std::vector<char> source_lined = cavities_of(source).contains;
-  const std::vector<char> target_lined = cavities_of(target).contains;
-  const SurfacePatches coarse_source = make_surface_patches(source, settings.coarse_patches, source_lined);
-  const SurfacePatches coarse_target = make_surface_patches(target, settings.coarse_patches, target_lined);
+  const std::vector<char> source_in_cavity = cavities_of(source).contains;
+  const std::vector<char> target_in_cavity = cavities_of(target).contains;
+  const SurfacePatches coarse_source =
+      make_surface_patches(source, settings.coarse_patches, source_in_cavity);
+  const SurfacePatches coarse_target =
+      make_surface_patches(target, settings.coarse_patches, target_in_cavity);
   const auto candidates = search_similarities(coarse_source, coarse_target, covering_rotations());
   progress.check();
   Alignment alignment;
@@ -141,8 +143,8 @@ Alignment align_models(const TriangleMesh& source, const TriangleMesh& target, c
   summary.misfit = std::numeric_limits<double>::infinity();
   if (candidates.empty()) return alignment;
 
-  const SurfacePatches fine_source = make_surface_patches(source, settings.patches, source_lined);
-  const SurfacePatches fine_target = make_surface_patches(target, settings.patches, target_lined);
+  const SurfacePatches fine_source = make_surface_patches(source, settings.patches, source_in_cavity);
+  const SurfacePatches fine_target = make_surface_patches(target, settings.patches, target_in_cavity);
   const auto deformed = deform_best(fine_source, fine_target, candidates, settings.finalists);
   progress.check();
   const PatchDeformation& best = deformed.front();

@@ -154,16 +154,16 @@ class CounterpartSearch {
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(target_.vertices());
     double nearest = infinity, all_weights = 0;
     for (std::size_t i = 0; i < pairs_ + places_.size(); ++i) {
-      const double asked = ratio_ * source_.from(i)[place.source];
-      if (i == pairs_ + self || !std::isfinite(asked)) continue;
-      const double weight = std::pow(asked + options_.softening * ratio_ * largest_, -2);
+      const double along_source = ratio_ * source_.from(i)[place.source];
+      if (i == pairs_ + self || !std::isfinite(along_source)) continue;
+      const double weight = std::pow(along_source + options_.softening * ratio_ * largest_, -2);
       for (Eigen::Index q = 0; q < squares.size(); ++q) {
         const double there = target_.from(i)[q];
         if (!std::isfinite(there)) continue;
-        squares[q] += weight * (there - asked) * (there - asked);
+        squares[q] += weight * (there - along_source) * (there - along_source);
         weights[q] += weight;
       }
-      nearest = std::min(nearest, asked);
+      nearest = std::min(nearest, along_source);
       all_weights += weight;
     }
     // Another component than most of the pairs' says nothing.

@@ -33,10 +33,10 @@ Eigen::VectorXd distances_from(const TriangleMesh& surface, const Points& points
 }
 
 /// n: what each vertex that lies in the open represents, mesh units squared.
-Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& lined) {
+Eigen::VectorXd open_areas(const TriangleMesh& mesh, const std::vector<char>& in_cavity) {
   Eigen::VectorXd areas = vertex_areas(mesh);
-  for (std::size_t i = 0; i < lined.size(); ++i)
-    if (lined[i]) areas[static_cast<Eigen::Index>(i)] = 0;
+  for (std::size_t i = 0; i < in_cavity.size(); ++i)
+    if (in_cavity[i]) areas[static_cast<Eigen::Index>(i)] = 0;
   return areas;
 }
 
@@ -55,7 +55,7 @@ double distortion_of(const TriangleMesh& source, const Points& placed) {
 PlacementScore::PlacementScore(const TriangleMesh& source, const TriangleMesh& target)
     : source_(source),
       target_(target),
-      source_lined_(cavities_of(source).contains),
+      source_in_cavity_(cavities_of(source).contains),
       target_areas_(open_areas(target, cavities_of(target).contains)) {}
 
 PlacementFigures PlacementScore::operator()(const Points& placed) const {
@@ -63,7 +63,7 @@ PlacementFigures PlacementScore::operator()(const Points& placed) const {
     throw InvalidInput(std::to_string(placed.cols()) + " places for " +
                        std::to_string(source_.vertices.cols()) + " vertices");
   const TriangleMesh moved{placed, source_.faces};
-  const Eigen::VectorXd areas = open_areas(moved, source_lined_);
+  const Eigen::VectorXd areas = open_areas(moved, source_in_cavity_);
   const Eigen::VectorXd there = distances_from(target_, placed);
   const Eigen::VectorXd back = distances_from(moved, target_.vertices);
   const double unit = diagonal(target_.vertices);

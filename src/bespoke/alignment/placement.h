@@ -36,7 +36,7 @@ class PlacementScore {
  private:
   const TriangleMesh& source_;
   const TriangleMesh& target_;
-  std::vector<char> source_lined_;
+  std::vector<char> source_in_cavity_;
   Eigen::VectorXd target_areas_;  // n, of what lies in the open, mesh units squared
 };
 

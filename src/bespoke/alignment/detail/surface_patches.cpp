@@ -148,7 +148,7 @@ double longest_edge_of_patches(const TriangleMesh& mesh, int count) {
   return std::sqrt(vertex_areas(mesh).sum() / count) / edges_per_spacing;
 }
 
-SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& lined) {
+SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& in_cavity) {
   require_valid(mesh, "model to align");
   const double area = vertex_shares(mesh).areas.sum();
   if (!(area > 0)) throw InvalidInput("a model to align has no area");
@@ -161,14 +161,14 @@ SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const s
 
   const Eigen::Index size =
       1 + *std::max_element(patches.patch_of_vertex.begin(), patches.patch_of_vertex.end());
-  const std::vector<char> fine_lined = refined_flags(lined, refined);
+  const std::vector<char> fine_in_cavity = refined_flags(in_cavity, refined);
   patches.points = patches.normals = Points::Zero(3, size);
   patches.areas = patches.open_areas = Eigen::VectorXd::Zero(size);
   for (Eigen::Index i = 0; i < fine.vertices.cols(); ++i) {
     const int patch = patches.patch_of_vertex[static_cast<std::size_t>(i)];
     if (patch < 0) continue;
     patches.areas[patch] += shares.areas[i];
-    if (!fine_lined[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
+    if (!fine_in_cavity[static_cast<std::size_t>(i)]) patches.open_areas[patch] += shares.areas[i];
     patches.points.col(patch) += shares.areas[i] * fine.vertices.col(i);
     patches.normals.col(patch) += shares.normals.col(i);
   }

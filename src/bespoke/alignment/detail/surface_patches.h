@@ -30,9 +30,10 @@ struct SurfacePatches {
 double longest_edge_of_patches(const TriangleMesh& mesh, int count);
 
 /// About `count` (≥ 4) patches, seeded one by one at the vertex farthest, in place and normal, from all seeds
-/// so far. `lined`: n, the vertices that line cavities (cavities.h), or empty for none. Throws InvalidInput
-/// unless the mesh is valid and has area.
-SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count, const std::vector<char>& lined = {});
+/// so far. `in_cavity`: n, the vertices that line cavities (cavities.h), or empty for none. Throws
+/// InvalidInput unless the mesh is valid and has area.
+SurfacePatches make_surface_patches(const TriangleMesh& mesh, int count,
+                                    const std::vector<char>& in_cavity = {});
 
 /// The patches of the mirror image (x ↦ −x, faces turned so that normals stay outward).
 SurfacePatches mirrored(SurfacePatches patches);

@@ -6,8 +6,8 @@
 
 namespace bespoke {
 
-std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, const TargetSurface& target,
-                                               double diagonal, const CavitySettings& settings) {
+std::vector<char> vertices_in_unmatched_cavities(const TargetSurface& source, const TargetSurface& target,
+                                                 double diagonal, const CavitySettings& settings) {
   const MatchLimits limits{settings.min_cosine, settings.reach * diagonal};
   const VisibilityQuery source_visibility(source.mesh()), target_visibility(target.mesh());
   const auto faces = [&](const VisibilityQuery& visibility, const Vector3& x, const Vector3& normal) {
@@ -24,8 +24,8 @@ std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, cons
       if (!counterpart || !faces(source_visibility, x, normal) ||
           faces(target_visibility, counterpart->point, counterpart->normal))
         continue;
-      const auto claim = nearer_claim({x, *counterpart, limits}, source, settings.much_nearer);
-      hidden[k] = claim && !faces(source_visibility, claim->point, claim->normal);
+      const auto nearer = back_match({x, *counterpart, limits}, source, settings.much_nearer);
+      hidden[k] = nearer && !faces(source_visibility, nearer->point, nearer->normal);
     }
   });
   return hidden;

@@ -12,7 +12,7 @@ namespace bespoke {
 /// point faces nothing of the target, and an exposed place of the source is much nearer to that point.
 /// Otherwise the cavity would be flattened under the skin. source: aligned, roughly fitted; diagonal: of it,
 /// mesh units.
-std::vector<char> vertices_in_lacking_cavities(const TargetSurface& source, const TargetSurface& target,
-                                               double diagonal, const CavitySettings& settings);
+std::vector<char> vertices_in_unmatched_cavities(const TargetSurface& source, const TargetSurface& target,
+                                                 double diagonal, const CavitySettings& settings);
 
 }  // namespace bespoke

@@ -12,6 +12,6 @@ bool may_be_creased(const FoundPair& pair);
 /// wedge of angle 2α with the match on the bisector, 0 where the surface is flat or convex and where the
 /// match is behind it. An armpit under a raised arm is far from its counterpart because it must unfold, not
 /// because the pair is wrong.
-double crease(const FoundPair& pair, double claimed);
+double crease(const FoundPair& pair, double back_ratio);
 
 }  // namespace bespoke

@@ -218,23 +218,23 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
     summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
     return summary.anchor_turn_degrees;
   };
-  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
-    return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
-                        scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas,
-                        scene.patches, is_posed},
-                       settings.nodes, progress);
+  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
+    return NodeFitting(
+        {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
+         scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
+        settings.nodes, progress);
   };
   if (are_out_of_reach(scene, anchors, settings)) {
     degrees_by_anchors();
   } else {
-    NodeFitting straight = fitting(scene.surface, anchors, false);
+    NodeFitting straight = fitting(scene.surface, anchors);
     if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.min_rigid_turn))
       return straight.fit_fine();
   }
   summary.posed_by_anchors = true;
   const AnchorPose pose = posing->bent();
   const TriangleMesh bent{pose.vertices, scene.surface.faces};
-  NodeFitting posed = fitting(bent, pose.anchor_sources, true);
+  NodeFitting posed = fitting(bent, pose.anchor_sources);
   posed.fit_coarse();
   return posed.fit_fine();
 }
@@ -252,17 +252,17 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Surf
   face_repair.max_stretch = options.max_stretch;
   const TriangleMesh coarse{nodes.coarse_vertices, scene.surface.faces};
   scene.coarse_vertices = nodes.coarse_vertices;
-  RepairedSurface mended = repair_misoriented_faces({shape, coarse, details.vertices}, face_repair);
+  RepairedSurface repaired = repair_misoriented_faces({shape, coarse, details.vertices}, face_repair);
   scene.exact_sources = details.anchor_sources;
-  if (mended.repaired_vertices > 0)
-    carry_along({details.vertices, scene.surface.faces}, mended.vertices, scene.exact_sources);
+  if (repaired.repaired_vertices > 0)
+    carry_along({details.vertices, scene.surface.faces}, repaired.vertices, scene.exact_sources);
   const TriangleMesh rest{shape, scene.surface.faces};
-  const RegisteredSurface laid{rest, mended.vertices};
-  scene.surface.vertices = carried_by_space(laid, nodes.lacking, nodes.unmatched_cavities.contains,
+  const RegisteredSurface registered{rest, repaired.vertices};
+  scene.surface.vertices = carried_by_space(registered, nodes.unmatched, nodes.unmatched_cavities.contains,
                                             settings.nodes.unmatched_cavities);
 
-  summary.repaired_vertices = mended.repaired_vertices;
-  summary.stretched_vertices = std::move(mended.stretched_vertices);
+  summary.repaired_vertices = repaired.repaired_vertices;
+  summary.stretched_vertices = std::move(repaired.stretched_vertices);
   summary.iterations = nodes.iterations + details.layers;
   summary.rigidity = nodes.rigidity;
   summary.matched_boundaries = nodes.matched_boundaries;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 
+#include "bespoke/rbf/layer_solver.h"
+
 namespace bespoke {
 
 // Every tuned constant of the default surface fit, one struct for each stage. "Diagonal" is that of the
@@ -23,13 +25,6 @@ struct SimilaritySettings {
   double outlier_medians = 2;    ///< scale of the M-estimator, median residuals: weight 1/2 there
   double outlier_floor = 1e-12;  ///< of the largest distance: keeps the weights of an exact copy finite
   std::size_t max_samples = 4000;  ///< vertices queried: seven unknowns need few
-};
-
-/// Sample weights by curvature (informative_areas.h): bends fix the place along the surface, planes do not.
-struct AreaSettings {
-  double length = 0.01;    ///< ℓ, diagonals: bends of this radius count twice
-  double max_weight = 4;   ///< added to 1 at most: bounds what noise in the normals contributes
-  double shortest = 1e-4;  ///< diagonals: shorter edges count as this long; their normals are rounding
 };
 
 /// Nodes of an embedded deformation graph (Sumner 2007) and how vertices follow them (deformation_nodes.h).
@@ -138,12 +133,6 @@ struct ReciprocitySettings {
   double rounding = 1e-6;    ///< of the largest distance searched: nearer points are reciprocal
 };
 
-/// Sources that anchors have posed and that still lie outside the target (pose_certainty.h): where anchors
-/// determine the pose, a signed residual along the normal is a difference of shape.
-struct OutsideResidualSettings {
-  double reach = 0.2;  ///< diagonals: r of the certainty
-};
-
 /// One level of nodes.
 struct NodeLevel {
   int nodes = 0;                 ///< requested, over the whole surface
@@ -151,13 +140,11 @@ struct NodeLevel {
   std::size_t samples = 0;       ///< source vertices with a correspondence
   std::size_t back_samples = 0;  ///< target vertices with one
   bool reciprocity = true;  ///< ReciprocitySettings. Not at the coarse level: distances say little there.
-  bool outside_residuals = true;  ///< OutsideResidualSettings
 };
 
 /// The smooth deformation (node_fit.h): non-rigid ICP with an M-estimator on an embedded deformation graph.
 struct NodeFitSettings {
-  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
-                                     NodeLevel{2500, 9, 8000, 5000}};
+  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false}, NodeLevel{2500, 9, 8000, 5000}};
   /// Of the first level without anchors, where surfaces converge more slowly. More let a shape without
   /// features drift along itself.
   int unanchored_iterations = 20;
@@ -171,7 +158,7 @@ struct NodeFitSettings {
   double outlier_medians = 4;   ///< scale of the M-estimator, median distances: weight 1/2 there
   double outlier_floor = 1e-4;  ///< diagonals, added to that scale, where half of the pairs coincide
   /// Of ℓ, added to that scale where far pairs count too (PlanePair::outlier_scale_gain): in sharp creases,
-  /// which must unfold, and for posed sources outside the target (OutsideResidualSettings).
+  /// which must unfold.
   double outlier_scale_gain = 1;
   /// Weight of all exact anchors together, times the iteration's number from the second on; the surface's is
   /// 1. It grows, so that anchors lead and leave no dents.
@@ -179,7 +166,6 @@ struct NodeFitSettings {
   double whole_surface_weight = 100;  ///< soft weights are percentages: this one equals the surface's
   double back_share = 0.5;            ///< weight of target-to-source pairs beside source-to-target ones
   double free_floating = 1e-9;        ///< added to every node's diagonal: a component without pairs stays
-  AreaSettings areas;
   NodeSettings nodes;
   BendingSettings bending;
   ShapeSettings shape;
@@ -188,7 +174,6 @@ struct NodeFitSettings {
   CavitySettings cavities;
   UnmatchedCavitySettings unmatched_cavities;
   ReciprocitySettings reciprocity;
-  OutsideResidualSettings outside_residuals;
 };
 
 /// Layers of space (detail_layers.h): sums of Wendland's C4 functions, coarse to fine.
@@ -205,11 +190,8 @@ struct DetailSettings {
   double stay = 0.03;         ///< weight of staying in place, against noise in single points
   double max_move = 0.3;      ///< of λ, of a layer
   double max_gradient = 0.5;  ///< largest ‖∇u‖ of a layer at the vertices: below 1 there is no fold
-  double ridge = 1e-3;        ///< added to the kernel's diagonal of 1: bounds the condition at some 1e4
-  int max_solver_iterations = 40;   ///< of conjugate gradients, a layer
-  double solver_residual = 1e-6;    ///< of the squared right-hand side: a thousandth of the moves
-  double negligible_kernel = 1e-6;  ///< smaller kernel values are left out of the matrix
-  double anchor_radius = 0.03;      ///< diagonals: λ of the last layer, which matches exact anchors
+  SmoothLayerOptions solver;
+  double anchor_radius = 0.03;  ///< diagonals: λ of the last layer, which matches exact anchors
   /// Diagonals: further anchor layers follow, so many at most, until all exact anchors are as near as this;
   /// face repair may have moved one.
   double tolerance = 1e-5;
@@ -229,8 +211,6 @@ struct FaceRepairSettings {
   /// other, and the repair would undo the fit.
   double max_released = 0.05;
   std::size_t released_at_least = 100;
-  double shortest = 1e-6;  ///< diagonals: shorter edges weigh no more
-  double keep = 1e-9;      ///< of a vertex's own weight: determines a component that is wholly released
 };
 
 /// Confidence of a vertex's correspondence. Reported; shapes nothing.

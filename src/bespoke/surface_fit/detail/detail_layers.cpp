@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bespoke/parallel.h"
-#include "bespoke/rbf/conjugate_gradients.h"
 #include "bespoke/rbf/kernels.h"
+#include "bespoke/rbf/layer_solver.h"
 #include "bespoke/rbf/point_grid.h"
 #include "bespoke/surface_fit/detail/reciprocity.h"
 
@@ -16,52 +16,6 @@ namespace bespoke {
 namespace {
 
 constexpr std::size_t layer_grain = 128;
-
-/// Values of Wendland's C4 function (1995; rbf/kernels.h) between centres, plus a ridge on the diagonal.
-class RidgeSystem {
- public:
-  RidgeSystem(const Points& centers, const PointGrid& grid, double lambda, const DetailSettings& settings)
-      : rows_(static_cast<std::size_t>(centers.cols())), settings_(settings) {
-    parallel_for(rows_.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        grid.for_each_within(centers.col(static_cast<Eigen::Index>(i)), lambda, [&](int j, double squared) {
-          const double value = WendlandC4::value(std::sqrt(squared) / lambda);
-          if (value > settings_.negligible_kernel) rows_[i].emplace_back(j, value);
-        });
-    });
-  }
-
-  /// Coefficients (3×m) that interpolate `values` at the centres, up to the ridge.
-  Points solve(const Points& values) {
-    enough_ = settings_.solver_residual * products(values, values);
-    Points solution = Points::Zero(3, values.cols());
-    conjugate_gradients(*this, solution, values);
-    return solution;
-  }
-
-  Points multiply(const Points& x) const {
-    Points image(3, x.cols());
-    parallel_for(rows_.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        const auto column = static_cast<Eigen::Index>(i);
-        Vector3 sum = settings_.ridge * x.col(column);
-        for (const auto& [j, value] : rows_[i]) sum += value * x.col(j);
-        image.col(column) = sum;
-      }
-    });
-    return image;
-  }
-  const Points& precondition(const Points& residual) const { return residual; }
-  Vector3 products(const Points& a, const Points& b) const { return a.cwiseProduct(b).rowwise().sum(); }
-  bool solved(const Points&, const Vector3& squared, int steps) const {
-    return steps == settings_.max_solver_iterations || (squared.array() <= enough_.array()).all();
-  }
-
- private:
-  std::vector<std::vector<std::pair<int, double>>> rows_;
-  const DetailSettings& settings_;
-  Vector3 enough_ = Vector3::Zero();
-};
 
 /// u(x) = Σ cⱼ φ(|x − zⱼ|/λ).
 class Layer {
@@ -71,7 +25,7 @@ class Layer {
       : lambda_(lambda),
         centers_(centers),
         grid_(centers, lambda),
-        coefficients_(RidgeSystem(centers_, grid_, lambda, settings).solve(values)) {}
+        coefficients_(smooth_layer(centers, values, lambda, settings.solver)) {}
 
   void scale(double factor) { coefficients_ *= factor; }
 
@@ -128,10 +82,9 @@ std::vector<Residual> residuals(const DetailStep& step) {
       const auto found = step.input.target.match(vertices.col(i), normals.col(i), own);
       if (!found) continue;
       const ReciprocitySettings& settings = step.settings.reciprocity;
-      const double claimed =
-          claimed_share({vertices.col(i), *found, own}, step.moved, settings.much_nearer, settings);
-      const double weight =
-          step.areas[i] * found->agreement * found->agreement * reciprocity(claimed, settings);
+      const double back =
+          back_distance_ratio({vertices.col(i), *found, own}, step.moved, settings.much_nearer, settings);
+      const double weight = step.areas[i] * found->agreement * found->agreement * reciprocity(back, settings);
       all[k].form =
           weight * (found->halfway * found->halfway.transpose() + step.settings.slide * Matrix3::Identity());
       all[k].pull = all[k].form * (found->point - vertices.col(i));

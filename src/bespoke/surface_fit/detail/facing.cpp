@@ -11,12 +11,12 @@ bool faces_away(const TriangleMesh& source, const TriangleMesh& target) {
   const ClosestPointTree tree(target);
   const Points normals = vertex_normals(source), target_normals = face_normals(target);
   const Eigen::Index stride = std::max<Eigen::Index>(1, normals.cols() / max_vertices);
-  Eigen::Index asked = 0, against = 0;
-  for (Eigen::Index i = 0; i < normals.cols(); i += stride, ++asked) {
+  Eigen::Index sampled = 0, against = 0;
+  for (Eigen::Index i = 0; i < normals.cols(); i += stride, ++sampled) {
     const auto nearest = tree.closest(source.vertices.col(i));
     against += nearest && target_normals.col(nearest->face).dot(normals.col(i)) < 0;
   }
-  return 3 * against > 2 * asked;
+  return 3 * against > 2 * sampled;
 }
 
 TriangleMesh flipped(TriangleMesh mesh) {

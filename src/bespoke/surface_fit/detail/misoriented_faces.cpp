@@ -1,25 +1,20 @@
 #include "bespoke/surface_fit/detail/misoriented_faces.h"
 
 #include <Eigen/LU>
-#include <Eigen/Sparse>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "bespoke/error.h"
 #include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/surface_fit/detail/bends.h"
+#include "bespoke/surface_fit/detail/harmonic_extension.h"
 
 namespace bespoke {
 namespace {
-
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // n×3, the layout of the solver
 
 /// Radians; 0 where a direction is zero.
 double angle(const Vector3& a, const Vector3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -119,46 +114,6 @@ class FaceChanges {
   double max_turned_, max_stretch_;
 };
 
-/// Harmonic extension (discrete Laplace equation): the displacements (3×n) with those of the free vertices
-/// replaced by the mean of their neighbours', weighted by inverse length, so that displacements change as
-/// fast across short edges as across long ones.
-Points spread_harmonically(const Points& places, const VertexAdjacency& adjacency,
-                           const std::vector<int>& free, Points displacements,
-                           const FaceRepairSettings& settings) {
-  constexpr int fixed = -1;
-  const double min_length = settings.shortest * diagonal(places);
-  std::vector<int> row_of(static_cast<std::size_t>(displacements.cols()), fixed);
-  for (std::size_t k = 0; k < free.size(); ++k) row_of[free[k]] = static_cast<int>(k);
-  const auto count = static_cast<int>(free.size());
-  std::vector<Eigen::Triplet<double>> entries;
-  Columns right = Columns::Zero(count, 3);
-  for (int row = 0; row < count; ++row) {
-    const int vertex = free[row];
-    double total = 0;
-    for (int k = adjacency.start[vertex]; k < adjacency.start[vertex + 1]; ++k) {
-      const int other = adjacency.neighbours[k];
-      const double length = (places.col(other) - places.col(vertex)).norm();
-      const double weight = min_length / std::max(length, min_length);
-      total += weight;
-      if (row_of[other] == fixed)
-        right.row(row) += weight * displacements.col(other).transpose();
-      else
-        entries.emplace_back(row, row_of[other], -weight);
-    }
-    const double keep = settings.keep * total;
-    right.row(row) += keep * displacements.col(vertex).transpose();
-    entries.emplace_back(row, row, total + keep);
-  }
-  Eigen::SparseMatrix<double> matrix(count, count);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
-  if (factor.info() != Eigen::Success)
-    throw SolverError("the displacements of " + std::to_string(count) + " vertices could not be spread");
-  const Columns solution = factor.solve(right);
-  for (int row = 0; row < count; ++row) displacements.col(free[row]) = solution.row(row).transpose();
-  return displacements;
-}
-
 /// The faces' corners and the vertices at most `rings` edges away from one.
 std::vector<int> around(const TriangleMesh& mesh, const VertexAdjacency& adjacency,
                         const std::vector<Eigen::Index>& faces, int rings) {
@@ -191,12 +146,12 @@ std::vector<int> released_corners(const TriangleMesh& mesh, const std::vector<Ei
 /// Of the free vertices, those of patches that are bent no farther from their shape as repaired than as
 /// drawn. A patch is connected along edges, and its faces are those with a corner in it.
 std::vector<int> no_farther_bent(const DrawnSurface& surface, const std::vector<Hinge>& edges,
-                                 const Points& mended, std::vector<int> free) {
+                                 const Points& repaired, std::vector<int> free) {
   if (free.empty()) return free;
   constexpr int none = -1;
   constexpr double rounding = 1e-9;  // squared radians
   const Faces& faces = surface.before.faces;
-  std::vector<char> is_free(static_cast<std::size_t>(mended.cols()), 0);
+  std::vector<char> is_free(static_cast<std::size_t>(repaired.cols()), 0);
   for (const int vertex : free) is_free[vertex] = 1;
   DisjointSets patches(static_cast<int>(is_free.size()));
   std::vector<int> free_corner(static_cast<std::size_t>(faces.cols()), none);
@@ -208,7 +163,7 @@ std::vector<int> no_farther_bent(const DrawnSurface& surface, const std::vector<
     }
 
   const std::vector<double> drawn_bends = bends(edges, faces, surface.shape, surface.after);
-  const std::vector<double> repaired_bends = bends(edges, faces, surface.shape, mended);
+  const std::vector<double> repaired_bends = bends(edges, faces, surface.shape, repaired);
   std::vector<double> growth(is_free.size(), 0.0);  // of a patch, by its least vertex
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const int first = free_corner[edges[k].first], second = free_corner[edges[k].second];
@@ -255,13 +210,13 @@ RepairedSurface repair_misoriented_faces(const DrawnSurface& surface, const Face
     if (free.size() + released.size() > max_free) break;
     for (const int vertex : released) is_free[vertex] = 1;
     free.insert(free.end(), released.begin(), released.end());
-    Points mended = before.vertices +
-                    spread_harmonically(before.vertices, adjacency, free, after - before.vertices, settings);
-    bad = changes.bad(mended);
+    Points repaired =
+        before.vertices + extend_harmonically(before.vertices, adjacency, free, after - before.vertices);
+    bad = changes.bad(repaired);
     // More rings than help would only undo more of the fit.
     if (bad.size() >= fewest) continue;
     fewest = bad.size();
-    best = std::move(mended);
+    best = std::move(repaired);
     best_free = free.size();
   }
   free.resize(best_free);

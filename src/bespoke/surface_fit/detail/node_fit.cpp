@@ -8,9 +8,7 @@
 
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/cavities.h"
-#include "bespoke/surface_fit/detail/informative_areas.h"
 #include "bespoke/surface_fit/detail/plane_pairs.h"
-#include "bespoke/surface_fit/detail/pose_certainty.h"
 
 namespace bespoke {
 namespace {
@@ -57,16 +55,15 @@ double median_distance(const std::vector<PlanePair>& planes, const Points& verti
 }
 
 /// Of the rest surface, without what is excluded.
-Eigen::VectorXd speaking_areas(const TargetSurface& rest, const NodeFitInput& input,
-                               const NodeFitSettings& settings) {
-  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
+Eigen::VectorXd included_areas(const TargetSurface& rest) {
+  Eigen::VectorXd areas = rest.areas();
   for (Eigen::Index i = 0; i < areas.size(); ++i)
     if (rest.is_excluded(i)) areas[i] = 0;
   return areas;
 }
 
 /// Those vertices have zero weight.
-void silence(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
+void set_zero(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
   for (std::size_t i = 0; i < vertices.size(); ++i)
     if (vertices[i]) areas[static_cast<Eigen::Index>(i)] = 0;
 }
@@ -84,11 +81,8 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       settings_(settings_for(input, settings)),
       progress_(progress),
       rest_(input.rest, input.patches),
-      areas_(speaking_areas(rest_, input, settings)),
-      target_areas_(informative_areas(input.target, input.diagonal, settings.areas)),
-      pose_certainty_(input.is_posed ? pose_certainty(input.rest.vertices, input.anchor_sources,
-                                                      settings.outside_residuals.reach * input.diagonal)
-                                     : Eigen::VectorXd()),
+      areas_(included_areas(rest_)),
+      target_areas_(input.target.areas()),
       anchors_(node_anchors(input, rest_)),
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
       surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
@@ -102,8 +96,8 @@ double NodeFitting::fit_coarse() {
   const Eigen::VectorXd areas = areas_, target_areas = target_areas_;
   if (anchors_.empty()) {
     find_unmatched_cavities();
-    silence(fit_.unmatched_cavities.contains, areas_);
-    silence(target_lined_, target_areas_);
+    set_zero(fit_.unmatched_cavities.contains, areas_);
+    set_zero(target_in_cavity_, target_areas_);
   }
   iterate(*few, level);
   areas_ = areas;
@@ -116,20 +110,20 @@ double NodeFitting::fit_coarse() {
 }
 
 void NodeFitting::find_unmatched_cavities() {
-  if (!target_lined_.empty()) return;
+  if (!target_in_cavity_.empty()) return;
   fit_.unmatched_cavities = cavities_of(rest_.mesh());
-  target_lined_ = cavities_of(input_.target.mesh()).contains;
+  target_in_cavity_ = cavities_of(input_.target.mesh()).contains;
 }
 
 NodeFit NodeFitting::fit_fine() {
   find_unmatched_cavities();
   const TargetSurface now = rest_.moved(fit_.vertices);
-  fit_.hidden = vertices_in_lacking_cavities(now, input_.target, input_.diagonal, settings_.cavities);
-  fit_.lacking = unmatched_cavities(fit_.unmatched_cavities.parts, now.mesh(), input_.target.mesh(),
-                                    target_lined_, settings_.unmatched_cavities);
-  for (const Cavity& cavity : fit_.lacking)
+  fit_.hidden = vertices_in_unmatched_cavities(now, input_.target, input_.diagonal, settings_.cavities);
+  fit_.unmatched = unmatched_cavities(fit_.unmatched_cavities.parts, now.mesh(), input_.target.mesh(),
+                                      target_in_cavity_, settings_.unmatched_cavities);
+  for (const Cavity& cavity : fit_.unmatched)
     for (const int vertex : cavity.vertices) fit_.hidden[static_cast<std::size_t>(vertex)] = 1;
-  silence(fit_.hidden, areas_);
+  set_zero(fit_.hidden, areas_);
   iterate(*fine_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);
   fit_.matched_boundaries = boundaries_.matched_boundaries();
@@ -152,10 +146,9 @@ void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
     std::vector<PlanePair> planes;
     // Before the anchors are met, closest points mislead.
     if (fit_.iterations > 0 || anchors_.empty())
-      planes =
-          find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
-                            input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
-                           level, settings_);
+      planes = find_plane_pairs(
+          {rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal}, level,
+          settings_);
     if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
     const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);
     NodeGoals goals{fit_.vertices,

@@ -29,16 +29,15 @@ struct NodeFitInput {
   Eigen::VectorXd anchor_sigmas = {};
   /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
   FacePatches patches = {};
-  bool is_posed = false;  ///< whether anchors have bent `rest`
 };
 
 struct NodeFit {
-  Points vertices;              ///< 3×n, of the deformed `rest`
-  Points coarse_vertices;       ///< 3×n, as the few nodes of the first level left them
-  Points anchor_sources;        ///< 3×k, carried along
-  Cavities unmatched_cavities;  ///< of `rest`
-  std::vector<Cavity> lacking;  ///< of them, those that the target lacks
-  std::vector<char> hidden;     ///< n: in a cavity that the target lacks, without any pair
+  Points vertices;                ///< 3×n, of the deformed `rest`
+  Points coarse_vertices;         ///< 3×n, as the few nodes of the first level left them
+  Points anchor_sources;          ///< 3×k, carried along
+  Cavities unmatched_cavities;    ///< of `rest`
+  std::vector<Cavity> unmatched;  ///< of them, those that the target lacks
+  std::vector<char> hidden;       ///< n: in a cavity that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
   double rigidity = 1;  ///< g of the pair, from NodeFitting::fit_coarse
@@ -72,12 +71,11 @@ class NodeFitting {
   const Progress& progress_;
   TargetSurface rest_;
   Eigen::VectorXd areas_, target_areas_;
-  Eigen::VectorXd pose_certainty_;  // empty unless anchors have bent the rest surface
   std::vector<NodeAnchor> anchors_;
   BoundaryMatcher boundaries_;
   NodeSurface surface_;
   AnchorLimits limits_;
-  std::vector<char> target_lined_;  // found with the cavities
+  std::vector<char> target_in_cavity_;  // found with the cavities
   NodeFit fit_;
   std::unique_ptr<NodeSystem> fine_;  // of the second level, from the end of the first on
 };

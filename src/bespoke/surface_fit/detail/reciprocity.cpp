@@ -11,22 +11,22 @@ double distance(const FoundPair& pair) { return (pair.match.point - pair.point).
 }  // namespace
 
 /// Reciprocal correspondences (Pajdla, Van Gool 1995).
-std::optional<SurfaceMatch> nearer_claim(const FoundPair& pair, const TargetSurface& asking, double share) {
+std::optional<SurfaceMatch> back_match(const FoundPair& pair, const TargetSurface& surface, double share) {
   MatchLimits limits = pair.limits;
   limits.max_distance = share * distance(pair);
   limits.normal_length = 0;
-  return asking.match(pair.match.point, pair.match.normal, limits);
+  return surface.match(pair.match.point, pair.match.normal, limits);
 }
 
-double claimed_share(const FoundPair& pair, const TargetSurface& asking, double share,
-                     const ReciprocitySettings& settings) {
+double back_distance_ratio(const FoundPair& pair, const TargetSurface& surface, double share,
+                           const ReciprocitySettings& settings) {
   if (!(distance(pair) > settings.rounding * pair.limits.max_distance)) return 1;
-  const auto claim = nearer_claim(pair, asking, share);
-  return claim ? (claim->point - pair.match.point).norm() / distance(pair) : 1;
+  const auto found = back_match(pair, surface, share);
+  return found ? (found->point - pair.match.point).norm() / distance(pair) : 1;
 }
 
-double reciprocity(double claimed, const ReciprocitySettings& settings) {
-  return std::pow(std::min(claimed / settings.much_nearer, 1.0), settings.power);
+double reciprocity(double ratio, const ReciprocitySettings& settings) {
+  return std::pow(std::min(ratio / settings.much_nearer, 1.0), settings.power);
 }
 
 }  // namespace bespoke

@@ -14,19 +14,19 @@ struct FoundPair {
   const MatchLimits& limits;  ///< that `match` is within
 };
 
-/// Reciprocal correspondence: the place of the point's own surface, `asking`, that is nearest to the match
+/// Reciprocal correspondence: the place of the point's own surface that is nearest to the match
 /// and faces as that does, where it is nearer than `share` of the point's distance; empty also where it lies
 /// on the surface's boundary.
-std::optional<SurfaceMatch> nearer_claim(const FoundPair& pair, const TargetSurface& asking, double share);
+std::optional<SurfaceMatch> back_match(const FoundPair& pair, const TargetSurface& surface, double share);
 
 /// Ratio c / d of the back distance c, from the match to its reciprocal correspondence, to the distance d of
 /// the point from its match; 1 without one, and for a point on its match.
-double claimed_share(const FoundPair& pair, const TargetSurface& asking, double share,
-                     const ReciprocitySettings& settings);
+double back_distance_ratio(const FoundPair& pair, const TargetSurface& surface, double share,
+                           const ReciprocitySettings& settings);
 
-/// Weight of a pair with this ratio of back distance to distance: (claimed / much_nearer)^power, at most 1.
+/// Weight of a pair with this ratio of back distance to distance: (ratio / much_nearer)^power, at most 1.
 /// Where another place of the point's own surface is much nearer to the match, the match is that place's
 /// counterpart and the point has none: the other surface lacks its part, as a scan with a hole does.
-double reciprocity(double claimed, const ReciprocitySettings& settings);
+double reciprocity(double ratio, const ReciprocitySettings& settings);
 
 }  // namespace bespoke

@@ -91,9 +91,9 @@ std::optional<SurfaceMatch> TargetSurface::match(const Vector3& x, const Vector3
   query.normal_length = limits.normal_length;
   const Part* part = &whole_;
   if (limits.patch && !parts_.empty()) {
-    const auto asked = parts_.find(*limits.patch);
-    if (asked == parts_.end()) return std::nullopt;
-    part = &asked->second;
+    const auto own = parts_.find(*limits.patch);
+    if (own == parts_.end()) return std::nullopt;
+    part = &own->second;
   }
   std::optional<SurfacePoint> found = part->tree.closest(x, query);
   if (!found || (!limits.boundary_answers && part->ends_at(*found))) return std::nullopt;
