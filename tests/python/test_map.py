@@ -1,4 +1,7 @@
 import json
+import os
+import struct
+import subprocess
 import threading
 
 import bespoke
@@ -147,6 +150,72 @@ def test_measures_the_pair_and_no_other(pair):
     assert quality.source_to_target.p95 < 0.02
     with pytest.raises(bespoke.InvalidInput, match="source"):
         pair.map.measure(pair.target, pair.target)
+
+
+def skinned_glb(mesh, turn, shift):
+    """The mesh as it is stored, and shown where its one joint, turned and shifted, holds it."""
+    count = len(mesh.vertices)
+    blocks = [
+        (np.asarray(mesh.vertices, "<f4"), 5126, "VEC3", count),
+        (np.zeros((count, 4), "u1"), 5121, "VEC4", count),
+        (np.tile(np.array([1, 0, 0, 0], "<f4"), (count, 1)), 5126, "VEC4", count),
+        (np.eye(4, dtype="<f4"), 5126, "MAT4", 1),
+        (np.asarray(mesh.faces, "<u4"), 5125, "SCALAR", 3 * len(mesh.faces)),
+    ]
+    data, views, accessors = b"", [], []
+    for index, (values, component, kind, number) in enumerate(blocks):
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": values.nbytes})
+        accessors.append({"bufferView": index, "componentType": component, "type": kind, "count": number})
+        data += values.tobytes() + b"\0" * (-values.nbytes % 4)
+    root = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(data)}],
+        "bufferViews": views,
+        "accessors": accessors,
+        "skins": [{"joints": [1], "inverseBindMatrices": 3}],
+        "nodes": [{"mesh": 0, "skin": 0}, {"rotation": turn, "translation": shift}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}, "indices": 4}]}],
+        "scenes": [{"nodes": [0, 1]}],
+        "scene": 0,
+    }
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+
+
+def test_takes_either_pose_of_a_skinned_file(pair, tmp_path):
+    file, out = tmp_path / "skinned.glb", tmp_path / "out.glb"
+    half = float(np.sqrt(0.5))
+    file.write_bytes(skinned_glb(pair.source, [0, 0, half, half], [0.5, 0, 0]))
+    stored, shown = bespoke.read_mesh(file, pose="stored").vertices, bespoke.read_mesh(file).vertices
+    np.testing.assert_allclose(stored, pair.source.vertices, atol=1e-6)
+    x, y, z = stored.T
+    np.testing.assert_allclose(shown, np.stack([0.5 - y, x, z], 1), atol=1e-6)
+    pair.map.apply(file, out, pose="stored", unit="map")
+    np.testing.assert_allclose(bespoke.read_mesh(out, pose="stored").vertices, pair.map(stored), atol=1e-5)
+    pair.map.apply(file, out, unit="map")
+    np.testing.assert_allclose(bespoke.read_mesh(out).vertices, pair.map(shown), atol=1e-5)
+    with pytest.raises(bespoke.InvalidInput, match="pose"):
+        bespoke.read_mesh(file, pose="bound")
+
+
+def test_outputs_that_are_no_files_stay_what_they_are(pair, tmp_path):
+    pipe, link, product = tmp_path / "pipe", tmp_path / "link.obj", tmp_path / "product.obj"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    bespoke.write_mesh(product, pair.source)
+    pair.map.save(tmp_path / "map.vdb")
+    pair.map.apply(product, tmp_path / "carried.obj")
+    for write, expected in (
+        (lambda: pair.map.save(pipe), tmp_path / "map.vdb"),
+        (lambda: pair.map.apply(product, link), tmp_path / "carried.obj"),
+        (lambda: bespoke.write_mesh(link, pair.source), product),
+    ):
+        with subprocess.Popen(["cat", pipe], stdout=subprocess.PIPE) as reader:
+            write()
+            assert reader.stdout.read() == expected.read_bytes()
+        assert pipe.is_fifo() and link.is_symlink()
 
 
 def test_threads_share_a_map(pair, around):

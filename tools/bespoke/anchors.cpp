@@ -24,6 +24,7 @@
 #include "help.h"
 #include "length_option.h"
 #include "output_files.h"
+#include "pose_option.h"
 #include "run_options.h"
 #include "standard_output.h"
 
@@ -34,6 +35,7 @@ namespace {
 struct ModelArguments {
   std::string source;
   std::string target;
+  std::optional<ModelPose> pose;
 };
 
 struct Models {
@@ -44,12 +46,14 @@ struct Models {
 void add_model_options(CLI::App& app, ModelArguments& arguments, const std::string& why) {
   app.add_option("--source", arguments.source, "Source model: " + why)->type_name("MESH");
   app.add_option("--target", arguments.target, "Target model: " + why)->type_name("MESH");
+  add_pose_option(app, arguments.pose, "skinned glTF models");
 }
 
 Models read_models(const ModelArguments& arguments) {
+  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
   Models models;
-  if (!arguments.source.empty()) models.source = read_source(arguments.source);
-  if (!arguments.target.empty()) models.target = read_target(arguments.target).mesh;
+  if (!arguments.source.empty()) models.source = read_source_model(arguments.source, pose).mesh;
+  if (!arguments.target.empty()) models.target = read_target(arguments.target, pose).mesh;
   return models;
 }
 
@@ -250,8 +254,7 @@ void add_audit(CLI::App& app) {
 // ---- suggest
 
 struct SuggestArguments {
-  std::string source;
-  std::string target;
+  ModelArguments models;
   std::vector<std::string> anchors;
   std::vector<std::string> outputs;
   std::size_t count = SuggestionOptions().count;
@@ -276,14 +279,13 @@ void print(const SuggestedAnchor& suggestion) {
 
 void suggest(const SuggestArguments& arguments, const Progress& progress) {
   std::vector<std::filesystem::path> inputs = as_paths(arguments.anchors);
-  inputs.insert(inputs.end(), {arguments.source, arguments.target});
+  inputs.insert(inputs.end(), {arguments.models.source, arguments.models.target});
   require_safe_outputs(inputs, as_paths(arguments.outputs));
-  const ModelArguments named{arguments.source, arguments.target};
-  const Models models = read_models(named);
+  const Models models = read_models(arguments.models);
   const AnchorFileOptions options = file_options(models);
   Anchors anchors;
   if (!arguments.anchors.empty()) anchors = read_anchor_files(as_paths(arguments.anchors), options);
-  const InOneUnit fitted = in_one_unit(models, anchors, named);
+  const InOneUnit fitted = in_one_unit(models, anchors, arguments.models);
   const double size = diagonal(fitted.models.target->vertices);
   const double tolerance = arguments.tolerance ? arguments.tolerance->in_mesh_units(size) : surest * size;
   const std::vector<SuggestedAnchor> suggestions = suggest_anchors(
@@ -309,8 +311,9 @@ void add_suggest(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("suggest", "Propose anchors where the fit is worst or least certain, to be checked");
   begin_group(*command, input_group);
-  command->add_option("SOURCE", arguments->source, "Source model")->required();
-  command->add_option("TARGET", arguments->target, "Target model")->required();
+  command->add_option("SOURCE", arguments->models.source, "Source model")->required();
+  command->add_option("TARGET", arguments->models.target, "Target model")->required();
+  add_pose_option(*command, arguments->models.pose, "skinned glTF models");
   command->add_option("--anchors", arguments->anchors, "Anchors so far, in any format of `anchors convert`")
       ->type_name("FILE")
       ->expected(1, 2);

@@ -22,6 +22,7 @@
 #include "name_option.h"
 #include "output_files.h"
 #include "penetration_check.h"
+#include "pose_option.h"
 #include "product_map.h"
 #include "standard_output.h"
 #include "time_option.h"
@@ -151,17 +152,17 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments, plan));
   const fs::path map_file =
       arguments.catalog.is_used() ? find_map(arguments.catalog) : fs::path(arguments.map);
+  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
   ProductMap map(
       map_file, arguments.products,
       {map_form(arguments), arguments.untrusted,
-       arguments.order == MappingOrder::moving_point || arguments.clearance.is_used(), arguments.unit},
+       arguments.order == MappingOrder::moving_point || arguments.clearance.is_used(), arguments.unit, pose},
       context);
   // A batch knows which jobs share a map only where they name it.
   if (arguments.catalog.is_used()) context.maps.close(map_file);
 
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
   PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "", arguments.catalog.target);
-  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
   ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit, pose);
   OutputFiles files;
   std::vector<AppliedProduct> applied(arguments.products.size());
@@ -231,9 +232,7 @@ void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
 
 /// What becomes of skeletons.
 void add_rig_options(CLI::App& apply, ApplyArguments& arguments) {
-  add_name_option(apply, "--pose", arguments.pose, model_poses,
-                  "Of a skinned glTF product whose nodes stand in another pose than it is stored in: shown, "
-                  "as viewers have it, or stored, as in the file (default: shown)");
+  add_pose_option(apply, arguments.pose, "skinned glTF products");
   apply
       .add_option("--skeleton", arguments.skeleton,
                   "A skinned model (.glb, .gltf), the target for instance: the product, a .glb, is bound to "

@@ -7,26 +7,29 @@
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/sha256.h"
 #include "planned_run.h"
 
 namespace bespoke::command {
 namespace {
 
-/// By which the maps of the catalogue know a model: of its file or, where this says a unit, of the model in
-/// the unit of a map. Where none knows it, of the file. read(unit): the model, in that unit.
+/// By which the maps of the catalogue know a model: of its file, in either pose of a skinned one or, where
+/// the file says a unit, of the model in the unit of a map. Where none knows it, of the file.
+/// read(unit, hash): the model, in that unit, in the pose that has this hash, if one has.
 template <class Read>
 std::string known_hash(const Catalog& catalog, ModelRecord CatalogEntry::*side, const std::string& file,
                        const Read& read) {
-  const std::string as_given = content_hash(read(""));
-  const bool says_unit = !unit_of_format(file).empty();
+  const std::string as_given = content_hash(read("", ""));
+  const bool says_unit = !unit_of_format(file).empty(), is_posed = has_two_poses(file);
   std::map<std::string, std::string> in_unit;
   for (const CatalogEntry& entry : catalog.assets) {
     const std::string& known = (entry.*side).hash;
     if (known == as_given) return known;
+    if (is_posed && content_hash(read(entry.unit, known)) == known) return known;
     if (!says_unit) continue;
     const auto [hash, is_new] = in_unit.try_emplace(entry.unit);
-    if (is_new) hash->second = content_hash(read(entry.unit));
+    if (is_new) hash->second = content_hash(read(entry.unit, ""));
     if (hash->second == known) return known;
   }
   return as_given;
@@ -36,12 +39,16 @@ std::string known_hash(const Catalog& catalog, ModelRecord CatalogEntry::*side, 
 std::string source_hash(const CatalogOption& option, const Catalog& catalog) {
   if (option.source.empty()) return option.source_hash;
   return known_hash(catalog, &CatalogEntry::source, option.source,
-                    [&](const std::string& unit) { return read_source(option.source, unit, ""); });
+                    [&](const std::string& unit, const std::string& hash) {
+                      return read_source(option.source, unit, hash);
+                    });
 }
 std::string target_hash(const CatalogOption& option, const Catalog& catalog) {
   if (option.target.empty()) return option.target_hash;
   return known_hash(catalog, &CatalogEntry::target, option.target,
-                    [&](const std::string& unit) { return read_target(option.target, unit, ""); });
+                    [&](const std::string& unit, const std::string& hash) {
+                      return read_target(option.target, unit, hash);
+                    });
 }
 
 /// With a map that is named: what products are checked against.

@@ -40,7 +40,7 @@ void print_places(const Certificate& certificate, std::ostream& out) {
     out << "  and " << certificate.folded + certificate.undecided - count << " more\n";
 }
 
-std::string answer(const CheckArguments& arguments, const Certificate& certificate) {
+std::string text_of(const CheckArguments& arguments, const Certificate& certificate) {
   if (arguments.json) return to_json(certificate).dump(2) + "\n";
   std::ostringstream text;
   text << (certificate.is_bijection() ? "proved: the map is one-to-one in all of space"
@@ -55,7 +55,7 @@ void run(const CheckArguments& arguments, const RunContext& context) {
   require_safe_outputs(inputs(arguments), outputs(arguments));
   const Asset asset = read_asset(arguments.map, {.untrusted = arguments.untrusted});
   const Certificate certificate = certify_map(asset, arguments.t, context.progress);
-  write_answer(arguments.output, answer(arguments, certificate), context);
+  write_result(arguments.output, text_of(arguments, certificate), context);
   context.findings.figures = {{"bijection", certificate.is_bijection()},
                               {"min_determinant", certificate.min_determinant},
                               {"folded", certificate.folded},

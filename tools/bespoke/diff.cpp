@@ -64,7 +64,7 @@ void run(const DiffArguments& arguments, const RunContext& context) {
         "the maps have different sources, so their places correspond only as far as these do; fit both "
         "from one source to compare them everywhere",
         Entry::maps_of_different_sources);
-  write_answer(arguments.output, arguments.json ? difference_json(compared) : difference_text(compared),
+  write_result(arguments.output, arguments.json ? difference_json(compared) : difference_text(compared),
                context);
   context.findings.figures = {{"largest", compared.maps.band.distance.max},
                               {"p99", compared.maps.band.distance.p99},

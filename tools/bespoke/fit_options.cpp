@@ -8,6 +8,7 @@
 #include "length_option.h"
 #include "memory_option.h"
 #include "name_option.h"
+#include "pose_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -39,10 +40,7 @@ void add_input_options(CLI::App& fit, FitArguments& arguments) {
                  "Reference model that products are designed around: " + read_product_endings())
       ->required();
   fit.add_option("TARGET", arguments.target, "Reference model that products are to fit")->required();
-  add_name_option(
-      fit, "--pose", arguments.pose, model_poses,
-      "Of skinned glTF models whose nodes stand in another pose than they are stored in: shown, as "
-      "viewers have it, or stored, as in the file (default: shown)");
+  add_pose_option(fit, arguments.pose, "skinned glTF models");
   fit.add_option("--anchors", arguments.anchors,
                  "Anchors (landmarks): pairs of corresponding points in one file: .json (also curves and "
                  "patches), .csv, or .txt of vertex numbers; .pp, .fcsv, .mrk.json, .pts and .wrap.json have "

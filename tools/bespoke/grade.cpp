@@ -147,9 +147,9 @@ void add_grade_command(CLI::App& app) {
   grade
       ->add_option(
           "--clearance", request.clearance,
-          "What products keep from the models of the sizes, as for `apply`: keep, a length, or off; sizes "
-          "on the way (t other than 1) are carried without (default: off)")
-      ->type_name("keep|LENGTH|off");
+          "What products keep from the models of the sizes, as for `apply`: keep, same, a length, or off; "
+          "sizes on the way (t other than 1) are carried without (default: off)")
+      ->type_name("keep|same|LENGTH|off");
   grade->add_flag("--require-clear", request.require_clear, require_clear_help);
   begin_group(*grade, jobs_group);
   grade->add_flag("--keep-going", arguments->keep_going,

@@ -80,12 +80,19 @@ ManifestJob apply_job(const GradeRequest& request, const GradeSize& size) {
     if (request.clearance != "off") job.entries.push_back({"clearance", {request.clearance}});
     if (request.require_clear) job.entries.push_back({"require-clear", {}, true});
   }
+  if (const auto pose = pose_of(size)) job.entries.push_back({"pose", {*pose}});
   if (!request.rigid.empty()) job.entries.push_back({"rigid", request.rigid});
   if (!request.similar.empty()) job.entries.push_back({"similar", request.similar});
   return job;
 }
 
 }  // namespace
+
+std::optional<std::string> pose_of(const GradeSize& size) {
+  for (const ManifestEntry& entry : size.fit)
+    if (entry.key == "pose" && !entry.values.empty()) return entry.values.front();
+  return std::nullopt;
+}
 
 fs::path folder(const GradeRequest& request, const GradeSize& size) { return request.out_dir / size.name; }
 

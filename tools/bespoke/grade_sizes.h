@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct GradeSize {
   std::filesystem::path map;       ///< sizes of one target, anchors and options share it
   double t = 1;
 };
+
+/// Of skinned models, as the size's fit takes them: the value of its option "pose", if it has one.
+std::optional<std::string> pose_of(const GradeSize& size);
 
 struct GradeSizes {
   std::vector<GradeSize> sizes;

@@ -77,13 +77,12 @@ void write_tables(const fs::path& directory, const std::string& csv, const std::
   files.keep();
 }
 
-/// In the map's unit, as the fit has taken it: anchors that say none go with their model.
-SizeModel model_of(const GradeSize& size, const std::string& map_unit) {
-  TriangleMesh mesh = read_target(size.target).mesh;
-  const double scale = scale_to_unit(size.target, map_unit);
-  mesh.vertices *= scale;
+/// In the map's unit and pose, as the fit has taken it: anchors that say no unit go with their model.
+SizeModel model_of(const GradeSize& size, const OpenedMap& map) {
+  TriangleMesh mesh = read_target(size.target, map.unit, map.target_hash).mesh;
   Anchors anchors = anchors_of(size);
-  const double of_anchors = anchors.unit.empty() ? scale : unit_factor(anchors.unit, map_unit).value_or(1);
+  const double of_anchors = anchors.unit.empty() ? scale_to_unit(size.target, map.unit)
+                                                 : unit_factor(anchors.unit, map.unit).value_or(1);
   scale_anchors(anchors, of_anchors, of_anchors);
   return {std::move(mesh), places_of(anchors, &AnchorPair::b)};
 }
@@ -110,7 +109,7 @@ BatchJob size_job(const GradeRequest& request, const GradeSize& size, const Meas
   job.run = [size, series = without_sizes(sheet), lines, directory, &maps](const Progress&) {
     const std::shared_ptr<const OpenedMap> map = maps.open(size.map, MapForm::grids, {});
     std::optional<SizeModel> model;
-    if (size.t == 1) model = model_of(size, map->unit);
+    if (size.t == 1) model = model_of(size, *map);
     const GradedSize graded{size.name, graded_measures(lines, *map, size.t, model ? &*model : nullptr)};
     write_tables(directory, size_csv(graded), size_markdown(series, graded));
     return JobFindings{};
@@ -143,13 +142,18 @@ BatchJob series_job(const GradeRequest& request, const std::vector<GradeSize>& s
 MeasuringSheet plan_measures(const GradeRequest& request, const fs::path& measures, GradeSizes& sizes) {
   const Measures sheet = read_measures(measures);
   const TriangleMesh source = read_source(request.source);
+  // Lines of sizes whose fits take the other pose of a skinned source.
+  std::optional<TriangleMesh> stored;
   require_valid(source, "source " + request.source);
   MeasuringSheet planned{measures, sheet.unit, length_decimals(diagonal(source.vertices)), {}};
   for (const GradeSize& size : sizes.sizes) {
     try {
       const Anchors anchors = anchors_of(size);
       require_same_unit(sheet.unit, anchors.unit, size.anchors);
-      planned.lines.push_back(measure_lines(sheet.measures, source, places_of(anchors, &AnchorPair::a)));
+      const bool is_stored = pose_of(size) == name_of(model_poses, ModelPose::stored);
+      if (is_stored && !stored) stored = read_source_model(request.source, ModelPose::stored).mesh;
+      planned.lines.push_back(
+          measure_lines(sheet.measures, is_stored ? *stored : source, places_of(anchors, &AnchorPair::a)));
     } catch (const Error& error) {
       sizes.faults.push_back({size.line, error.what()});
     }

@@ -193,8 +193,8 @@ void HtmlPages::write(const std::string& scene, const OpenedMap& map) const {
 }
 
 void HtmlPages::write_picture(const Row& row, const OpenedMap& map) {
-  const TriangleMesh source = read_source(row.shown.source, map.unit, {});
-  const TriangleMesh target = read_target(row.shown.target, map.unit, {}).mesh;
+  const TriangleMesh source = read_source(row.shown.source, map.unit, map.source_hash);
+  const TriangleMesh target = read_target(row.shown.target, map.unit, map.target_hash).mesh;
   const std::vector<TriangleMesh> products = meshes_of(row.shown.products, map.unit);
   OutputFiles files;
   files.write_text(

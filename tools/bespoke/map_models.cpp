@@ -8,6 +8,7 @@
 #include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "commands.h"
+#include "pose_option.h"
 
 namespace bespoke::command {
 
@@ -31,6 +32,7 @@ void add_map_model_options(CLI::App& app, MapModelArguments& arguments) {
                  "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
   add_unit_option(app, arguments.unit);
+  add_pose_option(app, arguments.pose, "skinned glTF products");
   app.add_option("--confidence", arguments.confidence, "What `fit --confidence-out` wrote")
       ->type_name("FILE");
   app.add_option("--fit-report", arguments.fit_report,
@@ -59,7 +61,8 @@ MapModels read_map_models(const MapModelArguments& arguments) {
   require_target(arguments.target, target, models.asset.record);
   models.target = std::move(target.mesh);
   for (const std::string& path : arguments.products) {
-    models.products.push_back(read_product_in(path, record.unit, arguments.unit));
+    models.products.push_back(
+        read_product_in(path, record.unit, arguments.unit, arguments.pose.value_or(ModelPose::shown)));
   }
   if (!arguments.confidence.empty()) models.findings.confidence = read_confidence(arguments.confidence);
   if (!arguments.fit_report.empty()) models.findings.unmet = read_unmet_vertices(arguments.fit_report);

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct MapModelArguments {
   std::string source;
   std::string target;
   std::vector<std::string> products;
-  std::string unit;  ///< of the products' coordinates, where it is given
+  std::string unit;               ///< of the products' coordinates, where it is given
+  std::optional<ModelPose> pose;  ///< of skinned products
   std::string confidence;
   std::string fit_report;
   bool untrusted = false;

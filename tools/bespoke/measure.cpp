@@ -9,6 +9,7 @@
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/pipeline/open_map.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
@@ -16,6 +17,7 @@
 #include "help.h"
 #include "map_models.h"
 #include "output_files.h"
+#include "pose_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -27,6 +29,7 @@ struct MeasureArguments {
   std::string target;
   std::vector<std::string> products;
   std::string unit;
+  std::optional<ModelPose> pose;  ///< of skinned products
   bool json = false;
   bool exact = false;
   bool untrusted = false;
@@ -62,7 +65,7 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
   std::vector<NamedProduct> products;
   std::vector<std::string> names;
   for (const std::string& path : arguments.products) {
-    const Product product = read_product(path);
+    const Product product = read_product(path, arguments.pose.value_or(ModelPose::shown));
     if (product.degenerate.count > 0)
       context.warn(path + ": " + to_string(product.degenerate), Entry::content_left_as_it_is);
     names.push_back(std::filesystem::path(path).filename().string());
@@ -92,7 +95,7 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
       {source, target.mesh, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
       context.progress);
   context.findings.figures = figures(quality);
-  write_answer(arguments.output,
+  write_result(arguments.output,
                arguments.json ? quality_json(quality, names, asset.record.unit)
                               : quality_text(quality, names, asset.record.unit),
                context);
@@ -121,6 +124,7 @@ void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
                    "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
   add_unit_option(*measure, arguments->unit);
+  add_pose_option(*measure, arguments->pose, "skinned glTF products");
   measure->add_flag("--exact", arguments->exact,
                     "Measure the exact map that --keep-exact stored, not the grids");
   measure->add_flag("--untrusted", arguments->untrusted, untrusted_help);

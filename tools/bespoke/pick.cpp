@@ -14,11 +14,13 @@
 #include "bespoke/pattern/seam_file.h"
 #include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "commands.h"
 #include "help.h"
 #include "output_files.h"
 #include "page_output.h"
+#include "pose_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -30,6 +32,7 @@ struct PickArguments {
   std::string seams;  ///< a file to begin with, or empty
   bool is_for_seams = false;
   std::string output;
+  std::optional<ModelPose> pose;
 };
 
 std::string name_of_file(const std::string& path) { return std::filesystem::path(path).stem().string(); }
@@ -59,7 +62,7 @@ void pick_seams(const PickArguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.source};
   if (!arguments.seams.empty()) inputs.emplace_back(arguments.seams);
   require_safe_outputs(inputs, {arguments.output});
-  const Product product = read_product(arguments.source);
+  const Product product = read_product(arguments.source, arguments.pose.value_or(ModelPose::shown));
   const TriangleMesh garment{product.vertices, triangulated(product)};
   if (garment.faces.cols() == 0)
     throw InvalidInput(arguments.source + ": it has no faces, so there is nothing to cut");
@@ -76,8 +79,9 @@ void pick_anchors(const PickArguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.source, arguments.target};
   if (!arguments.anchors.empty()) inputs.push_back(arguments.anchors);
   require_safe_outputs(inputs, {arguments.output});
-  PickModel source{arguments.source, read_source(arguments.source)};
-  PickModel target{arguments.target, read_target(arguments.target).mesh};
+  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
+  PickModel source{arguments.source, read_source_model(arguments.source, pose).mesh};
+  PickModel target{arguments.target, read_target(arguments.target, pose).mesh};
   std::optional<Anchors> anchors;
   if (!arguments.anchors.empty()) anchors = read_anchor_file(arguments.anchors, {&source.mesh, &target.mesh});
   if (anchors && !anchors->unit.empty()) show_in_unit_of_anchors(source, target, *anchors);
@@ -122,6 +126,7 @@ void add_pick_command(CLI::App& app) {
               "Pick where a garment is cut, for `flatten --seams`; with a file, begin with its seams")
           ->expected(0, 1)
           ->type_name("[SEAMS.json]");
+  add_pose_option(*pick, arguments->pose, "skinned glTF models");
   begin_group(*pick, output_group);
   pick->add_option("-o,--output", arguments->output, page_help)->required()->type_name("PAGE.html");
   pick->footer(

@@ -38,7 +38,7 @@ void require_safe_outputs(const std::vector<JobFile>& inputs, const std::vector<
   require_safe_outputs(paths(inputs), paths(outputs));
 }
 
-void write_answer(const std::string& output, const std::string& text, const RunContext& context) {
+void write_result(const std::string& output, const std::string& text, const RunContext& context) {
   if (output.empty()) return context.print(text);
   OutputFiles files;
   files.write_text(output, text);

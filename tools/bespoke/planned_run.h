@@ -52,6 +52,6 @@ std::vector<JobFile> named_files(std::vector<JobFile> files);
 void require_safe_outputs(const std::vector<JobFile>& inputs, const std::vector<JobFile>& outputs);
 
 /// Writes the result of a subcommand to the file, or prints it where there is none.
-void write_answer(const std::string& output, const std::string& text, const RunContext& context);
+void write_result(const std::string& output, const std::string& text, const RunContext& context);
 
 }  // namespace bespoke::command

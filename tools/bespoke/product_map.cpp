@@ -9,6 +9,7 @@
 #include "bespoke/lattice/part_map.h"
 #include "bespoke/pipeline/open_map_part.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 
 namespace bespoke::command {
@@ -28,7 +29,8 @@ std::uintmax_t size_of(const fs::path& file) {
 
 /// The boxes of the products' vertices, in their own units; nothing where they are not known at a small part
 /// of the map's cost.
-std::optional<std::vector<Box>> boxes_of(const std::vector<std::string>& products, std::uintmax_t map_size) {
+std::optional<std::vector<Box>> boxes_of(const std::vector<std::string>& products, ModelPose pose,
+                                         std::uintmax_t map_size) {
   std::uintmax_t size = 0;
   for (const std::string& product : products) {
     if (!can_read_product(product)) return std::nullopt;
@@ -38,7 +40,7 @@ std::optional<std::vector<Box>> boxes_of(const std::vector<std::string>& product
   std::vector<Box> boxes;
   try {
     for (const std::string& product : products) {
-      const Points vertices = read_product(product).vertices;
+      const Points vertices = read_product(product, pose).vertices;
       Box& box = boxes.emplace_back();
       for (Eigen::Index i = 0; i < vertices.cols(); ++i) box.extend(Vector3(vertices.col(i)));
       if (box.isEmpty()) return std::nullopt;
@@ -68,7 +70,7 @@ ProductMap::ProductMap(fs::path file, const std::vector<std::string>& products,
   const bool is_partly_enough =
       options.form == MapForm::grids && !options.untrusted && !options.moves_points && !context.is_job;
   if (is_partly_enough && can_open_part(file_)) {
-    if (const auto boxes = boxes_of(products, size_of(file_))) {
+    if (const auto boxes = boxes_of(products, options.pose, size_of(file_))) {
       const Box stored = box_in_map(products, *boxes, {}, {});
       std::optional<OpenedPart> part = open_map_part(file_, stored);
       if (part) {

@@ -18,7 +18,8 @@ struct ProductMapOptions {
   bool untrusted = false;
   /// Whether points are queried where the product has none of its own, between 0 and 1.
   bool moves_points = false;
-  std::string unit;  ///< of the products' coordinates, where it is given (product_scale)
+  std::string unit;                   ///< of the products' coordinates, where it is given (product_scale)
+  ModelPose pose = ModelPose::shown;  ///< of skinned products
 };
 
 /// The map that products go through. A run of its own reads what lies near them, where the file lets it, it

@@ -40,6 +40,7 @@ class Map:
         similar: list[str],
         refine: _Length,
         unit: str,
+        pose: str,
         clearance: str,
         layers: list[str],
         progress: _Progress,
@@ -51,6 +52,7 @@ class Map:
         target_cloud: PointCloud | None,
         products: list[str],
         unit: str,
+        pose: str,
         progress: _Progress,
     ) -> str: ...
     def info(self) -> str: ...
@@ -63,7 +65,7 @@ class PointCloud:
     @property
     def hash(self) -> str: ...
 
-def read_mesh(path: str) -> tuple[_Points, _Faces, PointCloud | None, str]: ...
+def read_mesh(path: str, pose: str) -> tuple[_Points, _Faces, PointCloud | None, str]: ...
 def write_mesh(path: str, vertices: npt.ArrayLike, faces: npt.ArrayLike, unit: str) -> None: ...
 def read_anchors(path: str) -> str: ...
 def fit(

@@ -71,6 +71,7 @@ class Map:
         similar: Sequence[str] = (),
         refine: Length | None = None,
         unit: str = "",
+        pose: str = "shown",
         clearance: Length = "off",
         layers: Sequence[str | os.PathLike[str]] = (),
         source: Mesh | None = None,
@@ -82,7 +83,8 @@ class Map:
         Parts named in `rigid` and `similar` keep their shape: groups, objects and materials of OBJ, nodes of glTF,
         components of PLY. `refine` splits edges of a product until their middles lie no farther than this from
         where the map takes them. `unit` is that of the product's coordinates ("mm", ..., "map" for the map's own), by
-        default what a glTF or 3MF file says, else the map's; the product stays in it.
+        default what a glTF or 3MF file says, else the map's; the product stays in it. `pose` is that of a skinned glTF
+        product, as `read_mesh` takes it.
         `clearance` ("keep", "same", a length, or "off") keeps the product clear of the target at t = 1, as `bespoke apply
         --clearance` does, and clear of the products in `layers`, which lie below it, from the inside to the outside;
         what was found is in the summary's `json["products"][0]["clearance"]`.
@@ -104,6 +106,7 @@ class Map:
                 list(similar),
                 refine,
                 unit,
+                pose,
                 str(clearance),
                 [os.fspath(name) for name in layers],
                 progress,
@@ -112,7 +115,7 @@ class Map:
         found = report["products"][0]
         warnings = list(found.get("warnings", ()))
         if source is not None and target is not None and times[-1] == 1:
-            measured = self.measure(source, target, [product], unit=unit, progress=progress)
+            measured = self.measure(source, target, [product], unit=unit, pose=pose, progress=progress)
             warnings += [warning for each in measured.json["products"] for warning in each.get("warnings", ())]
         return ApplySummary(
             points=found["points"],
@@ -157,9 +160,10 @@ class Map:
         products: Sequence[str | os.PathLike[str]] = (),
         *,
         unit: str = "",
+        pose: str = "shown",
         progress: Progress | None = None,
     ) -> Quality:
-        """Numbers for how good the map is, and for what it does to products (files, `unit` as for `apply`).
+        """Numbers for how good the map is, and for what it does to products (files, `unit` and `pose` as for `apply`).
 
         Raises InvalidInput for models that the map was not made of.
         """
@@ -171,6 +175,7 @@ class Map:
                     target.cloud,
                     [os.fspath(product) for product in products],
                     unit,
+                    pose,
                     progress,
                 )
             )

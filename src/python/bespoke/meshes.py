@@ -41,16 +41,17 @@ def _source_arrays(mesh: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.
     return arrays
 
 
-def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, pose: str = "shown") -> Mesh:
     """Reads OBJ, PLY, STL, OFF, glTF or 3MF, by the ending of the name; polygons become triangles.
 
     A PLY file of points with normals and no faces becomes the surface through them, which can be a target (`Mesh.cloud`
-    says what the points were like).
+    says what the points were like). `pose` is that of skinned glTF meshes: "shown", as viewers have it, or "stored", as
+    in the file.
 
     Raises FileError, FormatError (naming file and line), InvalidInput for an unknown ending, and for points with neither faces
     nor normals.
     """
-    return Mesh(*_engine.read_mesh(os.fspath(path)))
+    return Mesh(*_engine.read_mesh(os.fspath(path), pose))
 
 
 def write_mesh(path: str | os.PathLike[str], mesh: Mesh) -> None:

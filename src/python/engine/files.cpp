@@ -8,6 +8,7 @@
 #include "bespoke/error.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/mesh_io.h"
+#include "loaded_asset.h"
 #include "numpy_points.h"
 #include "parts.h"
 
@@ -17,11 +18,12 @@ namespace fs = std::filesystem;
 namespace {
 
 /// (vertices, faces, PointCloud or None, unit)
-py::tuple read_mesh(const fs::path& path) {
+py::tuple read_mesh(const fs::path& path, const std::string& pose) {
+  const ModelPose known = required(model_poses, pose, "pose");
   TargetModel model;
   {
     const py::gil_scoped_release release;
-    model = read_target(path);
+    model = read_target(path, known);
   }
   const py::tuple arrays = to_arrays(model.mesh);
   return py::make_tuple(arrays[0], arrays[1], model.cloud, unit_of_format(path));
@@ -45,7 +47,7 @@ void add_files(py::module_& engine) {
       .def_readonly("spacing", &PointCloudSummary::spacing)
       .def_readonly("hash", &PointCloudSummary::hash)
       .def("__str__", [](const PointCloudSummary& summary) { return to_string(summary); });
-  engine.def("read_mesh", &read_mesh, py::arg("path"));
+  engine.def("read_mesh", &read_mesh, py::arg("path"), py::arg("pose"));
   engine.def("write_mesh", &write_mesh, py::arg("path"), py::arg("vertices"), py::arg("faces"),
              py::arg("unit"));
   engine.def("read_anchors", &anchors_of_file, py::arg("path"));

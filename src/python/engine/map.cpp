@@ -12,6 +12,7 @@
 #include "bespoke/pipeline/derive_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/inspection.h"
@@ -112,6 +113,7 @@ struct ClearedRequest {
   std::vector<fs::path> layers;  ///< below it, from the inside to the outside
   std::vector<RigidPart> parts;
   std::string unit;
+  ModelPose pose;
   std::string clearance;
   std::vector<double> times;
 };
@@ -139,7 +141,8 @@ std::shared_ptr<const ElasticMap> cleared_map(const Asset& asset, std::shared_pt
   ProductClearer clearer(rule, ProductClearer::Products::layers);
   const auto corrected = [&](const fs::path& file, const std::vector<RigidPart>& parts) {
     return clearer.corrected(
-        read_worn_product(file, parts, product_scale(file, asset.record.unit, request.unit)), map);
+        read_worn_product(file, parts, product_scale(file, asset.record.unit, request.unit), request.pose),
+        map);
   };
   for (const fs::path& layer : request.layers) corrected(layer, {});
   std::shared_ptr<const ElasticMap> result = corrected(request.product, request.parts);
@@ -151,12 +154,14 @@ std::shared_ptr<const ElasticMap> cleared_map(const Asset& asset, std::shared_pt
 std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vector<fs::path>& outputs,
                        const std::vector<double>& times, const std::string& path, const std::string& order,
                        const std::vector<std::string>& rigid, const std::vector<std::string>& similar,
-                       const py::object& refine, const std::string& unit, const std::string& clearance,
-                       const std::vector<fs::path>& layers, const py::object& callback) {
+                       const py::object& refine, const std::string& unit, const std::string& pose,
+                       const std::string& clearance, const std::vector<fs::path>& layers,
+                       const py::object& callback) {
   const AssetRecord& record = map.asset().record;
   const double scale = product_scale(product, record.unit, unit);
   ApplyToProductOptions options;
   options.motion = motion(map, path, order);
+  options.pose = required(model_poses, pose, "pose");
   for (const std::string& name : rigid) options.parts.push_back({name, PartMotion::rigid});
   for (const std::string& name : similar) options.parts.push_back({name, PartMotion::similar});
   if (const auto length = to_length(refine, "refine"))
@@ -169,7 +174,8 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
     options.progress = progress;
     std::shared_ptr<const ElasticMap> elastic = carrier;
     if (clearance != "off")
-      elastic = cleared_map(map.asset(), carrier, {product, layers, options.parts, unit, clearance, times},
+      elastic = cleared_map(map.asset(), carrier,
+                            {product, layers, options.parts, unit, options.pose, clearance, times},
                             applied.clearance);
     return apply_to_product(product, outputs, *in_other_unit(elastic, scale),
                             in_other_unit(map.asset().target_from_source, scale), times, options);
@@ -180,8 +186,9 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
 
 std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& target,
                     const std::optional<PointCloudSummary>& target_cloud,
-                    const std::vector<fs::path>& products, const std::string& unit,
+                    const std::vector<fs::path>& products, const std::string& unit, const std::string& pose,
                     const py::object& callback) {
+  const ModelPose known_pose = required(model_poses, pose, "pose");
   const auto model = [&](const py::tuple& arrays, const std::string& role) {
     TriangleMesh mesh = to_mesh(arrays[0].cast<PointArray>(), arrays[1].cast<FaceArray>(), role);
     require_valid(mesh, role);
@@ -201,7 +208,7 @@ std::string measure(LoadedAsset& map, const py::tuple& source, const py::tuple& 
     std::vector<NamedProduct> named;
     std::vector<std::string> names;
     for (const fs::path& path : products) {
-      const Product product = read_product(path);
+      const Product product = read_product(path, known_pose);
       named.push_back({path.string(),
                        {product_scale(path, record.unit, unit) * product.vertices, triangulated(product)},
                        product.line_edges});
@@ -231,9 +238,9 @@ void add_map(py::module_& engine) {
            py::arg("any_models"), py::arg("progress"))
       .def("apply", &apply_file, py::arg("product"), py::arg("outputs"), py::arg("times"), py::arg("path"),
            py::arg("order"), py::arg("rigid"), py::arg("similar"), py::arg("refine"), py::arg("unit"),
-           py::arg("clearance"), py::arg("layers"), py::arg("progress"))
+           py::arg("pose"), py::arg("clearance"), py::arg("layers"), py::arg("progress"))
       .def("measure", &measure, py::arg("source"), py::arg("target"), py::arg("target_cloud"),
-           py::arg("products"), py::arg("unit"), py::arg("progress"))
+           py::arg("products"), py::arg("unit"), py::arg("pose"), py::arg("progress"))
       .def("info", [](const LoadedAsset& map) { return inspection_json(map.asset()); });
 }
 
