@@ -21,6 +21,7 @@
 namespace bespoke::test {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -568,6 +569,27 @@ TEST_F(FitCommand, LetsAPlaceThatWasClickedTwiceShareTheBlame) {
     EXPECT_LT(distortion.edge_length.max, 10) << given;
     EXPECT_GT(distortion.edge_length.min, 0.1) << given;
   }
+}
+
+// The radii of the two models differ by up to a fifth from each other's median, more than this bound.
+TEST_F(FitCommand, TellsWhereTheResultIsStretchedBeyondTheBound) {
+  const ProgramResult bound =
+      pair_.fit("map.vdb", {"--max-stretch", "1.05", "--report", pair_.file("report.json")});
+  ASSERT_EQ(bound.exit_code, 0) << bound.err;
+  EXPECT_THAT(bound.err,
+              AllOf(HasSubstr("edges of the source change in length by more than --max-stretch"),
+                    HasSubstr(" times, around ("), HasSubstr("troubleshooting.md#over-stretched")));
+  std::size_t told = 0;
+  for (const json& stage : read_json("report.json")["stages"]) {
+    if (stage["name"] != "stretched") continue;
+    ++told;
+    EXPECT_GT(stage["edges"], 0);
+    EXPECT_GT(stage["max_factor"], 1.05);
+    EXPECT_LT(stage["max_factor"], 1.4);
+    EXPECT_FALSE(stage["places"].empty());
+  }
+  EXPECT_EQ(told, 1u);
+  EXPECT_THAT(pair_.fit("map.vdb").err, Not(HasSubstr("--max-stretch")));
 }
 
 TEST_F(FitCommand, TakesAnchorsAsCsv) {

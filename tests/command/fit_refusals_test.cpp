@@ -95,6 +95,33 @@ TEST_F(FitRefusals, NamesTheFactorBetweenModelsInTwoUnitsUnlessAnySizeIsAsked) {
   EXPECT_EQ(pair_.fit("map.vdb", {"--any-size", "--require-certified"}).exit_code, 0);
 }
 
+// The models are of one size, whatever the ratio of the anchors' sides.
+TEST_F(FitRefusals, NamesTheAnchorsWhereTheyAloneAreInAnotherUnit) {
+  for (const char* side : {"a", "b"})
+    for (const double factor : {2.54, 10.0, 100.0}) {
+      json anchors = read_json("anchors.json");
+      for (json& pair : anchors["pairs"])
+        for (json& coordinate : pair[side]) coordinate = factor * coordinate.get<double>();
+      write_text(pair_.file("scaled.json"), anchors.dump());
+      const ProgramResult fit =
+          bespoke({"fit", pair_.file("source.obj"), pair_.file("target.obj"), "--anchors",
+                   pair_.file("scaled.json"), "-o", pair_.file("map.vdb")});
+      expect_refusal(fit, 2,
+                     std::string(side == std::string("a") ? "source" : "target") + ", but would if their \"" +
+                         side + "\" were multiplied by ");
+    }
+}
+
+// Each target is that of another anchor.
+TEST_F(FitRefusals, RefusesAnchorsThatNoMapMeets) {
+  json anchors = read_json("anchors.json");
+  const json given = anchors["pairs"];
+  const std::size_t count = given.size();
+  for (std::size_t k = 0; k < count; ++k) anchors["pairs"][k]["b"] = given[(5 * k + 3) % count]["b"];
+  write_text(pair_.file("anchors.json"), anchors.dump());
+  expect_refusal(pair_.fit("map.vdb"), 3, "no useful map follows from this fit");
+}
+
 TEST_F(FitRefusals, RefusesAFittedSourceOfOtherConnectivity) {
   write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2,

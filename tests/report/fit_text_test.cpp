@@ -56,6 +56,19 @@ TEST_F(FitText, SaysWhatAnEngineerAsks) {
   EXPECT_THAT(lines, Not(HasSubstr("MISSED")));
 }
 
+// The diagonal is 3.5.
+TEST_F(FitText, ToldLengthsAreNoShorterThanAnybodyMeasures) {
+  fit_->summary.surface->after = summarize({0.0, 5e-15, 0.02});
+  EXPECT_THAT(text(),
+              HasSubstr("lies within 1e-05 dm of the target, 95 % within 0.02 dm, all within 0.02 dm"));
+  Eigen::Index side = 0;
+  mesh_.vertices.row(0).maxCoeff(&side);
+  mesh_.vertices.col(side) = Vector3(1, 3e-17, -2e-16);
+  fit_->confidence[static_cast<std::size_t>(side)] = 0;
+  EXPECT_THAT(text(),
+              HasSubstr("1 of 162 vertices have none and follow their surroundings: 1 around (1, 0, 0)"));
+}
+
 TEST_F(FitText, SaysThatTheFittedMapIsStoredAsItIs) {
   fit_->summary.bake->error = summarize({0.0});
   EXPECT_THAT(text(), HasSubstr("error        the stored map is the fitted one; "));

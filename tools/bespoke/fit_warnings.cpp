@@ -122,6 +122,11 @@ void warn_of_misses(const RunContext& context, const Problem& input, const MakeM
   const double size = diagonal(input.target.vertices);
   warn_of_missing_certificate(context, whole_certificate(made.asset));
   warn_of_anchors(context, summary, input.anchors);
+  if (summary.stretched.count > 0)
+    context.warn(to_string(summary.stretched) +
+                     "; look at the anchors and curves there (bespoke pick), and whether the target has that "
+                     "part at all",
+                 Entry::over_stretched);
   if (summary.parts)
     context.warn(to_string(*summary.parts) +
                      "; if the target has such a part, give an anchor on it, else leave it out of the source",

@@ -273,7 +273,9 @@ Anchors read_anchor_files(const std::vector<std::filesystem::path>& paths, const
 
 Anchors read_anchor_file(const std::filesystem::path& path, const AnchorFileOptions& options) {
   // What is no file can be read only once, so its format cannot be looked at first.
-  if (!path.has_extension() || !std::filesystem::is_regular_file(path)) return read_anchors(path);
+  const bool is_there = std::filesystem::exists(path);
+  if (!path.has_extension() || (is_there && !std::filesystem::is_regular_file(path)))
+    return read_anchors(path);
   const AnchorFormat format = anchor_format_of(path);
   const bool is_wrap = lower_case(path.filename().string()).ends_with(".wrap.json");
   if (format == AnchorFormat::wrap && !is_wrap && !is_list_of_lists(path)) return read_anchors(path);

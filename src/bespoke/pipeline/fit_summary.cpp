@@ -150,6 +150,7 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   if (summary.contact) lines.push_back({"contact", to_string(*summary.contact)});
   lines.push_back({"elastic", to_string(summary.elastic)});
   if (!summary.missed.empty()) lines.push_back({"missed", to_string(summary.missed, anchors)});
+  if (summary.stretched.count > 0) lines.push_back({"stretched", to_string(summary.stretched)});
   if (!summary.curves.empty()) lines.push_back({"curves", to_string(summary.curves)});
   if (!summary.patches.empty()) lines.push_back({"patches", to_string(summary.patches)});
   if (summary.bake) lines.push_back({"bake", to_string(*summary.bake)});

@@ -14,6 +14,7 @@
 #include "bespoke/flow/regional_motion.h"
 #include "bespoke/pipeline/fit_unanchored.h"
 #include "bespoke/pipeline/registered_parts.h"
+#include "bespoke/pipeline/stretched_edges.h"
 #include "bespoke/pipeline/unmet_vertices.h"
 #include "bespoke/quality/uncovered_area.h"
 #include "bespoke/rigid/rigid_transform.h"
@@ -120,6 +121,7 @@ struct RegistrationSummary {
 struct FitSummary : RegistrationSummary {
   std::optional<PointCloudSummary> cloud;  ///< the target's, if it was one
   std::vector<MissedAnchor> missed;        ///< by more than their accuracy explains
+  StretchedEdges stretched;                ///< beyond SurfaceFitOptions::max_stretch
   ElasticSummary elastic;
   std::vector<CurveSummary> curves;
   std::optional<BakeSummary> bake;      ///< of the whole map; empty without make_map

@@ -7,6 +7,7 @@
 #include "bespoke/elastic/exact_map_io.h"
 #include "bespoke/pipeline/detail/bake_map.h"
 #include "bespoke/pipeline/detail/fit_map.h"
+#include "bespoke/pipeline/detail/unusable_fit.h"
 #include "bespoke/pipeline/detail/whole_fit.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
@@ -154,11 +155,14 @@ MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Pr
   const TriangleMesh& registered = registered_mesh(registration, problem.source);
   const MapProblem to_fit = map_problem(registered, registration, options.fit);
   const MapFit fit = fit_map(to_fit, options.fit, progress);
+  if (!problem.fitted)
+    require_met_anchors(problem.anchors, anchor_residuals(fit, registration, problem.anchors), options.fit);
 
   // The bake takes another fit where this one's does not do.
   BakedFit baked = bake_map(fit, measured_at(to_fit, problem.anchors), options, progress);
 
-  FittedMapping whole = whole_fit(problem, registration, baked.fit, map_findings(problem, registration, fit));
+  FittedMapping whole =
+      whole_fit(problem, registration, baked.fit, map_findings(problem, registration, fit, options.fit));
   whole.summary = with_bake(with_named_parts(std::move(whole.summary), problem), baked.baked);
   if (problem.target_cloud) whole.summary.cloud = *problem.target_cloud;
 

@@ -130,7 +130,7 @@ bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const Tr
   const ClosestPointTree on_kept({registered, kept.mesh.faces}), on_loose(loose.mesh);
   const double reach = covered * diagonal(target.vertices);
 
-  std::vector<double> claimed(parts.is_kept.size(), 0), own(parts.is_kept.size(), 0);
+  std::vector<double> nearest_area(parts.is_kept.size(), 0), own(parts.is_kept.size(), 0);
   const auto component_of = [&](int face) {
     const int vertex = loose.vertices[static_cast<std::size_t>(loose.mesh.faces(0, face))];
     return static_cast<std::size_t>(parts.components.of_vertex[static_cast<std::size_t>(vertex)]);
@@ -144,7 +144,7 @@ bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const Tr
     const double distance = std::sqrt(on_kept.closest(x)->squared_distance);
     if (!(distance > reach)) continue;
     if (const auto at = on_loose.closest(x, {.max_distance = clearly_nearer * distance}))
-      claimed[component_of(at->face)] += double(stride) * target_areas[i];
+      nearest_area[component_of(at->face)] += double(stride) * target_areas[i];
   }
   const Eigen::VectorXd areas = vertex_areas(loose.mesh);
   for (std::size_t i = 0; i < loose.vertices.size(); ++i)
@@ -152,7 +152,7 @@ bool keep_uncovered(RegisteredParts& parts, const TriangleMesh& source, const Tr
         areas[static_cast<Eigen::Index>(i)];
   bool has_more = false;
   for (std::size_t k = 0; k < parts.is_kept.size(); ++k) {
-    if (parts.is_kept[k] || !(claimed[k] > 0 && claimed[k] >= enough * own[k])) continue;
+    if (parts.is_kept[k] || !(nearest_area[k] > 0 && nearest_area[k] >= enough * own[k])) continue;
     parts.is_kept[k] = 1;
     has_more = true;
   }

@@ -55,15 +55,16 @@ void require_models(const Problem& problem, const FitOptions& options) {
   const Anchors& anchors = problem.anchors;
   require_usable(problem.source, anchors, options);
   require_valid(problem.target, "target");
-  if (!options.any_size) require_one_unit(problem, options);
   if (const std::string mistake = exchanged_sides(anchors, problem.source, problem.target); !mistake.empty())
     throw InvalidInput(mistake);
+  // Anchors off their model say nothing of the models' sizes.
   if (!options.any_anchors) require_anchors_at_scale(anchors, problem.source, problem.target);
+  if (!options.any_size) require_one_unit(problem, options);
 }
 
 /// Where the target touches itself no homeomorphism exists: the parts of the fitted source are separated.
-Registration held_apart(Registration registration, const TriangleMesh& source, const FitOptions& options,
-                        const Progress& progress) {
+Registration separated(Registration registration, const TriangleMesh& source, const FitOptions& options,
+                       const Progress& progress) {
   // Parts that pass through each other more deeply are not due to a target's contact.
   constexpr double reach = 20;  // of the gap
   progress.step("contact", 0, 0);
@@ -106,7 +107,7 @@ Registration register_joined(const Problem& problem, const FitOptions& options, 
   const JoinedModels joined = joined_models(problem, options);
   Registration registration =
       register_source({joined.source.mesh, joined.target.mesh, problem.anchors}, options, progress);
-  return parted_at_seams(held_apart(std::move(registration), joined.source.mesh, options, progress), joined);
+  return parted_at_seams(separated(std::move(registration), joined.source.mesh, options, progress), joined);
 }
 
 /// Empty where all of the source is registered. Patches may name any of its parts.
@@ -169,7 +170,7 @@ Registration align_fitted(const Problem& problem, const FitOptions& options, con
   rigid.seconds = watch.seconds();
   registration.fitted_vertices = inverse(registration.target_from_source) * problem.fitted->vertices;
   registration.anchors = problem.anchors;
-  return held_apart(std::move(registration), problem.source, options, progress);
+  return separated(std::move(registration), problem.source, options, progress);
 }
 
 }  // namespace

@@ -143,6 +143,12 @@ Json to_json(const std::vector<MissedAnchor>& missed, const Anchors& anchors) {
   return {{"anchors", std::move(list)}};
 }
 
+Json to_json(const StretchedEdges& stretched) {
+  Json places = Json::array();
+  for (const Vector3& place : stretched.places) places.push_back(to_json(place));
+  return {{"edges", stretched.count}, {"max_factor", stretched.max_factor}, {"places", std::move(places)}};
+}
+
 Json to_json(const CoarseSummary& summary, const Anchors& anchors) {
   Json suspicious = Json::array();
   for (const SuspiciousAnchor& anchor : summary.audit.suspicious) {
@@ -305,6 +311,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
   if (summary.contact) add("contact", to_json(*summary.contact), summary.contact->seconds);
   add("elastic", to_json(summary.elastic), summary.elastic.seconds);
   if (!summary.missed.empty()) add("missed", to_json(summary.missed, anchors), 0);
+  if (summary.stretched.count > 0) add("stretched", to_json(summary.stretched), 0);
   if (!summary.curves.empty()) add("curves", to_json(summary.curves), 0);
   if (!summary.patches.empty()) add("patches", to_json(summary.patches), 0);
   if (summary.bake) add("bake", bake_json(summary), summary.bake->seconds);

@@ -44,15 +44,24 @@ std::vector<VertexCluster> vertex_clusters(const TriangleMesh& mesh, const std::
   return clusters;
 }
 
-/// Lengths with the name of their unit.
+/// Lengths with the name of their unit. What is below a millionth of the model is told as the power of ten
+/// that is not: nobody measures 5e-15 cm.
 class Lengths {
  public:
-  explicit Lengths(const std::string& unit)
-      : unit_(unit.empty() || unit == "unknown" ? "mesh units" : unit) {}
-  std::string operator()(double length) const { return format_number(length, 3) + " " + unit_; }
+  Lengths(const std::string& unit, double diagonal)
+      : unit_(unit.empty() || unit == "unknown" ? "mesh units" : unit),
+        least_(std::pow(10, std::ceil(std::log10(1e-6 * diagonal)))) {}
+  /// An upper bound.
+  std::string operator()(double length) const {
+    return format_number(std::max(length, least_), 3) + " " + unit_;
+  }
+  std::string operator()(const Vector3& place) const {
+    return format_number(Vector3((place.array().abs() < least_).select(0, place)), 3);
+  }
 
  private:
   std::string unit_;
+  double least_;
 };
 
 std::string counted(std::size_t count, const std::string& one) {
@@ -82,7 +91,8 @@ std::string distances(const Statistics& found, const Lengths& lengths) {
          " of the target, 95 % within " + lengths(found.p95) + ", all within " + lengths(found.max);
 }
 
-std::string counterparts(const TriangleMesh& source, const std::vector<double>& confidence) {
+std::string counterparts(const TriangleMesh& source, const std::vector<double>& confidence,
+                         const Lengths& lengths) {
   std::vector<char> lacks(confidence.size());
   std::transform(confidence.begin(), confidence.end(), lacks.begin(),
                  [](double value) { return !(value > 0); });
@@ -93,8 +103,8 @@ std::string counterparts(const TriangleMesh& source, const std::vector<double>& 
                      " vertices have none and follow their surroundings";
   constexpr std::size_t max_named = 3;
   for (std::size_t i = 0; i < std::min(max_named, clusters.size()); ++i)
-    text += (i == 0 ? ": " : ", ") + std::to_string(clusters[i].count) + " around " +
-            format_number(clusters[i].center, 3);
+    text +=
+        (i == 0 ? ": " : ", ") + std::to_string(clusters[i].count) + " around " + lengths(clusters[i].center);
   if (clusters.size() > max_named) text += " and at " + counted(clusters.size() - max_named, "other place");
   return text;
 }
@@ -162,13 +172,13 @@ std::string fit_text(const FitOutcome& outcome) {
     lines += name + text + '\n';
   };
   const FitSummary& summary = outcome.made.fit->summary;
-  const Lengths lengths(outcome.made.asset.record.unit);
+  const Lengths lengths(outcome.made.asset.record.unit, diagonal(outcome.input.source.vertices));
   const Certificate certificate = whole_certificate(outcome.made.asset);
   if (!certificate.is_bijection()) add("NOT PROVED", unproved(certificate));
   add("registered", registration(outcome));
   if (summary.surface) {
     add("surfaces", distances(summary.surface->after, lengths));
-    add("counterparts", counterparts(outcome.input.source, outcome.made.fit->confidence));
+    add("counterparts", counterparts(outcome.input.source, outcome.made.fit->confidence, lengths));
   }
   if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));
   if (!outcome.input.anchors.pairs.empty()) add("anchors", anchor_text(outcome, lengths));

@@ -6,7 +6,7 @@
 
 #include "bespoke/pipeline/detail/divided_map.h"
 #include "bespoke/pipeline/detail/fit_map.h"
-#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/pipeline/detail/unusable_fit.h"
 
 namespace bespoke {
 namespace {
@@ -19,7 +19,7 @@ constexpr std::size_t max_halved_steps = 16;
 
 /// Bakes a chain of planned steps, the last one first. A step that folds, or is predicted to, is halved, as
 /// are its halves; the steps after it are kept. Where that makes half as many steps again as were planned,
-/// equal steps replace them, the plan's number doubled until they have room (tests/accuracy/tuning.md).
+/// equal steps replace them, the plan's number doubled until they have space (tests/accuracy/tuning.md).
 class BakeOfAPlan {
  public:
   BakeOfAPlan(const MapFit& fit, const MapProblem& problem, const MakeMapOptions& options,
@@ -89,7 +89,7 @@ class BakeOfAPlan {
 
   /// What is baked remains unless all steps are planned anew.
   void divide(std::size_t step, BakedSteps& baked) {
-    require_hopeful(*fit_.elastic, problem_.source, problem_.registration.fitted_vertices, options_);
+    require_usable(*fit_.elastic, problem_.source, problem_.registration.fitted_vertices, options_);
     if (plan_anew())
       baked = {};
     else

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "bespoke/pipeline/detail/fit_steps.h"
-#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/pipeline/detail/unusable_fit.h"
 #include "bespoke/stopwatch.h"
 
 namespace bespoke {
@@ -89,7 +89,7 @@ bool is_guided(const MapFit& fit, const FitOptions& options) {
 MapFit fit_map(const MapProblem& problem, const FitOptions& options, const Progress& progress) {
   const bool is_registered = problem.registration.summary.surface.has_value();  // not given as it is
   const Points& fitted = problem.registration.fitted_vertices;
-  if (is_registered) require_hopeful_surface(problem.source, fitted, options);
+  if (is_registered) require_usable_surface(problem.source, fitted, options);
   const Stopwatch watch;
   progress.step("elastic", 0, 0);
   MapFit fit = fit_of(options)(problem, options, required_steps(problem, options), progress);
@@ -99,7 +99,7 @@ MapFit fit_map(const MapProblem& problem, const FitOptions& options, const Progr
     if (unguided && missed(*unguided) < missed(fit)) fit = std::move(*unguided);
   }
   fit.summary.seconds = watch.seconds();
-  if (is_registered) require_hopeful(*fit.elastic, problem.source, fitted, options);
+  if (is_registered) require_usable(*fit.elastic, problem.source, fitted, options);
   return fit;
 }
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bespoke/length.h"
-#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/pipeline/detail/unusable_fit.h"
 
 namespace bespoke {
 

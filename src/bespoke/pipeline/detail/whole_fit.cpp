@@ -49,7 +49,8 @@ FittedMapping of_all_vertices(FittedMapping fit, const Points& vertices, const s
 
 }  // namespace
 
-MapFindings map_findings(const Problem& problem, const Registration& registration, const MapFit& fit) {
+MapFindings map_findings(const Problem& problem, const Registration& registration, const MapFit& fit,
+                         const FitOptions& options) {
   MapFindings findings;
   findings.patches = registration.summary.patches;
   if (problem.fitted) return findings;
@@ -64,6 +65,9 @@ MapFindings map_findings(const Problem& problem, const Registration& registratio
   for (const AnchorCurve& curve : anchors.curves)
     findings.curves.push_back({curve.name, largest_distance(target_from_source, *fit.elastic, curve)});
   const TriangleMesh& source = registered_mesh(registration, problem.source);
+  if (options.surface_fit.method == SurfaceFitMethod::deformation_graph)
+    findings.stretched =
+        stretched_edges(source, (*fit.elastic)(source.vertices), options.surface_fit.max_stretch);
   for (const PatchBorder& border : patch_borders(anchors, source, problem.target)) {
     std::optional<double>& largest = findings.patches[border.patch].largest_distance;
     largest = std::max(largest.value_or(0), largest_distance(target_from_source, *fit.elastic, border.curve));
@@ -85,6 +89,7 @@ FittedMapping whole_fit(const Problem& problem, const Registration& registration
   static_cast<RegistrationSummary&>(whole.summary) = registration.summary;
   whole.summary.elastic = fit.summary;
   whole.summary.missed = findings.missed;
+  whole.summary.stretched = findings.stretched;
   whole.summary.curves = findings.curves;
   whole.summary.patches = findings.patches;
   if (!registration.part) return whole;

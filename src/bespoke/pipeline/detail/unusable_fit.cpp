@@ -1,4 +1,4 @@
-#include "bespoke/pipeline/detail/hopeless_fit.h"
+#include "bespoke/pipeline/detail/unusable_fit.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -13,6 +13,7 @@
 
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
+#include "bespoke/median.h"
 #include "bespoke/mesh/spread_points.h"
 #include "bespoke/number_format.h"
 
@@ -75,7 +76,7 @@ double surface_shear(const TriangleMesh& source, const Points& fitted) {
                   shear_against(affine_image(source.vertices, fitted), source, fitted));
 }
 
-void require_hopeful_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options) {
+void require_usable_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options) {
   const SurfaceFitOptions& fit = options.surface_fit;
   if (options.steps || fit.method != SurfaceFitMethod::deformation_graph ||
       !elastic_method(options.elastic).keeps_orientation)
@@ -89,7 +90,7 @@ void require_hopeful_surface(const TriangleMesh& source, const Points& fitted, c
       format_number(fit.max_stretch, 3) + advice);
 }
 
-bool MapHealth::is_hopeless() const { return steps > max_useful_steps || !(low > min_determinant); }
+bool MapHealth::is_unusable() const { return steps > max_useful_steps || !(low > min_determinant); }
 
 void require_useful_steps(std::size_t steps, const FitOptions& options) {
   if (options.steps || steps <= max_useful_steps) return;
@@ -110,14 +111,32 @@ MapHealth map_health(const ElasticChain& elastic, const TriangleMesh& source, co
   return {elastic.steps().size(), determinants[determinants.size() / one_in], determinants.front()};
 }
 
-void require_hopeful(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
-                     const FitOptions& options) {
+void require_usable(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
+                    const FitOptions& options) {
   if (options.steps || !elastic_method(options.elastic).keeps_orientation) return;
   const MapHealth health = map_health(elastic, source, fitted);
-  if (!health.is_hopeless()) return;
+  if (!health.is_unusable()) return;
   throw SolverError("no useful map follows from this fit: it takes " + std::to_string(health.steps) +
                     " steps so far, and one place in twenty on the source is shrunk to " +
                     format_number(health.low, 2) + " of its volume or less" + advice);
+}
+
+void require_met_anchors(const Anchors& anchors, const std::vector<double>& residuals,
+                         const FitOptions& options) {
+  constexpr std::size_t min_pairs = 4;
+  // Of what the anchors span. Proportions of bodies differ by 4 %, and a fit meets these within that.
+  constexpr double far = 0.1;
+  if (options.steps) return;
+  std::vector<double> own;
+  for (std::size_t k = 0; k < anchors.pairs.size(); ++k) {
+    const AnchorPair& pair = anchors.pairs[k];
+    if (!(pair.sigma.value_or(0) > 0) && !std::isfinite(pair.weight)) own.push_back(residuals[k]);
+  }
+  if (own.size() < min_pairs) return;
+  const double missed = median(own);
+  if (!(missed > far * diagonal(target_points(anchors)))) return;
+  throw SolverError("no useful map follows from this fit: half of the anchors are missed by " +
+                    format_number(missed, 3) + " or more" + advice);
 }
 
 }  // namespace bespoke

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
+#include "bespoke/anchors/anchors.h"
 #include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/pipeline/fit_options.h"
@@ -18,7 +20,7 @@ struct MapHealth {
 
   /// Volumes shrunk by more than the storage of maps resolves, or a chain that no size of steps keeps from
   /// folding.
-  bool is_hopeless() const;
+  bool is_unusable() const;
 };
 
 /// More steps than these mean that no size of steps keeps a chain from folding.
@@ -34,16 +36,22 @@ void require_useful_steps(std::size_t steps, const FitOptions& options);
 double surface_shear(const TriangleMesh& source, const Points& fitted);
 
 /// Throws SolverError with the reason where a registered source is sheared by more than the largest stretch
-/// of the surface fitting: before any map is fitted to it. For methods as require_hopeful.
-void require_hopeful_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options);
+/// of the surface fitting: before any map is fitted to it. For methods as require_usable.
+void require_usable_surface(const TriangleMesh& source, const Points& fitted, const FitOptions& options);
 
 /// Of an exact map, at some hundred vertices. source: as it was fitted; fitted: 3×n, H'_a, source frame.
 MapHealth map_health(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted);
 
-/// Throws SolverError with the reason where the fit is hopeless: before it is baked, and before steps of it
-/// are divided. Only of methods that keep the orientation, and where the number of steps is not given: others
-/// fold by nature, or were requested.
-void require_hopeful(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
-                     const FitOptions& options);
+/// Throws SolverError with the reason where no useful map follows from the fit: before it is baked, and
+/// before steps of it are divided. Only of methods that keep the orientation, and where the number of steps
+/// is not given: others fold by nature, or were requested.
+void require_usable(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
+                    const FitOptions& options);
+
+/// Throws SolverError where half of the pairs that have neither a σ above 0 nor a weight are missed by more
+/// than a tenth of what the targets span: these pairs have no map. residuals: one a pair, mesh units. Not
+/// for fewer than four such pairs, and not where the number of steps is given.
+void require_met_anchors(const Anchors& anchors, const std::vector<double>& residuals,
+                         const FitOptions& options);
 
 }  // namespace bespoke
