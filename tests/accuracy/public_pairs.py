@@ -7,8 +7,11 @@
 
 DIR holds clones, ordinary or bare, of the repositories in DATA_SETS. Prints a Markdown table; --json writes the rows.
 Errors are distances from the true place in per cent of the source's bounding-box diagonal, anchors left out.
+Rows of tosca-across also score the maps that its repository records, of programs that take no anchors, on the same
+points; of a map and its mirror image the better one counts.
 """
 import argparse
+import io
 import itertools
 import json
 import re
@@ -17,7 +20,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass
+import zipfile
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -30,9 +34,11 @@ DATA_SETS = {
     "garmentcode": ("maria-korosteleva/GarmentCode", "bodies of different persons"),
     "mouse": ("SlicerMorph/Mouse_Models", "mouse skulls with landmarks"),
 }
-SETS = {"faust-persons": "faust", "faust-poses": "faust", "tosca": "tosca", "garmentcode": "garmentcode",
-        "mouse": "mouse"}
+SETS = {"faust-persons": "faust", "faust-poses": "faust", "tosca": "tosca", "tosca-across": "tosca",
+        "garmentcode": "garmentcode", "mouse": "mouse"}
+CHOOSING_SETS = ("faust-persons", "faust-poses", "tosca")
 FAUST_EXACT = 6890  # vertices that correspond; those after them were added by the remeshing of LPS-data
+RECORDED = {"BIM": 0, "PMF_hk": 1, "WKSini_direct_BCICP": 1, "SEGini_direct_BCICP": 1}  # and their first number
 TOSCA_CHOOSE = ("cat", "dog", "wolf", "michael")
 GENERATED = {"dress": "body", "glasses": "head", "glove": "hand", "shoe": "foot"}
 SEED = 55  # which pairs, and the noise of anchors
@@ -46,6 +52,8 @@ class Pair:
     points: np.ndarray  # (k, 3), on the source
     places: np.ndarray  # (k, 3), where they belong on the target
     vertices: object = None  # (k,) vertices of the source that are the points; None where places are rounded
+    mirrored: object = None  # (k, 3), where the points' mirror images belong
+    recorded: dict = field(default_factory=dict)  # other program: (k, 3), where its map takes the points; NaN: nowhere
 
 
 class Missing(Exception):
@@ -201,6 +209,30 @@ def tosca_pairs(clone, name, options):
         yield Pair(f"{name} {a} {b}", source, target, source[0][ids[0]], target[0][ids[1]])
 
 
+def recorded_places(archive, name, first, ids, target):
+    """Where a recorded map, a number of the target's vertices a line, takes these vertices; NaN where it says none."""
+    numbers = np.array(archive.read(name).split(), float)[ids] - first
+    places = np.full((len(ids), 3), np.nan)
+    known = np.isfinite(numbers)
+    places[known] = target[numbers[known].astype(int)]
+    return places
+
+
+def tosca_across_pairs(clone, name, options):
+    """A gorilla onto persons, with the maps that the repository records of them."""
+    folder = "Dataset/TOSCA_nonIsometric"
+    archives = {method: zipfile.ZipFile(io.BytesIO(clone.read(f"{folder}/vtx_5k/maps/{method}.zip")))
+                for method in RECORDED}
+    two = [line.split() for line in clone.read(f"{folder}/test_pairs.txt").decode().splitlines() if line.strip()]
+    for a, b in random_pairs(two, options.pairs):
+        source, target = (parse_off(clone.read(f"{folder}/vtx_5k/{each}.off")) for each in (a, b))
+        of_a, of_b, mirrored = (np.array(clone.read(f"{folder}/vtx_5k/corres/{each}.vts").split(), int) - 1
+                                for each in (a, b, f"{b}.sym"))
+        maps = {method: recorded_places(archives[method], f"{method}/{a}_{b}.map", first, of_a, target[0])
+                for method, first in RECORDED.items() if f"{method}/{a}_{b}.map" in archives[method].namelist()}
+        yield Pair(f"{name} {a} {b}", source, target, source[0][of_a], target[0][of_b], None, target[0][mirrored], maps)
+
+
 def garmentcode_pairs(clone, name, options):
     two = [("mean_all", "mean_female"), ("mean_female", "mean_male"), ("mean_male", "mean_female")]
     for a, b in two[:options.pairs]:
@@ -261,6 +293,19 @@ def errors(pair, carried, left_out):
     distance = np.delete(distance, left_out)
     return {"mean": round(float(distance.mean()), 3), "p95": round(float(np.percentile(distance, 95)), 3),
             "max": round(float(distance.max()), 2)}
+
+
+def recorded_rows(pair, left_out):
+    """A row for each recorded map, of the points that it takes somewhere; the others are counted."""
+    rows = []
+    for method, carried in pair.recorded.items():
+        direct, mirrored = (np.linalg.norm(carried - places, axis=1) for places in (pair.places, pair.mirrored))
+        is_direct = np.nanmean(direct) <= np.nanmean(mirrored)
+        truth = Pair(pair.name, pair.source, pair.target, pair.points, pair.places if is_direct else pair.mirrored)
+        nowhere = np.flatnonzero(~np.isfinite(carried).all(1))
+        rows.append({"pair": pair.name, "method": method, "mirrored": bool(not is_direct), "nowhere": len(nowhere),
+                     **errors(truth, carried, np.union1d(nowhere, left_out).astype(int))})
+    return rows
 
 
 def write_anchors(path, pair, chosen, noise):
@@ -346,24 +391,29 @@ def parse_options(arguments):
 def chosen_pairs(options, commits, folder):
     if options.generated:
         return generated_pairs(options.bespoke, folder)
-    makers = {"faust": faust_pairs, "tosca": tosca_pairs, "garmentcode": garmentcode_pairs, "mouse": mouse_pairs}
-    names = [name for name in options.sets if options.report or SETS[name] in ("faust", "tosca")]
+    makers = {"faust-persons": faust_pairs, "faust-poses": faust_pairs, "tosca": tosca_pairs,
+              "tosca-across": tosca_across_pairs, "garmentcode": garmentcode_pairs, "mouse": mouse_pairs}
+    names = [name for name in options.sets if options.report or name in CHOOSING_SETS]
     clones = {SETS[name]: Clone(options.clones, SETS[name]) for name in names}
     commits.update({clone.repository: clone.commit() for clone in clones.values()})
-    return pairs_by_turns([makers[SETS[name]](clones[SETS[name]], name, options) for name in names])
+    return pairs_by_turns([makers[name](clones[SETS[name]], name, options) for name in names])
 
 
 def main():
     options = parse_options(sys.argv[1:])
-    rows, commits = [], {}
+    rows, recorded, commits = [], [], {}
     with tempfile.TemporaryDirectory() as folder:
         for pair in chosen_pairs(options, commits, Path(folder)):
             begin = time.monotonic()
             rows.append(score(pair, options, Path(folder)))
+            recorded += recorded_rows(pair, farthest(pair.points, options.anchors))
             print(f"{pair.name}: {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
             if options.json:
-                options.json.write_text(json.dumps({"commits": commits, "rows": rows}, indent=1) + "\n")
+                found = {"commits": commits, "rows": rows, "recorded": recorded}
+                options.json.write_text(json.dumps(found, indent=1) + "\n")
     print(tables.public_table(rows), end="")
+    if recorded:
+        print("\n" + tables.recorded_maps_table(recorded), end="")
     for repository, commit in commits.items():
         print(f"- {repository} at {commit}")
 

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Properties of public_pairs.py on meshes made here. Exit code 77 where numpy is not installed."""
 import argparse
+import io
 import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 from pathlib import Path
 
 try:
@@ -97,6 +99,28 @@ class Scores(unittest.TestCase):
         self.assertEqual((pairs.flipped_faces(pair, SQUARE), pairs.flipped_faces(pair, carried)), (0, 1))
         pair.vertices = None
         self.assertIsNone(pairs.flipped_faces(pair, carried))
+
+
+class RecordedMaps(unittest.TestCase):
+    def test_take_vertices_to_the_vertices_whose_numbers_they_hold(self):
+        data = io.BytesIO()
+        with zipfile.ZipFile(data, "w") as archive:
+            archive.writestr("A/s_t.map", "2\n1\nNaN\n")
+        with zipfile.ZipFile(data) as archive:
+            places = pairs.recorded_places(archive, "A/s_t.map", 1, np.array([1, 0, 2]), SQUARE)
+        np.testing.assert_array_equal(places, [SQUARE[0], SQUARE[1], [np.nan] * 3])
+
+    def test_are_scored_by_the_truth_or_its_mirror_image_without_what_they_take_nowhere(self):
+        mesh = grid()
+        pair = whole_pair(mesh, mesh[0])
+        pair.mirrored = mesh[0] * [-1, 1, 1]
+        astray = mesh[0].copy()
+        astray[3] = np.nan
+        pair.recorded = {"direct": astray, "other way": pair.mirrored}
+        rows = pairs.recorded_rows(pair, [])
+        self.assertEqual([(row["mirrored"], row["nowhere"], row["max"]) for row in rows], [(False, 1, 0), (True, 0, 0)])
+        pair.recorded = {"direct": mesh[0] + [0, 0, np.linalg.norm(np.ptp(mesh[0], axis=0)) / 50]}
+        self.assertEqual(pairs.recorded_rows(pair, [7])[0]["mean"], 2)
 
 
 class Anchors(unittest.TestCase):

@@ -85,6 +85,13 @@ def public_table(rows):
     return table(headings, [cells(row) for row in rows])
 
 
+def recorded_maps_table(rows):
+    """Maps of other programs that public_pairs.py has scored."""
+    return table(["pair", "map", "mean / p95, %", "max, %", "points without a place"],
+                 [[row["pair"], row["method"] + (", mirrored" if row["mirrored"] else ""), errors(row),
+                   f"{row['max']:.2f}", str(row["nowhere"])] for row in rows])
+
+
 def public(recorded):
     return public_table(recorded["public"])
 
