@@ -56,7 +56,7 @@ TEST(SwappedAnchors, AreNoneWhereOneAloneIsAnOutlier) {
     for (std::size_t i = 0; i < 24; ++i) {
       Anchors anchors = bent_pairs(24);
       anchors.pairs[i].b += length * directions.col(static_cast<Eigen::Index>(i)).normalized();
-      EXPECT_TRUE(swapped_anchors(anchors).empty()) << i << " slipped by " << length;
+      EXPECT_TRUE(swapped_anchors(anchors).empty()) << i << " displaced by " << length;
     }
 }
 

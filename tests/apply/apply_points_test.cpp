@@ -129,10 +129,10 @@ TEST(ApplyPoints, NamesTheProductThatItCannotCarry) {
   const std::vector<PointSpans> undefined = {in_place(good), in_place(bad)};
   EXPECT_THAT([&] { apply_points(*map, test::some_rigid(), undefined); },
               ThrowsMessage<InvalidInput>(HasSubstr("product 1: point 3 is not finite")));
-  PointSpans short_of_room = in_place(good);
-  short_of_room.image = short_of_room.image.first(12);
-  EXPECT_THAT([&] { apply_points(*map, test::some_rigid(), short_of_room); },
-              ThrowsMessage<InvalidInput>(HasSubstr("product 0: 15 coordinates of points and room for 12")));
+  PointSpans short_of_space = in_place(good);
+  short_of_space.image = short_of_space.image.first(12);
+  EXPECT_THAT([&] { apply_points(*map, test::some_rigid(), short_of_space); },
+              ThrowsMessage<InvalidInput>(HasSubstr("product 0: 15 coordinates of points and space for 12")));
   ApplyPointsOptions never;
   never.t = std::nan("");
   EXPECT_THROW(applied(*map, good, never), InvalidInput);

@@ -137,7 +137,7 @@ TEST_F(SplitGltf, MergesTheJointsOfBothEnds) {
   scene = scene_of(scene, {{{"attributes", attributes}}});
   const GlbContent file = split_scene(scene);
   const json list = primitive_of(file)["attributes"];
-  // 2: 3/8, 1: 1/4, 3 and 4: 1/8, which are 7/8 together; 5 and 6 find no room.
+  // 2: 3/8, 1: 1/4, 3 and 4: 1/8, which are 7/8 together; 5 and 6 find no space.
   EXPECT_EQ(middles<std::uint8_t>(file, list, "JOINTS_0", 4)[0], (Octets{2, 1, 3, 4}));
   EXPECT_THAT(middles<float>(file, list, "WEIGHTS_0", 4)[0], near({3 / 7.F, 2 / 7.F, 1 / 7.F, 1 / 7.F}));
   EXPECT_EQ(middles<std::uint8_t>(file, list, "JOINTS_0", 4)[1], (Octets{9, 1, 2, 3}));

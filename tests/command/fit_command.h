@@ -12,7 +12,7 @@ namespace bespoke::test {
 
 using nlohmann::json;
 
-/// A pair of models to fit, and what the command answers.
+/// A pair of models to fit, and what the command says.
 class FitCommand : public testing::Test {
  protected:
   json info(const std::string& map) const {

@@ -107,7 +107,7 @@ TEST_F(GradeCommand, GoesOnWithTheOtherSizes) {
   EXPECT_FALSE(pair_.has("sizes/S/measures.md"));
   EXPECT_FALSE(pair_.has("sizes/measures.md"));
 
-  // Mended, only what lacks is made: map, product and table of the size, the table of all.
+  // Repaired, only what lacks is made: map, product and table of the size, the table of all.
   fs::copy_file(file("target.obj"), file("flat.obj"), fs::copy_options::overwrite_existing);
   const ProgramResult again = grade({"--sizes", file("sizes.csv")});
   ASSERT_EQ(again.exit_code, 0) << again.err;

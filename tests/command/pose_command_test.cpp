@@ -70,7 +70,8 @@ class PoseOfCommands : public testing::Test {
     anchors.erase("units");
     write_text(file("anchors.json"), anchors.dump());
     for (json& pair : anchors["pairs"]) {
-      const Vector3 moved = shown({pair["a"][0], pair["a"][1], pair["a"][2]});
+      const json a = pair["a"];
+      const Vector3 moved = shown(Vector3(a[0].get<double>(), a[1].get<double>(), a[2].get<double>()));
       pair["a"] = {moved.x(), moved.y(), moved.z()};
     }
     write_text(file("shown.json"), anchors.dump());

@@ -78,19 +78,19 @@ void expect_the_whole_or_a_refusal(const Pyramid& whole) {
   const auto loaded = loaded_map({}, whole);
   const PartMap part({}, test::part_of(whole, {Vector3(-1, -2, 1), Vector3(0, 0, 2)}));
   const Points x = test::points_about_random_pyramid(20000, 6);
-  int refused = 0, answered = 0;
+  int refused = 0, returned = 0;
   for (Eigen::Index i = 0; i < x.cols(); ++i) {
     const Points point = x.col(i);
     try {
       ASSERT_EQ(part.displacement(point), loaded->displacement(point));
       ASSERT_EQ(part.displacement_gradient(point), loaded->displacement_gradient(point));
-      ++answered;
+      ++returned;
     } catch (const OutsidePart&) {
       ++refused;
     }
   }
   EXPECT_GT(refused, 100);
-  EXPECT_GT(answered, 100);
+  EXPECT_GT(returned, 100);
   EXPECT_THROW(part.displacement(x), OutsidePart);
 }
 

@@ -126,7 +126,7 @@ TEST(ClosestPoint, OfEqualDistanceBelongsToTheLeastFace) {
 }
 
 TEST(ClosestPoint, OfEqualDistanceAcrossARidgeBelongsToTheLeastFace) {
-  // Outside a convex edge both faces answer with the same point of it, whichever way they run along it.
+  // Outside a convex edge both faces give the same point of it, whichever way they run along it.
   const TriangleMesh cube = shapes::moved(shapes::cube(), {Matrix3::Identity() / 3, {0.1, 0.2, 0.3}});
   TriangleMesh reversed = cube;
   for (Eigen::Index face = 0; face < cube.faces.cols(); ++face)

@@ -80,12 +80,12 @@ function model(path: string): SurfaceGraph {
 }
 
 test("clicks on both models, the last one on the first point, make a closed curve through the clicked places", async () => {
-  const laid: Record<Side, Triple[]> = { a: [], b: [] };
+  const placed: Record<Side, Triple[]> = { a: [], b: [] };
   for (const name of clicked) {
     const pair = given.find((each) => each.name === name)!;
     for (const side of ["b", "a"] as const) {
       assert.ok(await lay(side, pair[side]), `${name} on ${side}`);
-      laid[side].push(pair[side]);
+      placed[side].push(pair[side]);
     }
   }
   assert.equal((await curves())[0].closed, false);
@@ -96,7 +96,7 @@ test("clicks on both models, the last one on the first point, make a closed curv
   assert.deepEqual([curve.closed, curve.a.pieces.length, curve.b.pieces.length], [true, 4, 4]);
   for (const side of ["a", "b"] as const)
     curve[side].points.forEach((point, i) => {
-      assert.ok(distance(point, laid[side][i]) < 0.01 * diagonal, "where it was clicked");
+      assert.ok(distance(point, placed[side][i]) < 0.01 * diagonal, "where it was clicked");
       assert.deepEqual(curve[side].pieces[i][0], point);
       assert.deepEqual(curve[side].pieces[i].at(-1), curve[side].points[(i + 1) % 4]);
     });

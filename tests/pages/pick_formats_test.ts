@@ -74,7 +74,7 @@ const form = () => opened.page.getByRole("group", { name: "Files with one side e
 const places = (list: Pair[]): Triple[][] => list.map(({ a, b }) => [a, b]);
 const named = (list: Pair[]): unknown[] => list.map(({ name = "", a, b }) => ({ name, a, b }));
 
-/** Opens files and answers what the page says of them. */
+/** Opens files and returns what the page says of them. */
 async function open_files(...names: string[]): Promise<string> {
   await said().evaluate((element) => (element.textContent = ""));
   await opened.page.locator("input[type=file]").setInputFiles(names.map(file));
@@ -136,8 +136,8 @@ for (const each of vectors.filter(({ files }) => files[0][0].endsWith(".pp")))
     each.files.forEach(([name, text]) => writeFileSync(file(name), text));
     const names = each.files.map(([name]) => name);
     if (each.pairs !== undefined) return assert.deepEqual((await imported(names)).map(({ name = "", a, b }) => [name, a, b]), each.pairs);
-    const answer = await open_files(...names);
-    each.fault!.forEach((words) => assert.ok(answer.includes(words), answer));
+    const reply = await open_files(...names);
+    each.fault!.forEach((words) => assert.ok(reply.includes(words), reply));
   });
 
 test("vertex numbers are those of the command", async () => {

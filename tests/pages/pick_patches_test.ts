@@ -68,7 +68,7 @@ async function lay(side: Side, point: Triple): Promise<boolean> {
   await opened.page.mouse.click(...(await pixel(side, point)));
   const now = (await curves()).at(-1)?.[side].points ?? [];
   if (now.length === count) return false;
-  if (now.some((laid) => distance(laid, point) < 0.01 * diagonal)) return true;
+  if (now.some((placed) => distance(placed, point) < 0.01 * diagonal)) return true;
   await button("Undo").click();
   return false;
 }
@@ -166,12 +166,12 @@ test("an excluded part of the source alone is saved without a line on the target
   await button("New patch").click();
   await kind("patch1").selectOption("excluded");
   assert.match(await warnings(), /“patch1” lacks 3 points on the source or 3 points on the target; saved are complete patches only/);
-  const laid: Triple[] = [];
-  for (const pair of given.filter(({ name }) => !around.includes(name))) if (laid.length < 3 && (await lay("a", pair.a))) laid.push(pair.a);
+  const placed: Triple[] = [];
+  for (const pair of given.filter(({ name }) => !around.includes(name))) if (placed.length < 3 && (await lay("a", pair.a))) placed.push(pair.a);
   assert.equal(await warnings(), "");
   const patch = (await saved()).patches?.[1];
   assert.deepEqual([patch?.name, patch?.exclude, patch?.b], ["patch1", true, undefined]);
-  for (const point of laid) assert.ok(patch!.a!.border!.some((other) => distance(other, point) < 0.01 * diagonal));
+  for (const point of placed) assert.ok(patch!.a!.border!.some((other) => distance(other, point) < 0.01 * diagonal));
   bespoke(directory, "fit", "shoe/source.obj", "shoe/target.obj", "--anchors", "anchors.json", "-o", "excluded.vdb", "--quiet");
 });
 

@@ -1,5 +1,5 @@
 // The queries of closest_point_benchmark put to Embree's point query. Embree walks its tree in float and
-// leaves the triangles to a callback, which measures them in double here, as an exact answer needs.
+// leaves the triangles to a callback, which measures them in double here, as an exact result needs.
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
 
@@ -118,7 +118,7 @@ void embree_closest(benchmark::State& state, double distance, bool compatible) {
     if (compatible) query.normal = normal;
     const double expected = std::sqrt(ours.closest(input.queries.col(i), query)->squared_distance);
     const double found = std::sqrt(tree.closest(input.queries.col(i), compatible ? &normal : nullptr));
-    if (!(std::abs(found - expected) <= tolerance)) return state.SkipWithError("other answers than ours");
+    if (!(std::abs(found - expected) <= tolerance)) return state.SkipWithError("other results than ours");
   }
 }
 

@@ -41,7 +41,7 @@ struct TestedSquare {
     return outlier_test().suspects(registered, audit);
   }
 
-  /// Around the pair the source is laid so many times as long, and as short across.
+  /// Around the pair the source is placed so many times as long, and as short across.
   void stretch(std::size_t pair, double factor) {
     const Vector3 middle = given.pairs[pair].a;
     for (Eigen::Index i = 0; i < registered.cols(); ++i) {

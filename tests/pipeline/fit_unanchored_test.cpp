@@ -127,7 +127,7 @@ TEST(FitUnanchored, RefusesAMirroredHand) {
 TEST(FitUnanchored, RefusesAHandOnAFootAndSaysWhatToDo) {
   try {
     fit_unanchored(glove().source, shoe().targets.front().mesh, {});
-    FAIL() << "a hand was laid onto a foot";
+    FAIL() << "a hand was registered to a foot";
   } catch (const SolverError& error) {
     EXPECT_THAT(error.what(), HasSubstr("give at least 4 anchors"));
   }

@@ -109,7 +109,7 @@ TEST(UnmetVertices, PrintOneLine) {
   EXPECT_EQ(to_string(unmet), "3 vertices unmet: 2 fitted faces folded, 1 too steep");
 }
 
-// A ball that is laid into its neighbour: with a gap the map is met elsewhere, and says where and why.
+// A ball that is placed into its neighbour: with a gap the map is met elsewhere, and says where and why.
 TEST(UnmetVertices, AreTouchingWhereTheTargetTouchesItself) {
   const TriangleMesh ball = shapes::icosphere(3);
   const auto two_balls = [&](double apart) {

@@ -35,7 +35,7 @@ def test_fit_is_that_of_the_command(pair, command, tmp_path):
     assert fit.map.info.unit == "cm"
 
 
-def test_goes_from_one_unit_to_another_where_any_size_is_asked(pair):
+def test_goes_from_one_unit_to_another_where_any_size_is_allowed(pair):
     metres = bespoke.fit(pair.source, pair.target, pair.anchors).map
     target = bespoke.Mesh(1024 * pair.target.vertices, pair.target.faces)
     anchors = [

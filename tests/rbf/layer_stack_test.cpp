@@ -95,7 +95,7 @@ TEST(LayerStack, IsExactlyZeroBeyondEveryRadius) {
   EXPECT_GT(beyond, 1000);
 }
 
-TEST(LayerStack, AnswersEachPointWithTheSameBitsInAnyCompany) {
+TEST(LayerStack, GivesEachPointTheSameBitsInAnyCompany) {
   const LayerStack stack =
       stack_of({random_layer(300, 0.5, 21), random_layer(300, 0.1, 23)}, Stacking::composed);
   const Points x = test::random_points(3000, 25);

@@ -69,7 +69,7 @@ TEST(PointGrid, OfNothingVisitsNothing) {
   EXPECT_TRUE(found(grid, Vector3::Zero(), 100).empty());
 }
 
-TEST(PointGrid, AnswersQueriesAtInfinityWithNothing) {
+TEST(PointGrid, FindsNothingAtInfinity) {
   const PointGrid grid(test::random_points(10, 6), 0.5);
   EXPECT_TRUE(found(grid, Vector3::Constant(1e300), 1).empty());
   EXPECT_TRUE(found(grid, Vector3(std::numeric_limits<double>::infinity(), 0, 0), 1).empty());

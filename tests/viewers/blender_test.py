@@ -183,7 +183,7 @@ def shared_meshes_become_ones_own():
     assert product.data != twin.data and twin.data.shape_keys is None
 
 
-def modifiers_are_applied_on_a_copy_when_asked():
+def modifiers_are_applied_on_a_copy_on_request():
     asset = load()
     product = add_mesh("product.obj")
     shift = product.modifiers.new("shift", "DISPLACE")
@@ -362,7 +362,7 @@ PROPERTIES = (
     keys_follow_the_path_of_the_map,
     other_shape_keys_stay,
     shared_meshes_become_ones_own,
-    modifiers_are_applied_on_a_copy_when_asked,
+    modifiers_are_applied_on_a_copy_on_request,
     trouble_is_named,
     missing_command_is_named,
     undo_takes_carrying_back,

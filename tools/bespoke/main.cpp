@@ -31,7 +31,7 @@ std::string help_command(const CLI::App& app) {
   return command + " --help";
 }
 
-bool asks_for_versions(int argc, char** argv) {
+bool wants_versions(int argc, char** argv) {
   const std::set<std::string> given(argv + 1, argv + argc);
   return given == std::set<std::string>{"--json", "--version"};
 }
@@ -71,7 +71,7 @@ void add_commands(CLI::App& app) {
 
 int main(int argc, char** argv) {
   using namespace bespoke::command;
-  if (asks_for_versions(argc, argv)) {
+  if (wants_versions(argc, argv)) {
     std::cout << versions_json() << '\n';
     return 0;
   }

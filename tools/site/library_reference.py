@@ -1,4 +1,4 @@
-"""From Doxygen's XML to pages of Sphinx's C++ domain, one a room, its public headers in order.
+"""From Doxygen's XML to pages of Sphinx's C++ domain, one a module, its public headers in order.
 
 Breathe would do the same, but writes the namespace anew for every header, which takes minutes and repeats every declaration.
 """
@@ -127,12 +127,12 @@ class Library:
         kind, name = compound.get("kind"), name.removeprefix(NAMESPACE)
         return directive(kind, f"{template_of(compound)}{name}{derived}", comment(compound), inner)
 
-    def page(self, room, headers):
-        """The page of one room as reStructuredText; `headers` as programs include them."""
-        title = room or "beside the rooms"
+    def page(self, module, headers):
+        """The page of one module as reStructuredText; `headers` as programs include them."""
+        title = module or "beside the modules"
         lines = [title, "=" * len(title), ""]
-        if room:
-            lines += [f"What this room is for: :doc:`its page </src/bespoke/{room}/README>`.", ""]
+        if module:
+            lines += [f"What this module is for: :doc:`its page </src/bespoke/{module}/README>`.", ""]
         lines += [".. cpp:namespace:: bespoke", ""]
         for header in headers:
             lines += [header, "-" * len(header), ""]

@@ -26,7 +26,7 @@ void require_finite(const Points& x, const std::vector<double>& times) {
 }
 
 /// Whether elastic_argument returns x itself.
-bool is_asked_at_rest(double t, const MotionOptions& motion) {
+bool is_at_rest(double t, const MotionOptions& motion) {
   return motion.order != MappingOrder::moving_point || t == 0 || t == 1;
 }
 
@@ -92,7 +92,7 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
     const Points image = affine * chunk + u_chunk;
     in_band[begin / points_per_mapping_chunk] = count_nonzero(u_chunk);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
-      if (is_asked_at_rest(times[frame], motion))
+      if (is_at_rest(times[frame], motion))
         applied.frames[frame].middleCols(first, size) =
             move_points(chunk, image, target_from_source, times[frame], motion);
   });
@@ -100,7 +100,7 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
     follow(*chain, target_from_source, x, times, applied);
   // Every t has a lookup of its own where E is requested at points that move.
   for (std::size_t frame = 0; frame < times.size(); ++frame) {
-    if (is_asked_at_rest(times[frame], motion)) continue;
+    if (is_at_rest(times[frame], motion)) continue;
     const Points argument = elastic_argument(x, target_from_source, times[frame], motion);
     watch.lap();
     const Points image = elastic(argument);

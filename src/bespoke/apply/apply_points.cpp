@@ -28,8 +28,8 @@ class Stream {
       const std::size_t coordinates = products[i].x.size();
       if (coordinates % 3 != 0 || products[i].image.size() != coordinates)
         throw InvalidInput("product " + std::to_string(i) + ": " + std::to_string(coordinates) +
-                           " coordinates of points and room for " + std::to_string(products[i].image.size()) +
-                           " of their images");
+                           " coordinates of points and space for " +
+                           std::to_string(products[i].image.size()) + " of their images");
       first_.push_back(first_.back() + coordinates / 3);
     }
   }

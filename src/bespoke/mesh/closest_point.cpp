@@ -201,7 +201,7 @@ class Nearest {
     reach_ = round_up(best_.squared_distance * slack);
   }
 
-  std::optional<SurfacePoint> answer() const {
+  std::optional<SurfacePoint> found() const {
     if (!triangle_) return std::nullopt;
     SurfacePoint result;
     result.point = best_.point;
@@ -260,7 +260,7 @@ std::optional<SurfacePoint> ClosestPointTree::closest(const Vector3& x,
       stack[static_cast<std::size_t>(at)] = {squared[i], node.child[i]};
     }
   }
-  return nearest.answer();
+  return nearest.found();
 }
 
 Vector3 carried(const SurfacePoint& point, const Faces& faces, const Points& vertices) {

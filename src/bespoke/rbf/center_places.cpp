@@ -14,7 +14,7 @@ struct CenterPlaces::Box {
   float high[3];
 };
 
-/// Writes the positions that are near to `near`, which has room for all, and their number to `count`.
+/// Writes the positions that are near to `near`, which has space for all, and their number to `count`.
 struct CenterPlaces::Select {
   [[gnu::always_inline]] static void run(const CenterPlaces& places, const std::vector<Range>& ranges,
                                          const Box& box, int* near, std::size_t& count) {
@@ -66,10 +66,10 @@ void CenterPlaces::append_near(const std::vector<Range>& ranges, const double* l
     box.low[axis] = static_cast<float>(low[axis] - origin_[axis]);
     box.high[axis] = static_cast<float>(high[axis] - origin_[axis]);
   }
-  std::size_t room = 0;
-  for (const Range& range : ranges) room += static_cast<std::size_t>(range.end - range.begin);
+  std::size_t capacity = 0;
+  for (const Range& range : ranges) capacity += static_cast<std::size_t>(range.end - range.begin);
   const std::size_t before = near.size();
-  near.resize(before + room + 1);
+  near.resize(before + capacity + 1);
   std::size_t count = 0;
   run_dispatched<Select>(*this, ranges, box, near.data() + before, count);
   near.resize(before + count);

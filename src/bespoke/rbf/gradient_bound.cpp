@@ -206,9 +206,9 @@ void GradientBound::update(const RbfLayer& layer, double enough, Closeness close
   parallel_for(cells_.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
       const Vector3 low = edge * Vector3(cells_[c][0], cells_[c][1], cells_[c][2]);
-      const bool settled = found_[c].steep.empty() || closeness == Closeness::rough;
+      const bool is_final = found_[c].steep.empty() || closeness == Closeness::rough;
       const std::vector<int> near = search.centers_near(low, edge);
-      if (!changed.empty() && settled && !search.any(near, changed)) continue;
+      if (!changed.empty() && is_final && !search.any(near, changed)) continue;
       found_[c] = {};
       search.look(low, edge, near, found_[c]);
     }

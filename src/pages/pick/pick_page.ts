@@ -264,9 +264,9 @@ class PickPage {
 
   private mirror_name(name: string, taken: { name: string }[]): string {
     const rule = mirror_names.find(([pattern]) => pattern.test(name));
-    const wished = rule === undefined ? `${name}_mirrored` : name.replace(rule[0], rule[1]);
-    let unique = wished;
-    for (let k = 2; taken.some((other) => other.name === unique); ++k) unique = `${wished}_${k}`;
+    const wanted = rule === undefined ? `${name}_mirrored` : name.replace(rule[0], rule[1]);
+    let unique = wanted;
+    for (let k = 2; taken.some((other) => other.name === unique); ++k) unique = `${wanted}_${k}`;
     return unique;
   }
 

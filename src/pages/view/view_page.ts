@@ -119,11 +119,11 @@ class ViewPage {
   // ---- colours
 
   private choose_first_field(): void {
-    const wished = ["clearance_change", "target_distance", "displacement"];
+    const candidates = ["clearance_change", "target_distance", "displacement"];
     const models = this.view.models;
     const order = [...models.keys()].sort((a, b) => Number(models[b].record.role === "product") - Number(models[a].record.role === "product")).map((index) => [index]);
     if (this.products.length > 1) order.unshift(this.products);
-    for (const id of wished)
+    for (const id of candidates)
       for (const indices of order)
         if (indices.some((index) => models[index].field(id) !== null)) return this.colour_by(indices, id);
   }
@@ -384,7 +384,7 @@ class ViewPage {
 
   private relay_out(): void {
     this.clear_pins();
-    // On a narrow screen there is no room over the models.
+    // On a narrow screen there is no space over the models.
     if (window.innerWidth <= 760) this.stage_box.after(this.legend.element);
     else this.stage_box.append(this.legend.element);
     this.view.lay_out();

@@ -130,8 +130,8 @@ py::tuple fit(const py::tuple& source_arrays, const py::tuple& target_arrays,
     return make_map(input, make_options(request, size, size_scale), progress);
   });
   const std::string report = fit_report(input, made, watch.seconds());
-  const Points laid = made.fit->target_from_source * made.fit->fitted_vertices;
-  return py::make_tuple(std::make_shared<LoadedAsset>(std::move(made.asset)), to_array(laid),
+  const Points placed = made.fit->target_from_source * made.fit->fitted_vertices;
+  return py::make_tuple(std::make_shared<LoadedAsset>(std::move(made.asset)), to_array(placed),
                         to_array(made.fit->confidence), report);
 }
 

@@ -9,7 +9,7 @@ from .curves import curves_of
 
 KEY_PREFIX = "bespoke "
 FRAMES_A_STEP = 8  # Between them a path may bend unseen.
-MOST_KEYS = 32  # They follow half a turn to 0.1 % of its radius.
+MAX_KEYS = 32  # They follow half a turn to 0.1 % of its radius.
 
 
 class CarryError(Exception):
@@ -69,7 +69,7 @@ def path_of_points(asset, x, tolerance):
             frames *= 2
             path = command.image_at_frames(assets.path_of(asset), x, frames)
         off = straight_pieces(path, pieces)
-        if off <= tolerance or 2 * pieces > MOST_KEYS:
+        if off <= tolerance or 2 * pieces > MAX_KEYS:
             return path[:: frames // pieces], off
         pieces *= 2
 

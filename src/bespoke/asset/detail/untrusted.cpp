@@ -144,19 +144,19 @@ std::string message_for(const std::exception& error) {
 }
 
 [[noreturn]] void run_child(int pipe, std::string_view bytes) {
-  std::string answer;
+  std::string reply;
   try {
-    answer = std::string(1, accepted) + to_bytes(stored_file_from_vdb(bytes));
+    reply = std::string(1, accepted) + to_bytes(stored_file_from_vdb(bytes));
   } catch (const std::bad_alloc&) {
-    answer = std::string(1, rejected) + "requires more memory than a file of its size may";
+    reply = std::string(1, rejected) + "requires more memory than a file of its size may";
   } catch (const std::exception& error) {
-    answer = message_for(error);
+    reply = message_for(error);
   } catch (...) {
-    answer = std::string(1, rejected) + "reading it failed";
+    reply = std::string(1, rejected) + "reading it failed";
   }
-  const std::uint64_t size = answer.size();
+  const std::uint64_t size = reply.size();
   write_all(pipe, reinterpret_cast<const char*>(&size), sizeof size);
-  write_all(pipe, answer.data(), answer.size());
+  write_all(pipe, reply.data(), reply.size());
   // No destructor and no exit handler of the parent may run here.
   ::_exit(0);
 }
@@ -192,16 +192,15 @@ std::string receive(Child& child, int descriptor, const Limits& limits) {
   if (!read_all(descriptor, reinterpret_cast<char*>(&size), sizeof size, deadline, limits.seconds))
     throw died();
   if (!(size >= 1 && size <= limits.memory)) throw FormatError("reading it went wrong");
-  std::string answer;
+  std::string reply;
   // Grows with what arrives, so that a wrong size costs nothing.
   constexpr std::size_t piece = std::size_t{1} << 24;
-  while (answer.size() < size) {
-    const std::size_t old = answer.size();
-    answer.resize(old + std::min<std::size_t>(piece, size - old));
-    if (!read_all(descriptor, answer.data() + old, answer.size() - old, deadline, limits.seconds))
-      throw died();
+  while (reply.size() < size) {
+    const std::size_t old = reply.size();
+    reply.resize(old + std::min<std::size_t>(piece, size - old));
+    if (!read_all(descriptor, reply.data() + old, reply.size() - old, deadline, limits.seconds)) throw died();
   }
-  return answer;
+  return reply;
 }
 
 }  // namespace
@@ -235,10 +234,10 @@ StoredFile stored_file_from_untrusted_vdb(std::string_view bytes) {
   Descriptor pipe(ends[0]);
   if (pid < 0) throw FileError(std::string("fork: ") + std::strerror(fork_error));
   Child child(pid);
-  const std::string answer = receive(child, pipe.get(), limits);
-  if (answer[0] != accepted) throw FormatError(answer.substr(1, longest_message));
+  const std::string reply = receive(child, pipe.get(), limits);
+  if (reply[0] != accepted) throw FormatError(reply.substr(1, longest_message));
   try {
-    return stored_file_from_bytes(std::string_view(answer).substr(1));
+    return stored_file_from_bytes(std::string_view(reply).substr(1));
   } catch (const InvalidInput& error) {
     throw FormatError(std::string("reading it gave nonsense: ") + error.what());
   }

@@ -52,7 +52,7 @@ class AdaptiveBake {
     turn_faces_back(PyramidBuilder::Purpose::tolerance);
     measure();
     meet_tolerance();
-    mend();
+    refine_all();
     summary().evaluated_points = builder_->evaluated_points();
     summary().peak_bytes = builder_->byte_count();
     summary().relaxed = builder_->relaxed();
@@ -106,7 +106,7 @@ class AdaptiveBake {
     return refined;
   }
 
-  void mend() {
+  void refine_all() {
     refine_folds();
     const bool turned_back = turn_faces_back(PyramidBuilder::Purpose::reserved);
     const bool freed = builder_->free_reserve();

@@ -33,7 +33,7 @@ MemoryBudget::MemoryBudget(const ElasticMap& map, const Lattice& coarsest, std::
 
 std::size_t MemoryBudget::bytes_for(std::size_t leaves) { return fixed_bytes + bytes_per_leaf * leaves; }
 
-void MemoryBudget::require_room_for(std::size_t leaves) {
+void MemoryBudget::require_space_for(std::size_t leaves) {
   const std::size_t needed = bytes_for(leaves);
   const bool small =
       leaves <= leaves_without_forecast && needed <= options_.max_memory / share_without_forecast;
@@ -53,7 +53,7 @@ double MemoryBudget::expected_leaves() {
 
 void MemoryBudget::refuse(std::size_t leaves, double expected) const {
   const double bytes = fixed_bytes + bytes_per_leaf * std::max(static_cast<double>(leaves), expected);
-  const double room = (static_cast<double>(options_.max_memory) - fixed_bytes) / bytes_per_leaf;
+  const double affordable = (static_cast<double>(options_.max_memory) - fixed_bytes) / bytes_per_leaf;
   char text[300];
   int length = std::snprintf(
       text, sizeof text, "a tolerance of %.4g needs about %.0f MB for the bake, the limit is %.0f MB",
@@ -61,7 +61,7 @@ void MemoryBudget::refuse(std::size_t leaves, double expected) const {
   // Where the forecast was too low, what it says about other tolerances is too low as well.
   const double shortfall = expected > 0 ? std::max(1.0, static_cast<double>(leaves) / expected) : 1;
   const std::optional<double> fitting =
-      forecast_ ? forecast_->tolerance_for(room / (advice_margin * shortfall)) : std::nullopt;
+      forecast_ ? forecast_->tolerance_for(affordable / (advice_margin * shortfall)) : std::nullopt;
   const std::size_t left = sizeof text - static_cast<std::size_t>(length);
   if (fitting)
     std::snprintf(text + length, left, "; a tolerance of %.4g would fit",

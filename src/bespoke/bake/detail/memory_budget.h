@@ -18,7 +18,7 @@ class MemoryBudget {
 
   /// Throws MemoryLimitError, naming the tolerance that would fit, when so many leaves, or those that a
   /// forecast expects (made once they are more than a few), take more than the memory.
-  void require_room_for(std::size_t leaves);
+  void require_space_for(std::size_t leaves);
 
   /// What so many leaves need, values and samples.
   static std::size_t bytes_for(std::size_t leaves);

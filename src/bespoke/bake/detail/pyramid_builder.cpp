@@ -182,7 +182,7 @@ void PyramidBuilder::add(std::size_t level, std::vector<LeafCoordinates> leaves)
     for (const LeafCoordinates& leaf : leaves) parents.push_back(parent_of(leaf));
     add(level - 1, std::move(parents));
   }
-  budget_.require_room_for(levels_.leaf_count() + leaves.size());
+  budget_.require_space_for(levels_.leaf_count() + leaves.size());
   levels_.append(level, leaves, sample_leaves(map_, levels_.lattice(level), leaves, progress_),
                  nodes_of(level));
   sampled_points_ += leaves.size() * leaf_nodes;

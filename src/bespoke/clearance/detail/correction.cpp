@@ -24,7 +24,7 @@ constexpr double min_gradient = 0.2;
 // A round that brings a sample less than this share of the way that it was pushed was in vain, and after so
 // many there is no space for it.
 constexpr double min_gain = 0.3;
-constexpr int most_vain_rounds = 2;
+constexpr int max_vain_rounds = 2;
 
 // Of the tolerance: how exactly a round meets its linear constraints, and what is aimed for beyond what is
 // required: together within the tolerance, so that the next round finds them met.
@@ -165,7 +165,7 @@ int Correction::nearest_node(const ProductSamples& samples, int sample) const {
 }
 
 /// Lets go of nodes whose samples rounds did not bring nearer: there is no space, and pushing on would
-/// crumple the product.
+/// fold the product.
 bool Correction::count_vain_rounds(const SampleDistances& distances) {
   bool let_go = false;
   for (const Active& active : active_) {
@@ -173,14 +173,14 @@ bool Correction::count_vain_rounds(const SampleDistances& distances) {
     const double gained = active.missing - distances.missing(active.obstacle, active.sample);
     if (!distances.misses(active.obstacle, active.sample) || gained > min_gain * expected) continue;
     int& rounds = vain_rounds_[{active.obstacle, nearest_node(distances.samples(), active.sample)}];
-    let_go = ++rounds == most_vain_rounds || let_go;
+    let_go = ++rounds == max_vain_rounds || let_go;
   }
   return let_go;
 }
 
-bool Correction::is_hopeless(std::size_t obstacle, int node) const {
+bool Correction::is_blocked(std::size_t obstacle, int node) const {
   const auto found = vain_rounds_.find({obstacle, node});
-  return found != vain_rounds_.end() && found->second >= most_vain_rounds;
+  return found != vain_rounds_.end() && found->second >= max_vain_rounds;
 }
 
 /// Keeps what pushes, and adds of what misses the worst sample around each node: its neighbours follow it.
@@ -192,7 +192,7 @@ bool Correction::choose_active(const SampleDistances& distances) {
   for (std::size_t i = 0; i < active_.size(); ++i) {
     const Active& was = active_[i];
     const double multiplier = multipliers_[static_cast<Eigen::Index>(i)];
-    if (!(multiplier > 0) || is_hopeless(was.obstacle, nearest_node(distances.samples(), was.sample)))
+    if (!(multiplier > 0) || is_blocked(was.obstacle, nearest_node(distances.samples(), was.sample)))
       continue;
     active.push_back(was);
     multipliers.push_back(multiplier);
@@ -205,7 +205,7 @@ bool Correction::choose_active(const SampleDistances& distances) {
     for (int i = 0; i < static_cast<int>(distances.samples().count()); ++i) {
       if (!distances.misses(o, i)) continue;
       const int node = nearest_node(distances.samples(), i);
-      if (is_hopeless(o, node)) continue;
+      if (is_blocked(o, node)) continue;
       any = true;
       note_missing(distances, i);
       int& at = worst[static_cast<std::size_t>(node)];

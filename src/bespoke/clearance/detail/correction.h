@@ -73,7 +73,7 @@ class Correction {
   bool choose_active(const SampleDistances& distances);
   int nearest_node(const ProductSamples& samples, int sample) const;
   bool count_vain_rounds(const SampleDistances& distances);
-  bool is_hopeless(std::size_t obstacle, int node) const;
+  bool is_blocked(std::size_t obstacle, int node) const;
   void note_missing(const SampleDistances& distances, int sample);
   void note_missing_vertex(int vertex);
   std::vector<char> choose_drawn(const SampleDistances& distances);

@@ -10,7 +10,7 @@ namespace {
 constexpr int iterations_of_draws = 60;
 
 // Less of a draw is none.
-constexpr double least_share = 0.1;
+constexpr double min_share = 0.1;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void Correction::shorten_draws(const std::vector<int>& vertices, Eigen::VectorXd
     }
   for (Eigen::Index node = 0; node < shares.size(); ++node)
     if (is_near[static_cast<std::size_t>(node)])
-      shares[node] = shares[node] > least_share ? shares[node] / 2 : 0;
+      shares[node] = shares[node] > min_share ? shares[node] / 2 : 0;
 }
 
 /// Of every node the sample that misses soft obstacles most, and the one that is nearest to missing another.
@@ -61,7 +61,7 @@ std::vector<char> Correction::choose_drawn(const SampleDistances& distances) {
       const auto node = static_cast<std::size_t>(nearest_node(distances.samples(), i));
       if (is_soft && !distances.misses(o, i)) continue;
       const double missing = distances.missing(o, i);
-      if (!(missing > -2 * bystander_share * size_) || is_hopeless(o, static_cast<int>(node))) continue;
+      if (!(missing > -2 * bystander_share * size_) || is_blocked(o, static_cast<int>(node))) continue;
       if (worst[node] < 0 || missing > distances.missing(o, worst[node])) worst[node] = i;
       if (is_soft) is_drawn[node] = 1;
     }

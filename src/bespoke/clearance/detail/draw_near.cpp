@@ -35,7 +35,7 @@ class Misses {
   std::vector<double> amounts() const {
     std::vector<double> amounts(static_cast<std::size_t>(distances_.samples().count()), 0);
     for (const int column : distances_.missed())
-      amounts[static_cast<std::size_t>(column)] = distances_.most_missing(column);
+      amounts[static_cast<std::size_t>(column)] = distances_.max_missing(column);
     return amounts;
   }
 

@@ -101,7 +101,7 @@ void SampleDistances::append(const SampleDistances& other, const std::vector<int
   }
 }
 
-double SampleDistances::most_missing(Eigen::Index sample) const {
+double SampleDistances::max_missing(Eigen::Index sample) const {
   double most = 0;
   for (std::size_t o = 0; o < obstacles_.size(); ++o)
     if (!obstacles_[o].is_soft) most = std::max(most, missing(o, sample));

@@ -40,7 +40,7 @@ class SampleDistances {
     return missing(obstacle, sample) > obstacles_[obstacle].tolerance;
   }
   /// By what it misses obstacles that are not soft.
-  double most_missing(Eigen::Index sample) const;
+  double max_missing(Eigen::Index sample) const;
   /// Columns that miss what some obstacle requires.
   std::vector<int> missed() const;
 

@@ -19,10 +19,10 @@ std::string figure(const Figure& value) {
   return format_number(value, 4);
 }
 
-Vector3 nearest_column(const Points& points, const Points& answers, const Vector3& x) {
+Vector3 nearest_column(const Points& points, const Points& values, const Vector3& x) {
   Eigen::Index nearest = 0;
   (points.colwise() - x).colwise().squaredNorm().minCoeff(&nearest);
-  return answers.col(nearest);
+  return values.col(nearest);
 }
 
 void add_folds(const Asset& asset, const TriangleMesh& source, std::vector<Place>& places) {

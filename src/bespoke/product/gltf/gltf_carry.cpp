@@ -80,7 +80,7 @@ std::vector<GltfCarriedRig> rigs_of(const GltfFile& file, const std::vector<Gltf
 
 /// Meshes that hang on a joint without being skinned go with it, and what joints held in another pose than it
 /// is stored in is stored as it is shown: a shift of the whole, undone by the blend of each vertex, would
-/// crumple it.
+/// fold it.
 std::vector<GltfCarriedPlaces> carried_places(const GltfPlan& plan, const std::vector<GltfCarriedRig>& rigs) {
   std::vector<GltfCarriedPlaces> result;
   for (const GltfCarriedRig& rig : rigs) {

@@ -18,7 +18,7 @@ bool is_name(const std::string& name, const GltfAccessor& accessor) {
          (name.starts_with("_") && accessor.component != GltfComponent::real && !accessor.is_normalized);
 }
 
-/// The values of the vertices of the file, with room for the others.
+/// The values of the vertices of the file, with space for the others.
 GltfVertexData read_vertex_data(const GltfPart& list, const std::string& name,
                                 const std::vector<GltfAccessor>& accessors,
                                 const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles) {
@@ -95,7 +95,7 @@ class SkinMiddles {
 
   Eigen::Index slots() const { return joints_a_set * static_cast<Eigen::Index>(joints_.size()); }
 
-  /// The joints of both ends, the one that weighs most first, no more than there is room for.
+  /// The joints of both ends, the one that weighs most first, no more than there is space for.
   std::vector<Hold> merged(Eigen::Index a, Eigen::Index b) const {
     std::map<float, double> weight_of_joint;
     double sum = 0;

@@ -30,9 +30,9 @@ using GltfVertexDataByName = std::map<std::string, GltfVertexData>;
 
 /// The attributes of all vertices. In the middle stand means: of directions as long as the ends are, with the
 /// first end's sign of a tangent's frame; of joints and weights those of both ends, of which the largest that
-/// there is room for keep the sum. Whole numbers that are no shares are names, of which one has no middle but
-/// its first end's. Types of components stay, but positions become floats. Throws FormatError naming the JSON
-/// pointer of an attribute that has not one value a vertex.
+/// there is space for keep the sum. Whole numbers that are no shares are names, of which one has no middle
+/// but its first end's. Types of components stay, but positions become floats. Throws FormatError naming the
+/// JSON pointer of an attribute that has not one value a vertex.
 GltfVertexDataByName middle_attributes(const GltfPart& attributes, const std::vector<GltfAccessor>& accessors,
                                        const std::vector<GltfBuffer>& buffers, const GltfMiddles& middles);
 

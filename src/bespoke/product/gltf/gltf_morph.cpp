@@ -23,11 +23,11 @@ class Additions {
 
   /// Vectors of three, or numbers, with their bounds where these are requested.
   std::size_t add(const GltfValues& values, bool has_bounds, bool is_of_vertices) {
-    GltfPlace room;
-    room.components = static_cast<std::size_t>(values.rows());
-    room.count = static_cast<std::size_t>(values.cols());
-    const GltfPlace place =
-        add_view(json_, buffers_, room, is_of_vertices ? std::optional(GltfTarget::vertices) : std::nullopt);
+    GltfPlace wanted;
+    wanted.components = static_cast<std::size_t>(values.rows());
+    wanted.count = static_cast<std::size_t>(values.cols());
+    const GltfPlace place = add_view(json_, buffers_, wanted,
+                                     is_of_vertices ? std::optional(GltfTarget::vertices) : std::nullopt);
     buffers_.front().replace(rows_of_values(place, values));
     GltfJson accessor = {{"bufferView", json_["bufferViews"].size() - 1},
                          {"componentType", static_cast<int>(GltfComponent::real)},

@@ -56,15 +56,15 @@ void ZipFile::read(const ZipEntry& entry, const std::function<bool(std::string_v
   const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> content(
       zip_fopen_index(archive_->zip, entry.index, 0), &zip_fclose);
   if (!content) fail(entry.name + " cannot be read: " + zip_strerror(archive_->zip));
-  std::string room(piece_size, '\0');
+  std::string piece(piece_size, '\0');
   std::uint64_t total = 0;
   for (;;) {
-    const zip_int64_t bytes = zip_fread(content.get(), room.data(), room.size());
+    const zip_int64_t bytes = zip_fread(content.get(), piece.data(), piece.size());
     if (bytes < 0) fail(entry.name + " is damaged: " + zip_file_strerror(content.get()));
     if (bytes == 0) break;
     total += static_cast<std::uint64_t>(bytes);
     if (total > entry.size) fail(entry.name + " is longer than the directory says");
-    if (!take(std::string_view(room).substr(0, static_cast<std::size_t>(bytes)))) return;
+    if (!take(std::string_view(piece).substr(0, static_cast<std::size_t>(bytes)))) return;
   }
   if (total != entry.size) fail(entry.name + " is damaged: it ends too early");
 }

@@ -78,20 +78,20 @@ bool is_same(const GltfJson& old, const GltfJson& bounds) {
 
 }  // namespace
 
-GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace room,
+GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace place,
                    std::optional<GltfTarget> target) {
-  GltfBuffer& buffer = buffers[room.buffer];
-  room.offset = aligned_to_attributes(buffer.size());
-  room.stride =
-      target == GltfTarget::vertices ? aligned_to_attributes(room.vector_size()) : room.vector_size();
-  buffer.grow(room.offset + room.count * room.stride);
+  GltfBuffer& buffer = buffers[place.buffer];
+  place.offset = aligned_to_attributes(buffer.size());
+  place.stride =
+      target == GltfTarget::vertices ? aligned_to_attributes(place.vector_size()) : place.vector_size();
+  buffer.grow(place.offset + place.count * place.stride);
   GltfJson view = {
-      {"buffer", room.buffer}, {"byteOffset", room.offset}, {"byteLength", buffer.size() - room.offset}};
-  if (room.stride != room.vector_size()) view["byteStride"] = room.stride;
+      {"buffer", place.buffer}, {"byteOffset", place.offset}, {"byteLength", buffer.size() - place.offset}};
+  if (place.stride != place.vector_size()) view["byteStride"] = place.stride;
   if (target) view["target"] = static_cast<int>(*target);
   json["bufferViews"].push_back(std::move(view));
-  json["buffers"][room.buffer]["byteLength"] = buffer.size();
-  return room;
+  json["buffers"][place.buffer]["byteLength"] = buffer.size();
+  return place;
 }
 
 void drop_bytes_without_view(GltfFile& file, GltfJson& json, std::size_t buffer) {

@@ -11,9 +11,9 @@ namespace bespoke {
 /// What a buffer's view is for, by its number in the file.
 enum class GltfTarget { vertices = 34962, indices = 34963 };
 
-/// Adds space behind the bytes of `room.buffer` for vectors as `room` says, and appends a view of them to the
-/// JSON. Returns where they go: each vector of a vertex attribute at a multiple of four bytes.
-GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace room,
+/// Adds space behind the bytes of `place.buffer` for vectors as `place` says, and appends a view of them to
+/// the JSON. Returns where they go: each vector of a vertex attribute at a multiple of four bytes.
+GltfPlace add_view(GltfJson& json, std::vector<GltfBuffer>& buffers, GltfPlace place,
                    std::optional<GltfTarget> target);
 
 /// Takes bytes out of a buffer of the file that its views have and those of `json`, what the file becomes,

@@ -52,24 +52,24 @@ std::size_t GltfFrame::store_data(std::optional<std::size_t> own, const std::str
 std::size_t GltfFrame::add(const std::string& type, GltfComponent component, std::optional<GltfTarget> target,
                            GltfValues values) {
   if (buffers_.empty()) file_.root().fail("has no buffer for new values");
-  GltfPlace room;
-  room.component = component;
-  room.components = static_cast<std::size_t>(values.rows());
-  room.count = static_cast<std::size_t>(values.cols());
-  store_in(add_view(json_, buffers_, room, target), std::move(values));
+  GltfPlace place;
+  place.component = component;
+  place.components = static_cast<std::size_t>(values.rows());
+  place.count = static_cast<std::size_t>(values.cols());
+  store_in(add_view(json_, buffers_, place, target), std::move(values));
   json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
                                 {"componentType", static_cast<int>(component)},
-                                {"count", room.count},
+                                {"count", place.count},
                                 {"type", type}});
   return json_["accessors"].size() - 1;
 }
 
 void GltfFrame::append(std::size_t index, GltfValues values, std::optional<GltfTarget> target) {
   if (buffers_.empty()) file_.root().fail("has no buffer for values that change");
-  GltfPlace room;
-  room.components = static_cast<std::size_t>(values.rows());
-  room.count = static_cast<std::size_t>(values.cols());
-  store_in(add_view(json_, buffers_, room, target), std::move(values));
+  GltfPlace place;
+  place.components = static_cast<std::size_t>(values.rows());
+  place.count = static_cast<std::size_t>(values.cols());
+  store_in(add_view(json_, buffers_, place, target), std::move(values));
   GltfJson& accessor = json_["accessors"][index];
   for (const char* key : {"sparse", "normalized", "byteOffset"}) accessor.erase(key);
   accessor["bufferView"] = json_["bufferViews"].size() - 1;
