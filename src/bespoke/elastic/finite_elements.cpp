@@ -32,11 +32,12 @@ constexpr double refined_reach = 2;
 constexpr double softest = 0.25, stiffening = 4;
 // Of the energy, per iteration: while data are soft, and on the finest level; half of that on the one before,
 // …
-constexpr double soft_decrease = 1e-2, last_decrease = 3e-3;
+constexpr double least_decrease = 1e-2;
 constexpr int max_iterations = 60, max_evaluations = 3 * max_iterations;
 // Of the bounds on squeeze: where the barriers are. Nearer ones trap the minimiser on its way.
 constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
-// Of the weight of a place at a cell beyond the bounds, and rounds of it.
+// Of the weight of a place at a cell beyond the bounds; and how often on the finest level, where the bounds
+// hold. On those before it once does.
 constexpr double loosening = 0.03;
 constexpr int max_loosenings = 3;
 // Evaluations of the energy an iteration on the coarsest level: a minimiser that takes more is blocked.
@@ -48,11 +49,9 @@ constexpr double share_of_a_lone_point = 300, lone_beyond = 0.01;
 // Of the barriers, fourfold each.
 constexpr int max_widenings = 20;
 
-/// The nodes within lambda of the surface.
-std::vector<LatticeCoordinates> band_nodes(const TriangleMesh& surface, const Lattice& lattice,
-                                           double lambda) {
-  const ClosestPointTree tree(surface);
-  const Box box = bounding_box(surface.vertices);
+/// The nodes within lambda of the surface, which is in the box.
+std::vector<LatticeCoordinates> band_nodes(const ClosestPointTree& surface, const Box& box,
+                                           const Lattice& lattice, double lambda) {
   const LatticeCoordinates low = lattice.cell_of(box.min() - Vector3::Constant(lambda)),
                            high = lattice.cell_of(box.max() + Vector3::Constant(lambda));
   std::vector<std::vector<LatticeCoordinates>> slabs(static_cast<std::size_t>(high[0] - low[0] + 2));
@@ -61,7 +60,7 @@ std::vector<LatticeCoordinates> band_nodes(const TriangleMesh& surface, const La
       for (int j = low[1]; j <= high[1] + 1; ++j)
         for (int k = low[2]; k <= high[2] + 1; ++k) {
           const LatticeCoordinates node{low[0] + static_cast<int>(slab), j, k};
-          if (tree.closest(lattice(node), {.max_distance = lambda})) slabs[slab].push_back(node);
+          if (surface.closest(lattice(node), {.max_distance = lambda})) slabs[slab].push_back(node);
         }
   });
   std::vector<LatticeCoordinates> nodes;
@@ -127,17 +126,17 @@ class Solver {
         progress_(progress),
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
-    std::vector<LatticeCoordinates> nodes = band_nodes(source, coarsest_, options.lambda);
-    const ClosestPointTree tree(source);
+    std::vector<LatticeCoordinates> nodes =
+        band_nodes(source_, bounding_box(source.vertices), coarsest_, options.lambda);
     for (std::size_t i = 0; i < vertices; ++i) {
       const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
-      if (tree.closest(x, {.max_distance = lone_beyond * options.lambda})) continue;
+      if (source_.closest(x, {.max_distance = lone_beyond * options.lambda})) continue;
       shares_[i] = share_of_a_lone_point;
       add_nodes_within(coarsest_, x, options.lambda, nodes);
     }
     elements_ = std::make_unique<NestedElements>(
         coarsest_, std::vector<std::vector<LatticeCoordinates>>{unique_leaves(std::move(nodes))});
-    elements_->weigh(element_weights(*elements_, source, options.lambda));
+    elements_->weigh(element_weights(*elements_, source_, options.lambda));
     coefficients_ = Points::Zero(3, static_cast<Eigen::Index>(elements_->unknowns()));
   }
 
@@ -147,8 +146,7 @@ class Solver {
                      static_cast<std::size_t>(options_.max_levels));
       std::vector<double> residuals = minimised(level);
       if (summary_.blocked && options_.give_up_blocked) break;
-      for (int round = 0; round < max_loosenings && loosen(unrefined_beyond); ++round)
-        residuals = minimised(level);
+      if (loosen(unrefined_beyond)) residuals = minimised(level);
       if (level == options_.max_levels || !refine(residuals)) break;
     }
     const int rounds = summary_.blocked && options_.give_up_blocked ? 0 : max_loosenings;
@@ -189,13 +187,17 @@ class Solver {
       iterations += static_cast<std::size_t>(
           minimise(of_coefficients, {max_iterations, max_evaluations, decrease}, coefficients_));
     };
+    const bool is_first = summary_.iterations.empty();
+    const auto is_held_up = [&] { return is_first && evaluations > blocked_beyond * iterations; };
+    const auto gives_up = [&] { return options_.give_up_blocked && is_held_up(); };
     // From the identity stiff data would push single cells to their bounds, which stops all.
     const double stiff = compliance * tolerance_;
     if (level == 1)
-      for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
-        run(soft, soft_decrease);
-    run(stiff, std::ldexp(last_decrease, level - options_.max_levels));
-    if (summary_.iterations.empty()) summary_.blocked = evaluations > blocked_beyond * iterations;
+      for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff && !gives_up();
+           soft /= stiffening)
+        run(soft, least_decrease);
+    if (!gives_up()) run(stiff, std::ldexp(least_decrease, level - options_.max_levels));
+    if (is_first) summary_.blocked = is_held_up();
     const double volume = weighted_volume();
     objective(coefficients_, unused);
     summary_.iterations.push_back(iterations);
@@ -266,8 +268,8 @@ class Solver {
     nodes.push_back(std::move(added));
     auto refined = std::make_unique<NestedElements>(coarsest_, std::move(nodes));
     coefficients_ = transferred(*elements_, coefficients_, *refined);
+    refined->weigh(element_weights(*refined, source_, options_.lambda, elements_.get()));
     elements_ = std::move(refined);
-    elements_->weigh(element_weights(*elements_, source_, options_.lambda));
     return true;
   }
 
@@ -278,7 +280,7 @@ class Solver {
   FiniteElementOptions options_;
   DistortionBounds barriers_;
   std::vector<double> shares_;  ///< of a place's weight
-  const TriangleMesh& source_;
+  ClosestPointTree source_;
   const Progress& progress_;
   Lattice coarsest_;
   double weighted_area_ = 0;  ///< of a place

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "bespoke/error.h"
 #include "bespoke/length.h"
@@ -50,9 +51,11 @@ class StepFitter {
   Points moved_by(const ElasticMap& map) const { return map(with_loose(vertices_, places_, loose_)); }
 
   /// Along the plan, from one time to another, to where the path is then or to `next`: vertices and loose
-  /// points.
-  void fit_to(const StepPlan& plan, double from, double to) { fit_to(plan, from, to, plan.surface(to)); }
-  void fit_to(const StepPlan& plan, double from, double to, const Points& next) {
+  /// points. Does nothing and says false where finite elements are held up and are to give up.
+  bool fit_to(const StepPlan& plan, double from, double to, bool give_up = false) {
+    return fit_to(plan, from, to, plan.surface(to), give_up);
+  }
+  bool fit_to(const StepPlan& plan, double from, double to, const Points& next, bool give_up = false) {
     const auto loose = static_cast<Eigen::Index>(loose_);
     const Points fitted = next.leftCols(vertices_.cols());
     const TriangleMesh here{vertices_, source_.faces};
@@ -63,11 +66,14 @@ class StepFitter {
     options.lambda *= plan.size(from);
     options.growth = plan.size(to) / plan.size(from);
     options.fit_tolerance *= plan.size(to) / plan.size(1);
+    options.give_up_blocked = give_up;
     ElasticFit fit = method_.fit({here, fitted, places_, targets}, options, progress_);
+    if (give_up && is_blocked(fit.found)) return false;
     steps_.sources.push_back(vertices_);
     steps_.found.push_back(std::move(fit.found));
     move_by(*fit.map);
     steps_.maps.push_back(std::move(fit.map));
+    return true;
   }
 
   ElasticSteps steps() && { return std::move(steps_); }
@@ -92,6 +98,11 @@ void require_unmirrored(const TriangleMesh& source, const Points& fitted) {
 }
 
 }  // namespace
+
+bool is_blocked(const ElasticFindings& found) {
+  const auto* elements = std::get_if<FiniteElementSummary>(&found);
+  return elements != nullptr && elements->blocked;
+}
 
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps) {
   require_unmirrored(source, fitted);
@@ -129,11 +140,23 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   StepMethod of_a_step = method;
   if (plan.steps() > 1) of_a_step.options.max_nodes = 2 * method.options.max_nodes / plan.steps();
   StepFitter fitter(source, pairs, of_a_step, progress);
-  for (std::size_t k = 0; k < plan.steps(); ++k) {
-    progress.step("elastic", k, plan.steps());
-    fitter.fit_to(plan, plan.times[k], plan.times[k + 1]);
+  std::vector<double> times = plan.times;
+  std::vector<int> halvings(plan.steps(), method.max_halvings);  // left to a step
+  for (std::size_t k = 0; k + 1 < times.size();) {
+    progress.step("elastic", k, times.size() - 1);
+    const bool may_halve = halvings[k] > 0 && times.size() <= max_useful_steps;
+    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve)) {
+      ++k;
+      continue;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    times.insert(times.begin() + at + 1, (times[k] + times[k + 1]) / 2);
+    const int left = --halvings[k];
+    halvings.insert(halvings.begin() + at, left);
   }
-  return std::move(fitter).steps();
+  ElasticSteps steps = std::move(fitter).steps();
+  steps.times = std::move(times);
+  return steps;
 }
 
 ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const HalvedStep& halves,

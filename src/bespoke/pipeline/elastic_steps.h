@@ -15,6 +15,9 @@ namespace bespoke {
 /// So many steps are planned at most; those that fold may be halved beyond.
 inline constexpr std::size_t max_planned_steps = 32;
 
+/// More steps than these mean that no size of steps keeps a chain from folding.
+inline constexpr std::size_t max_useful_steps = 24;
+
 /// A path of surfaces and the times that divide it into the steps of a chain. Every step is as it would be
 /// between models of about one size: the powers of two by which the fitted source is larger are left to equal
 /// factors of growth in equal times.
@@ -44,13 +47,20 @@ StepPlan halved(const StepPlan& plan, std::size_t step);
 struct ElasticSteps {
   std::vector<std::shared_ptr<const ElasticMap>> maps;
   std::vector<ElasticFindings> found;
-  std::vector<Points> sources;  ///< 3×n, where the source's vertices are when a step begins, mesh units
+  std::vector<Points> sources;     ///< 3×n, where the source's vertices are when a step begins, mesh units
+  std::vector<double> times = {};  ///< of the plan, with those of halved steps; empty for halves
 };
+
+/// Whether cells at their bounds held finite elements up on their coarsest level.
+bool is_blocked(const ElasticFindings& found);
 
 /// How steps are fitted.
 struct StepMethod {
   ElasticMethod method;
   ElasticOptions options;
+  /// Of a step in which cells at their bounds hold finite elements up: motion is too large for it. Where so
+  /// many do not help, places give way.
+  int max_halvings = 0;
 };
 
 /// One elastic map per step. Each starts from where the maps before it have left the points, so that what

@@ -9,6 +9,7 @@
 #include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/fit_mapping.h"
+#include "bespoke/quality/sampled_determinant.h"
 
 namespace bespoke {
 namespace {
@@ -146,12 +147,17 @@ std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
          ", all within " + lengths(vertices.max);
 }
 
-std::string proved_text(const Certificate& certificate) {
+std::string proved_text(const Asset& asset, const Certificate& certificate) {
   constexpr double notable = 0.01;  // of the affine part's determinant
-  const double least = certificate.min_determinant / certificate.affine_determinant;
+  const bool is_chain = asset.steps.size() > 1;
+  const double least = is_chain
+                           ? sampled_min_determinant(baked_chain(asset.steps), asset.steps.front().pyramid)
+                           : certificate.min_determinant;
+  const double ratio = least / certificate.affine_determinant;
   const std::string text = "the map is one-to-one in all of space: it folds nowhere";
-  if (least >= notable) return text;
-  return text + "; where it is tightest volumes shrink " + std::to_string(std::llround(1 / least)) + " times";
+  if (ratio >= notable) return text;
+  return text + "; where it is tightest volumes shrink " + (is_chain ? "about " : "") +
+         std::to_string(std::llround(1 / ratio)) + " times";
 }
 
 std::string file_text(const FitOutcome& outcome) {
@@ -182,7 +188,7 @@ std::string fit_text(const FitOutcome& outcome) {
   }
   if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));
   if (!outcome.input.anchors.pairs.empty()) add("anchors", anchor_text(outcome, lengths));
-  if (certificate.is_bijection()) add("proved", proved_text(certificate));
+  if (certificate.is_bijection()) add("proved", proved_text(outcome.made.asset, certificate));
   if (summary.bake) add("error", bake_text(outcome, lengths));
   add("written", file_text(outcome));
   add("next", outcome.next);

@@ -8,6 +8,7 @@
 
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/quality/sampled_determinant.h"
 
 namespace bespoke {
 namespace {
@@ -47,14 +48,18 @@ Json to_json(const AnchorRecord& anchor) {
 Json embedded(const std::string& json) { return json.empty() ? Json() : Json::parse(json); }
 
 /// Why the map is a bijection, with the value of each condition; or which of them fails.
-std::string certificate_text(const Certificate& certificate, std::size_t steps) {
+std::string certificate_text(const Asset& asset, const Certificate& certificate) {
+  const std::size_t steps = asset.steps.size();
   std::ostringstream text;
   if (certificate.is_bijection() && steps > 1) {
     text << "proved to be a bijection of all of space (one-to-one): each of its " << steps
          << " steps is one, continuous, trilinear in every finest cell with positive det of its gradient in "
             "all "
          << certificate.certified << " of them, and affine outside; det of the whole at least "
-         << number(certificate.min_determinant);
+         << number(certificate.min_determinant)
+         << ", the product of the steps' bounds, and at sampled places "
+         << number(sampled_min_determinant(baked_chain(asset.steps), asset.steps.front().pyramid))
+         << " or more";
   } else if (certificate.is_bijection()) {
     text << "proved to be a bijection of all of space (one-to-one): continuous, trilinear in every finest "
             "cell with det of "
@@ -125,7 +130,7 @@ std::string inspection_text(const Asset& asset) {
   const AssetRecord& record = asset.record;
   std::ostringstream text;
   const Certificate certificate = whole_certificate(asset);
-  const std::string proof = "certificate  " + certificate_text(certificate, asset.steps.size()) + "\n";
+  const std::string proof = "certificate  " + certificate_text(asset, certificate) + "\n";
   if (!certificate.is_bijection()) text << proof;  // what matters most comes first
   text << "map          maps points a to b: of the source's space to the target's, unit " << record.unit
        << '\n'

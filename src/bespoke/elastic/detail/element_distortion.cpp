@@ -238,15 +238,20 @@ constexpr std::size_t packs_per_task = 64;
 // Of the bound on J: that of its Bézier coefficients, which are below it.
 constexpr double coefficient_share = 0.1;
 
+struct Part {
+  double energy = 0;
+  double min_determinant = infinite;
+};
+
 /// Of one level; `cell_gradients`: 24 numbers a finest cell.
-Distortion evaluate_level(const ElementLevel& level, const Points& values, const DistortionBounds& bounds,
-                          std::vector<double>& cell_gradients, std::vector<double>& stiffness) {
+Part evaluate_level(const ElementLevel& level, const Points& values, const DistortionBounds& bounds,
+                    std::vector<double>& cell_gradients, std::vector<double>& stiffness) {
   const double h = level.voxel_size, volume = h * h * h / 8, area = h * h / 8;
   const std::size_t count = level.finest.size();
   cell_gradients.resize(24 * count);
   stiffness.resize(count);
   const auto partial = [&](std::size_t begin, std::size_t end) {
-    Distortion part;
+    Part part;
     CellPack pack;
     for (std::size_t first = begin; first < end; first += lanes) {
       evaluate(level, values, bounds, first, pack);
@@ -268,22 +273,24 @@ Distortion evaluate_level(const ElementLevel& level, const Points& values, const
     }
     return part;
   };
-  return parallel_reduce(
-      count, packs_per_task * lanes, Distortion{}, partial, [](const Distortion& a, const Distortion& b) {
-        return Distortion{a.energy + b.energy, std::min(a.min_determinant, b.min_determinant), {}};
-      });
+  return parallel_reduce(count, packs_per_task * lanes, Part{}, partial, [](const Part& a, const Part& b) {
+    return Part{a.energy + b.energy, std::min(a.min_determinant, b.min_determinant)};
+  });
 }
 
 }  // namespace
 
 Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
-                          const DistortionBounds& bounds, std::vector<Points>& gradients) {
-  Distortion whole;
+                          const DistortionBounds& bounds, std::vector<Points>& gradients, Distortion memory) {
+  Distortion whole = std::move(memory);
+  whole.energy = 0;
+  whole.min_determinant = infinite;
   whole.stiffness.resize(elements.levels().size());
-  std::vector<double> cell_gradients;
+  whole.cell_gradients.resize(elements.levels().size());
   for (std::size_t k = 0; k < elements.levels().size(); ++k) {
     const ElementLevel& level = elements.levels()[k];
-    const Distortion part = evaluate_level(level, values[k], bounds, cell_gradients, whole.stiffness[k]);
+    std::vector<double>& cell_gradients = whole.cell_gradients[k];
+    const Part part = evaluate_level(level, values[k], bounds, cell_gradients, whole.stiffness[k]);
     whole.energy += part.energy;
     whole.min_determinant = std::min(whole.min_determinant, part.min_determinant);
     if (!std::isfinite(whole.energy)) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "bespoke/parallel.h"
 
@@ -44,23 +45,23 @@ ElementObjective::ElementObjective(const NestedElements& elements, const Element
 }
 
 double ElementObjective::operator()(const Points& coefficients, Points& gradient) {
-  const std::vector<Points> values = elements_.values(coefficients);
-  std::vector<Points> gradients(values.size());
-  for (std::size_t k = 0; k < values.size(); ++k) gradients[k].setZero(3, values[k].cols());
-  distortion_ = add_distortion(elements_, values, bounds_, gradients);
+  elements_.evaluate(coefficients, values_);
+  gradients_.resize(values_.size());
+  for (std::size_t k = 0; k < values_.size(); ++k) gradients_[k].setZero(3, values_[k].cols());
+  distortion_ = add_distortion(elements_, values_, bounds_, gradients_, std::move(distortion_));
   if (!std::isfinite(distortion_.energy)) return distortion_.energy;
   double data = 0;
   for (const Term& term : terms_) {
     if (term.places.empty()) continue;
     const ElementPlace& place = term.places.back();
-    const Vector3 off = interpolated(values, place) - term.wanted;
+    const Vector3 off = interpolated(values_, place) - term.wanted;
     const double weight = weight_ * term.share;
     data += weight * off.squaredNorm() / 2;
-    Points& of_level = gradients[static_cast<std::size_t>(place.level)];
+    Points& of_level = gradients_[static_cast<std::size_t>(place.level)];
     for (std::size_t corner = 0; corner < 8; ++corner)
       of_level.col(place.corners[corner]) += weight * place.weights[corner] * off;
   }
-  gradient = elements_.restricted(gradients);
+  gradient = elements_.restricted(gradients_);
   return distortion_.energy + data;
 }
 

@@ -55,6 +55,7 @@ class ElementObjective {
   std::vector<std::vector<double>> data_diagonal_;  // of the Hessian for weight 1, per point and level
   double weight_ = 0;
   Distortion distortion_;
+  std::vector<Points> values_, gradients_;  // of the last call, per level
 };
 
 }  // namespace bespoke

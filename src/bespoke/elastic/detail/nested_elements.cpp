@@ -1,22 +1,31 @@
 #include "bespoke/elastic/detail/nested_elements.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 namespace bespoke {
 namespace {
 
+/// What is a step of 0 or `sign` away along every axis, each once, in lexicographic order: merged, since a
+/// step keeps the order.
+std::vector<LatticeCoordinates> with_steps(std::vector<LatticeCoordinates> from, int sign) {
+  from = unique_leaves(std::move(from));
+  std::vector<LatticeCoordinates> shifted, merged;
+  for (int axis = 0; axis < 3; ++axis) {
+    shifted = from;
+    for (LatticeCoordinates& each : shifted) each[static_cast<std::size_t>(axis)] += sign;
+    merged.clear();
+    std::set_union(from.begin(), from.end(), shifted.begin(), shifted.end(), std::back_inserter(merged));
+    from.swap(merged);
+  }
+  return from;
+}
+
 /// The eight cells around each node.
 std::vector<LatticeCoordinates> cells_around(const std::vector<LatticeCoordinates>& nodes) {
-  std::vector<LatticeCoordinates> cells;
-  cells.reserve(8 * nodes.size());
-  for (const LatticeCoordinates& node : nodes)
-    for (int corner = 0; corner < 8; ++corner) {
-      const LatticeCoordinates step = corner_step(corner);
-      cells.push_back({node[0] - step[0], node[1] - step[1], node[2] - step[2]});
-    }
-  return unique_leaves(std::move(cells));
+  return with_steps(nodes, -1);
 }
 
 std::vector<LatticeCoordinates> parents_of(std::vector<LatticeCoordinates> cells) {
@@ -59,16 +68,12 @@ void NestedElements::split(std::vector<std::vector<LatticeCoordinates>>& nodes) 
 }
 
 void NestedElements::add_points(ElementLevel& level, const ElementLevel* coarser) {
-  std::vector<LatticeCoordinates> corners;
-  corners.reserve(8 * level.cells.size());
-  for (const LatticeCoordinates& cell : level.cells)
-    for (int corner = 0; corner < 8; ++corner) corners.push_back(moved(cell, corner_step(corner)));
-  level.points = unique_leaves(corners);
+  level.points = with_steps(level.cells, 1);
   const LeafTable table(level.points);
   level.corners.resize(level.cells.size());
   for (std::size_t c = 0; c < level.cells.size(); ++c)
     for (std::size_t corner = 0; corner < 8; ++corner)
-      level.corners[c][corner] = table.find(corners[8 * c + corner]);
+      level.corners[c][corner] = table.find(moved(level.cells[c], corner_step(static_cast<int>(corner))));
   for (const LatticeCoordinates& node : level.nodes) level.point_of_node.push_back(table.find(node));
   const auto k = static_cast<std::size_t>(&level - levels_.data());
   level.first_part.assign(level.cells.size(), no_leaf);
@@ -130,7 +135,13 @@ std::vector<ElementPlace> NestedElements::places(const Vector3& x) const {
 }
 
 std::vector<Points> NestedElements::values(const Points& coefficients) const {
-  std::vector<Points> values(levels_.size());
+  std::vector<Points> values;
+  evaluate(coefficients, values);
+  return values;
+}
+
+void NestedElements::evaluate(const Points& coefficients, std::vector<Points>& values) const {
+  values.resize(levels_.size());
   for (std::size_t k = 0; k < levels_.size(); ++k) {
     const ElementLevel& level = levels_[k];
     Points& here = values[k];
@@ -147,7 +158,6 @@ std::vector<Points> NestedElements::values(const Points& coefficients) const {
       here.col(level.point_of_node[n]) +=
           coefficients.col(static_cast<Eigen::Index>(level.first_unknown + n));
   }
-  return values;
 }
 
 Points NestedElements::restricted(std::vector<Points>& gradients) const {

@@ -56,6 +56,7 @@ class NestedElements {
 
   /// coefficients: 3×unknowns(). Values at the points of a level: its own and those of the coarser ones.
   std::vector<Points> values(const Points& coefficients) const;
+  void evaluate(const Points& coefficients, std::vector<Points>& values) const;  ///< the same, in place
 
   /// The transpose: from gradients with respect to the values at every level's points (changed) to those of
   /// the coefficients, 3×unknowns().

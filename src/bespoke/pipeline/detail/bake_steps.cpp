@@ -133,6 +133,12 @@ bool has_starved_step(const BakedSteps& baked, std::size_t max_leaves) {
   return false;
 }
 
+/// Whether every step is stored without an error, as maps on lattices are: then so is the whole.
+bool is_exact(const BakedSteps& baked) {
+  return std::all_of(baked.summaries.begin(), baked.summaries.end(),
+                     [](const BakeSummary& summary) { return summary.error.count == 0; });
+}
+
 bool is_bijection(const BakedSteps& baked) {
   return std::all_of(baked.steps.begin(), baked.steps.end(),
                      [](const MapStep& step) { return step.certificate.is_bijection(); });
@@ -186,6 +192,10 @@ BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const
       if (is_bijection(even)) baked = std::move(even);
     }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
+    if (is_exact(baked)) {
+      baked.whole.tolerance_met = true;
+      break;
+    }
     baked =
         with_whole_measured(std::move(baked), exact, options, again ? first_seed + 1 : first_seed, progress);
     if (baked.whole.tolerance_met || !finer_steps_help(baked, options)) break;

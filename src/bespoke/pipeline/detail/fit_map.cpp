@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
+#include <vector>
 
 #include "bespoke/pipeline/detail/fit_steps.h"
 #include "bespoke/pipeline/detail/unusable_fit.h"
@@ -36,33 +36,20 @@ MapFit fit_until_met(const MapProblem& problem, const FitOptions& options, const
 }
 
 std::size_t blocked_steps(const MapFit& fit) {
-  const auto is_blocked = [](const ElasticFindings& found) {
-    const auto* elements = std::get_if<FiniteElementSummary>(&found);
-    return elements != nullptr && elements->blocked;
-  };
-  const ElasticSummary& summary = fit.summary;
-  return static_cast<std::size_t>(
-             std::count_if(summary.later_steps.begin(), summary.later_steps.end(), is_blocked)) +
-         (is_blocked(summary.found) ? 1 : 0);
+  const std::vector<ElasticFindings>& later = fit.summary.later_steps;
+  return static_cast<std::size_t>(std::count_if(later.begin(), later.end(), is_blocked)) +
+         (is_blocked(fit.summary.found) ? 1 : 0);
 }
 
-/// Where cells at their bounds hold finite elements up, motion is too large for a step: twice as many steps
-/// take its place, for as long as fewer of them are held up. Where they are not, places give way.
+/// Where cells at their bounds hold finite elements up, motion is too large for a step: steps of a chain are
+/// halved, twice at most, before places give way. A single step becomes a chain if none of that is held up.
 MapFit fit_unblocked(const MapProblem& problem, const FitOptions& options, const StepRequest& request,
                      const Progress& progress) {
-  int count = request.count;
-  RegionalMotion motion = request.motion;
-  std::size_t before = 0;
-  for (int steps = count; static_cast<std::size_t>(steps) <= max_useful_steps; steps = 2 * count) {
-    MapFit fit = fit_steps(problem, options, {steps, motion, true}, progress);
-    const std::size_t blocked = blocked_steps(fit);
-    if (blocked == 0) return fit;
-    motion = fit.summary.motion;
-    if (steps > count && 2 * blocked > before) break;
-    before = blocked;
-    count = static_cast<int>(step_count(fit));
-  }
-  return fit_steps(problem, options, {count, motion}, progress);
+  constexpr int halvings = 2;
+  MapFit fit = fit_steps(problem, options, {request.count, request.motion, halvings}, progress);
+  if (step_count(fit) > 1 || !is_blocked(fit.summary.found)) return fit;
+  MapFit chain = fit_steps(problem, options, {2, request.motion, halvings - 1}, progress);
+  return blocked_steps(chain) == 0 ? chain : fit_steps(problem, options, request, progress);
 }
 
 /// One map or a chain of as many steps as the motion requires.

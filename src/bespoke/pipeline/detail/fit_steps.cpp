@@ -113,12 +113,14 @@ MapFit fit_steps(const MapProblem& problem, const FitOptions& options, const Ste
   const TriangleMesh& source = problem.source;
   const ElasticPairs& pairs = problem.pairs;
   ElasticOptions elastic = elastic_options(options, request.count > 1);
-  elastic.give_up_blocked = request.give_up_blocked;
+  elastic.give_up_blocked = request.halvings > 0;
   MapFit fit;
   if (request.count > 1) {
     fit.plan = planned_steps(problem, options, request.count);
     fit.summary = summary_of(problem, options, fit.plan->path->motion());
-    ElasticSteps steps = fit_elastic_steps(source, pairs, *fit.plan, {options.elastic, elastic}, progress);
+    ElasticSteps steps =
+        fit_elastic_steps(source, pairs, *fit.plan, {options.elastic, elastic, request.halvings}, progress);
+    fit.plan->times = steps.times;
     fit = with_steps(std::move(fit), std::move(steps));
   } else {
     const Points& fitted = problem.registration.fitted_vertices;

@@ -7,8 +7,10 @@ namespace bespoke {
 /// How many steps are fitted, and how.
 struct StepRequest {
   int count = 1;
-  RegionalMotion motion;         ///< of the fitted source, as far as it is known: a path knows more
-  bool give_up_blocked = false;  ///< finite elements stop early where they are blocked (ElasticOptions)
+  RegionalMotion motion;  ///< of the fitted source, as far as it is known: a path knows more
+  /// How often a step of a chain that finite elements are held up in (StepMethod) is halved. A single step
+  /// with any is given up there.
+  int halvings = 0;
 };
 
 /// The elastic map as a chain of so many steps along surfaces between the two, or as one. Where the number is

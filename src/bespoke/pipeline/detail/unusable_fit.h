@@ -6,6 +6,7 @@
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/mesh/triangle_mesh.h"
+#include "bespoke/pipeline/elastic_steps.h"
 #include "bespoke/pipeline/fit_options.h"
 
 namespace bespoke {
@@ -22,9 +23,6 @@ struct MapHealth {
   /// folding.
   bool is_unusable() const;
 };
-
-/// More steps than these mean that no size of steps keeps a chain from folding.
-inline constexpr std::size_t max_useful_steps = 24;
 
 /// Throws SolverError with the reason where a chain is planned with more steps, before any of them is fitted.
 /// Not where the number of steps is given.
