@@ -187,17 +187,13 @@ class Solver {
       iterations += static_cast<std::size_t>(
           minimise(of_coefficients, {max_iterations, max_evaluations, decrease}, coefficients_));
     };
-    const bool is_first = summary_.iterations.empty();
-    const auto is_held_up = [&] { return is_first && evaluations > blocked_beyond * iterations; };
-    const auto gives_up = [&] { return options_.give_up_blocked && is_held_up(); };
     // From the identity stiff data would push single cells to their bounds, which stops all.
     const double stiff = compliance * tolerance_;
     if (level == 1)
-      for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff && !gives_up();
-           soft /= stiffening)
+      for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
         run(soft, least_decrease);
-    if (!gives_up()) run(stiff, std::ldexp(least_decrease, level - options_.max_levels));
-    if (is_first) summary_.blocked = is_held_up();
+    run(stiff, std::ldexp(least_decrease, level - options_.max_levels));
+    if (summary_.iterations.empty()) summary_.blocked = evaluations > blocked_beyond * iterations;
     const double volume = weighted_volume();
     objective(coefficients_, unused);
     summary_.iterations.push_back(iterations);

@@ -141,18 +141,15 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   if (plan.steps() > 1) of_a_step.options.max_nodes = 2 * method.options.max_nodes / plan.steps();
   StepFitter fitter(source, pairs, of_a_step, progress);
   std::vector<double> times = plan.times;
-  std::vector<int> halvings(plan.steps(), method.max_halvings);  // left to a step
+  const double half = 0.75 / static_cast<double>(plan.steps());  // above it steps are whole ones
   for (std::size_t k = 0; k + 1 < times.size();) {
     progress.step("elastic", k, times.size() - 1);
-    const bool may_halve = halvings[k] > 0 && times.size() <= max_useful_steps;
-    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve)) {
+    const bool may_halve =
+        method.halve_blocked && times[k + 1] - times[k] > half && times.size() <= max_useful_steps;
+    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve))
       ++k;
-      continue;
-    }
-    const auto at = static_cast<std::ptrdiff_t>(k);
-    times.insert(times.begin() + at + 1, (times[k] + times[k + 1]) / 2);
-    const int left = --halvings[k];
-    halvings.insert(halvings.begin() + at, left);
+    else
+      times.insert(times.begin() + static_cast<std::ptrdiff_t>(k) + 1, (times[k] + times[k + 1]) / 2);
   }
   ElasticSteps steps = std::move(fitter).steps();
   steps.times = std::move(times);

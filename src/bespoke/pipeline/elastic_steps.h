@@ -58,9 +58,9 @@ bool is_blocked(const ElasticFindings& found);
 struct StepMethod {
   ElasticMethod method;
   ElasticOptions options;
-  /// Of a step in which cells at their bounds hold finite elements up: motion is too large for it. Where so
-  /// many do not help, places give way.
-  int max_halvings = 0;
+  /// Steps in which cells at their bounds hold finite elements up are halved once: motion is too large for
+  /// them. Where that does not help, places give way.
+  bool halve_blocked = false;
 };
 
 /// One elastic map per step. Each starts from where the maps before it have left the points, so that what

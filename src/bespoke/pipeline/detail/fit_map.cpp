@@ -41,14 +41,13 @@ std::size_t blocked_steps(const MapFit& fit) {
          (is_blocked(fit.summary.found) ? 1 : 0);
 }
 
-/// Where cells at their bounds hold finite elements up, motion is too large for a step: steps of a chain are
-/// halved, twice at most, before places give way. A single step becomes a chain if none of that is held up.
+/// Where cells at their bounds hold finite elements up, motion is too large for a step: those of a chain are
+/// halved before places give way. A single step becomes a chain if none of that is held up.
 MapFit fit_unblocked(const MapProblem& problem, const FitOptions& options, const StepRequest& request,
                      const Progress& progress) {
-  constexpr int halvings = 2;
-  MapFit fit = fit_steps(problem, options, {request.count, request.motion, halvings}, progress);
+  MapFit fit = fit_steps(problem, options, {request.count, request.motion, true}, progress);
   if (step_count(fit) > 1 || !is_blocked(fit.summary.found)) return fit;
-  MapFit chain = fit_steps(problem, options, {2, request.motion, halvings - 1}, progress);
+  MapFit chain = fit_steps(problem, options, {2, request.motion}, progress);
   return blocked_steps(chain) == 0 ? chain : fit_steps(problem, options, request, progress);
 }
 

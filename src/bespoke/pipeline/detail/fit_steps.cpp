@@ -96,7 +96,14 @@ ElasticSummary summary_of(const MapProblem& problem, const FitOptions& options,
 /// beyond half a one.
 StepPlan planned_steps(const MapProblem& problem, const FitOptions& options, int count) {
   StepPlan plan = plan_steps(problem.source, problem.registration.fitted_vertices, problem.pairs, count);
-  if (!options.steps) plan.times = equal_times(std::max(count, step_count(plan.path->motion())));
+  if (!options.steps) {
+    const int required = step_count(plan.path->motion());
+    // In steps that are small enough for layers finite elements are mostly held up.
+    const int finer = options.elastic == ElasticMethod::finite_elements
+                          ? std::max(required, std::min(2 * required, static_cast<int>(max_useful_steps)))
+                          : required;
+    plan.times = equal_times(std::max(count, finer));
+  }
   require_useful_steps(plan.steps(), options);
   return plan;
 }
@@ -113,13 +120,13 @@ MapFit fit_steps(const MapProblem& problem, const FitOptions& options, const Ste
   const TriangleMesh& source = problem.source;
   const ElasticPairs& pairs = problem.pairs;
   ElasticOptions elastic = elastic_options(options, request.count > 1);
-  elastic.give_up_blocked = request.halvings > 0;
+  elastic.give_up_blocked = request.halve_blocked;
   MapFit fit;
   if (request.count > 1) {
     fit.plan = planned_steps(problem, options, request.count);
     fit.summary = summary_of(problem, options, fit.plan->path->motion());
-    ElasticSteps steps =
-        fit_elastic_steps(source, pairs, *fit.plan, {options.elastic, elastic, request.halvings}, progress);
+    ElasticSteps steps = fit_elastic_steps(source, pairs, *fit.plan,
+                                           {options.elastic, elastic, request.halve_blocked}, progress);
     fit.plan->times = steps.times;
     fit = with_steps(std::move(fit), std::move(steps));
   } else {

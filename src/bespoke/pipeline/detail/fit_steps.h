@@ -8,9 +8,9 @@ namespace bespoke {
 struct StepRequest {
   int count = 1;
   RegionalMotion motion;  ///< of the fitted source, as far as it is known: a path knows more
-  /// How often a step of a chain that finite elements are held up in (StepMethod) is halved. A single step
-  /// with any is given up there.
-  int halvings = 0;
+  /// Steps of a chain that finite elements are held up in (StepMethod) are halved once; a single one is given
+  /// up.
+  bool halve_blocked = false;
 };
 
 /// The elastic map as a chain of so many steps along surfaces between the two, or as one. Where the number is
