@@ -58,16 +58,14 @@ def by_value(name, group, **values):
 
 RULES = [
     by_value("one similarity may suffice", "similarity", SimilaritySettings__tolerance=0),
-    by_value("weights by curvature", "pairs", AreaSettings__max_weight=0),
     by_value("normals in the distance", "pairs", NodeFitSettings__normal_length=0),
     by_value("target-to-source pairs", "pairs", NodeFitSettings__back_share=0),
     by_value("reciprocity, nodes", "pairs", NodeLevel__reciprocity=0),
     Rule("reciprocity, layers", "pairs", file="surface_fit/detail/detail_layers.cpp",
-         old="step.areas[i] * found->agreement * found->agreement * reciprocity(claimed, settings)",
+         old="step.areas[i] * found->agreement * found->agreement * reciprocity(back, settings)",
          new="step.areas[i] * found->agreement * found->agreement"),
     Rule("larger scale in creases", "pairs", file="surface_fit/detail/plane_pairs.cpp",
-         old="fading * std::max(crease(pair, claimed), sunk)", new="fading * sunk"),
-    by_value("larger scale outside the target", "pairs", NodeLevel__outside_residuals=0),
+         old="fading * crease(pair, back)", new="0"),
     Rule("weights by agreement of normals", "pairs", file="surface_fit/detail/plane_pairs.cpp",
          old="match->agreement *\n                        match->agreement *", new="1 *"),
     by_value("open boundaries that are the same cut", "pairs", NodeFitSettings__boundary_start=1000),
@@ -210,7 +208,6 @@ T tuned(const char* name, T value) { return static_cast<T>(tuned_value(name, sta
 def instrument(folder):
     """Writes the copy; returns the constants found, by name."""
     constants = {}
-    text = TUNED
     for path in sorted((ROOT / "src/bespoke").rglob("*")):
         relative = path.relative_to(ROOT / "src/bespoke").as_posix()
         if path.suffix not in (".h", ".cpp") or not relative.startswith(MODULES):
@@ -228,8 +225,7 @@ def instrument(folder):
 
 
 def switched(text, rule):
-    """Both texts, and the environment chooses: of conditions, values and statements alike a macro-free lambda would do
-    less; each `old` is one whole expression or one whole statement."""
+    """Both texts, and the environment chooses. A rule's `old` is a whole expression, condition or statement."""
     key = json.dumps(f"rule:{rule.name}", ensure_ascii=False)
     off = f"tuned({key}, 1) == 0"
     if rule.old.endswith(";"):

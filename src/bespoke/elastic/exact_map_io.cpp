@@ -51,10 +51,6 @@ std::shared_ptr<const ElasticMap> parse_chain(std::string_view bytes) {
 
 }  // namespace
 
-void reject_exact_map(const std::string& reason) {
-  throw FormatError("exact map: " + reason + "; the asset was damaged or written by another version");
-}
-
 std::string serialize_exact_map(const ElasticMap& map) {
   if (const auto* chain = dynamic_cast<const ElasticChain*>(&map)) return serialize_chain(*chain);
   for (const ElasticMethodRow& row : elastic_methods) {
