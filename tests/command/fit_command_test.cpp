@@ -574,7 +574,7 @@ TEST_F(FitCommand, LetsAPlaceThatWasClickedTwiceShareTheBlame) {
 // The radii of the two models differ by up to a fifth from each other's median, more than this bound.
 TEST_F(FitCommand, TellsWhereTheResultIsStretchedBeyondTheBound) {
   const ProgramResult bound =
-      pair_.fit("map.vdb", {"--max-stretch", "1.05", "--report", pair_.file("report.json")});
+      pair_.fit("map.vdb", {"--max-stretch", "1.05", "--steps", "1", "--report", pair_.file("report.json")});
   ASSERT_EQ(bound.exit_code, 0) << bound.err;
   EXPECT_THAT(bound.err,
               AllOf(HasSubstr("edges of the source change in length by more than --max-stretch"),

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -20,14 +22,17 @@ using testing::HasSubstr;
 using testing::Not;
 using Arguments = std::vector<std::string>;
 
-/// What the joint does to the stored vertices: a quarter turn about x, then a shift.
+/// How much of a vertex the upper of two joints holds.
+double upper_weight(const Vector3& stored) { return std::clamp((stored.y() / 1.4 + 1) / 2, 0.0, 1.0); }
+
+/// What the joints do to the stored vertices: a quarter turn about x, a shift, and one that shears.
 Vector3 shown(const Vector3& stored) {
-  return Vector3(stored.x(), -stored.z(), stored.y()) + Vector3(20, 0, 5);
+  return Vector3(stored.x(), -stored.z(), stored.y()) + Vector3(20, 0, 5) +
+         upper_weight(stored) * Vector3(0.3, 0, 0);
 }
 
-/// The mesh as a .glb, with a skin of one joint that moves it, or without one.
+/// The mesh as a .glb, with a skin of two joints that move it, or without one.
 std::string glb(const TriangleMesh& mesh, bool is_skinned) {
-  const auto vertices = static_cast<std::size_t>(mesh.vertices.cols());
   std::vector<float> x;
   for (const double value : mesh.vertices.reshaped()) x.push_back(static_cast<float>(value));
   std::vector<std::uint16_t> corners;
@@ -39,17 +44,24 @@ std::string glb(const TriangleMesh& mesh, bool is_skinned) {
   scene.root["nodes"] = {{{"mesh", 0}, {"name", "body"}}};
   scene.root["scenes"] = {{{"nodes", {0}}}};
   if (is_skinned) {
-    std::vector<float> weights(4 * vertices, 0), identity(16, 0);
-    for (std::size_t i = 0; i < vertices; ++i) weights[4 * i] = 1;
-    for (std::size_t i = 0; i < 4; ++i) identity[5 * i] = 1;
-    attributes["JOINTS_0"] = scene.accessor(std::vector<std::uint8_t>(4 * vertices, 0), "VEC4", 5121);
+    std::vector<std::uint8_t> joints;
+    std::vector<float> weights, binds;
+    for (const auto& vertex : mesh.vertices.colwise()) {
+      const auto upper = static_cast<float>(upper_weight(vertex));
+      joints.insert(joints.end(), {0, 1, 0, 0});
+      weights.insert(weights.end(), {1 - upper, upper, 0, 0});
+    }
+    for (int joint = 0; joint < 2; ++joint)
+      for (int i = 0; i < 16; ++i) binds.push_back(i % 5 == 0 ? 1.0F : 0.0F);
+    attributes["JOINTS_0"] = scene.accessor(joints, "VEC4", 5121);
     attributes["WEIGHTS_0"] = scene.accessor(weights, "VEC4", 5126);
-    scene.root["skins"] = {
-        {{"joints", {1}}, {"inverseBindMatrices", scene.accessor(identity, "MAT4", 5126)}}};
+    const int inverse_binds = scene.accessor(binds, "MAT4", 5126);
+    scene.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", inverse_binds}}};
     const float half = std::sqrt(0.5F);
     scene.root["nodes"][0]["skin"] = 0;
-    scene.root["nodes"].push_back({{"rotation", {half, 0, 0, half}}, {"translation", {20, 0, 5}}});
-    scene.root["scenes"] = {{{"nodes", {0, 1}}}};
+    for (const double x : {20.0, 20.3})
+      scene.root["nodes"].push_back({{"rotation", {half, 0, 0, half}}, {"translation", {x, 0, 5}}});
+    scene.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
   }
   scene.root["meshes"] = {{{"primitives", {{{"attributes", attributes}, {"indices", indices}}}}}};
   return scene.glb();
@@ -90,7 +102,7 @@ class PoseOfCommands : public testing::Test {
   ProgramResult fit(const std::string& source, const std::string& anchors, const std::string& map,
                     const Arguments& more = {}) const {
     Arguments all{"fit",         source, file("target.obj"), "--anchors", file(anchors),
-                  "--tolerance", "0.5%", "--unit",           "cm",        "-o",
+                  "--tolerance", "0.5%", "--unit",           "m",         "-o",
                   file(map)};
     all.insert(all.end(), more.begin(), more.end());
     return bespoke(all);
@@ -194,11 +206,11 @@ TEST_F(PoseOfCommands, OfACataloguesModelsIsThatOfTheirMaps) {
 
 TEST_F(PoseOfCommands, OfASizeIsAColumnOfItsTable) {
   write_text(file("measures.json"),
-             R"({"units":"cm","measures":[{"name":"waist","plane":{"point":[0,0,0],"normal":[0,1,0]}}]})");
+             R"({"units":"m","measures":[{"name":"waist","plane":{"point":[0,0,0],"normal":[0,1,0]}}]})");
   const auto grade = [&](const std::string& source, const std::string& product, const std::string& column,
                          const std::string& value, const std::string& out) {
     write_text(file("sizes.csv"), "size,target,anchors,tolerance,unit" + column + "\nM," +
-                                      file("target.obj") + "," + file("anchors.json") + ",0.5%,cm" + value +
+                                      file("target.obj") + "," + file("anchors.json") + ",0.5%,m" + value +
                                       "\n");
     output({"grade", source, product, "--sizes", file("sizes.csv"), "--measures", file("measures.json"),
             "--out-dir", file(out)});

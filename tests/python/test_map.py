@@ -152,14 +152,15 @@ def test_measures_the_pair_and_no_other(pair):
         pair.map.measure(pair.target, pair.target)
 
 
-def skinned_glb(mesh, turn, shift):
-    """The mesh as it is stored, and shown where its one joint, turned and shifted, holds it."""
+def skinned_glb(mesh, upper, turn, shifts):
+    """Stored as the mesh is, and shown where two joints, turned and shifted, hold it; `upper`: the second's share."""
     count = len(mesh.vertices)
+    weights = np.stack([1 - upper, upper, 0 * upper, 0 * upper], 1)
     blocks = [
         (np.asarray(mesh.vertices, "<f4"), 5126, "VEC3", count),
-        (np.zeros((count, 4), "u1"), 5121, "VEC4", count),
-        (np.tile(np.array([1, 0, 0, 0], "<f4"), (count, 1)), 5126, "VEC4", count),
-        (np.eye(4, dtype="<f4"), 5126, "MAT4", 1),
+        (np.tile(np.array([0, 1, 0, 0], "u1"), (count, 1)), 5121, "VEC4", count),
+        (weights.astype("<f4"), 5126, "VEC4", count),
+        (np.stack([np.eye(4, dtype="<f4")] * 2), 5126, "MAT4", 2),
         (np.asarray(mesh.faces, "<u4"), 5125, "SCALAR", 3 * len(mesh.faces)),
     ]
     data, views, accessors = b"", [], []
@@ -172,10 +173,10 @@ def skinned_glb(mesh, turn, shift):
         "buffers": [{"byteLength": len(data)}],
         "bufferViews": views,
         "accessors": accessors,
-        "skins": [{"joints": [1], "inverseBindMatrices": 3}],
-        "nodes": [{"mesh": 0, "skin": 0}, {"rotation": turn, "translation": shift}],
+        "skins": [{"joints": [1, 2], "inverseBindMatrices": 3}],
+        "nodes": [{"mesh": 0, "skin": 0}, *({"rotation": turn, "translation": shift} for shift in shifts)],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 1, "WEIGHTS_0": 2}, "indices": 4}]}],
-        "scenes": [{"nodes": [0, 1]}],
+        "scenes": [{"nodes": [0, 1, 2]}],
         "scene": 0,
     }
     text = json.dumps(root).encode()
@@ -187,11 +188,12 @@ def skinned_glb(mesh, turn, shift):
 def test_takes_either_pose_of_a_skinned_file(pair, tmp_path):
     file, out = tmp_path / "skinned.glb", tmp_path / "out.glb"
     half = float(np.sqrt(0.5))
-    file.write_bytes(skinned_glb(pair.source, [0, 0, half, half], [0.5, 0, 0]))
+    upper = (pair.source.vertices[:, 2] / 2 + 1) / 2  # the source is four high
+    file.write_bytes(skinned_glb(pair.source, upper, [0, 0, half, half], [[0.5, 0, 0], [0.7, 0, 0]]))
     stored, shown = bespoke.read_mesh(file, pose="stored").vertices, bespoke.read_mesh(file).vertices
     np.testing.assert_allclose(stored, pair.source.vertices, atol=1e-6)
     x, y, z = stored.T
-    np.testing.assert_allclose(shown, np.stack([0.5 - y, x, z], 1), atol=1e-6)
+    np.testing.assert_allclose(shown, np.stack([0.5 + 0.2 * upper - y, x, z], 1), atol=1e-6)
     pair.map.apply(file, out, pose="stored", unit="map")
     np.testing.assert_allclose(bespoke.read_mesh(out, pose="stored").vertices, pair.map(stored), atol=1e-5)
     pair.map.apply(file, out, unit="map")
