@@ -59,8 +59,8 @@ std::string glb(const TriangleMesh& mesh, bool is_skinned) {
     scene.root["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", inverse_binds}}};
     const float half = std::sqrt(0.5F);
     scene.root["nodes"][0]["skin"] = 0;
-    for (const double x : {20.0, 20.3})
-      scene.root["nodes"].push_back({{"rotation", {half, 0, 0, half}}, {"translation", {x, 0, 5}}});
+    for (const double along : {20.0, 20.3})
+      scene.root["nodes"].push_back({{"rotation", {half, 0, 0, half}}, {"translation", {along, 0, 5}}});
     scene.root["scenes"] = {{{"nodes", {0, 1, 2}}}};
   }
   scene.root["meshes"] = {{{"primitives", {{{"attributes", attributes}, {"indices", indices}}}}}};
