@@ -90,8 +90,9 @@ TEST(CutPieces, ChartsEndWhereTextureJumps) {
 TEST(CutPieces, SeamsCutAndName) {
   const TriangleMesh mesh = test::tube(40, 5, 100, 200);
   SeamFile seams;
+  seams.cuts.resize(1);
   for (int r = 0; r < 4; ++r)
-    for (const int s : {0, 20}) seams.edges.push_back({40 * r + s, 40 * (r + 1) + s});
+    for (const int s : {0, 20}) seams.cuts.front().edges.push_back({40 * r + s, 40 * (r + 1) + s});
   seams.names = {{"left", 5}, {"right", 30}};
   const CutPieces cut = cut_pieces(test::garment_of(mesh), {.seams = seams});
   ASSERT_EQ(cut.pieces.size(), 2u);

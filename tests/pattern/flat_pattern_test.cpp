@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 #include "bespoke/pattern/detail/grain.h"
@@ -48,6 +50,19 @@ TEST(FlatPattern, DartsRelieveAHemisphere) {
   EXPECT_EQ(darted.darts, 6);
   EXPECT_LT(darted.pieces[0].strain.strain_p95, whole.pieces[0].strain.strain_p95 / 2);
   EXPECT_THAT(to_string(darted, options), HasSubstr("p95"));
+}
+
+TEST(FlatPattern, MoreDartsAreNeverWorse) {
+  double strain = std::numeric_limits<double>::infinity();
+  for (const int darts : {0, 1, 3, 9}) {
+    PatternOptions options;
+    options.max_darts = darts;
+    const FlatPattern pattern = flat_pattern(hemisphere(), nullptr, options);
+    EXPECT_LE(pattern.darts, darts);
+    EXPECT_FALSE(pattern.pieces.at(0).overlap) << darts << " darts";
+    EXPECT_LE(pattern.pieces[0].strain.strain_p95, strain) << darts << " darts";
+    strain = pattern.pieces[0].strain.strain_p95;
+  }
 }
 
 // A map that shears the tube takes its upright grain along.

@@ -16,7 +16,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string square_vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 class Garments : public ::testing::Test {
  protected:
@@ -33,7 +33,7 @@ class Garments : public ::testing::Test {
 };
 
 TEST_F(Garments, AreInMillimetres) {
-  const Garment garment = read_garment(file(square + "f 1 2 3 4\n"), {PieceRule::automatic, "cm"});
+  const Garment garment = read_garment(file(square_vertices + "f 1 2 3 4\n"), {PieceRule::automatic, "cm"});
   EXPECT_EQ(garment.mesh.vertices.col(2), Vector3(10, 10, 0));
   EXPECT_EQ(garment.mesh.faces.cols(), 2);
   EXPECT_EQ(garment.rule, PieceRule::components);
@@ -41,12 +41,12 @@ TEST_F(Garments, AreInMillimetres) {
 
 TEST_F(Garments, TakeTheFirstRuleThatTheFileHas) {
   const std::string faces = "g front\no part\nf 1 2 3\ng back\nf 1 3 4\n";
-  const Garment grouped = read_garment(file(square + faces), {PieceRule::automatic, "mm"});
+  const Garment grouped = read_garment(file(square_vertices + faces), {PieceRule::automatic, "mm"});
   EXPECT_EQ(grouped.rule, PieceRule::groups);
   EXPECT_THAT(grouped.group_names, ElementsAre("front", "back"));
   EXPECT_THAT(grouped.group_of_face, ElementsAre(0, 1));
-  const Garment charted =
-      read_garment(file(square + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n"), {PieceRule::automatic, "mm"});
+  const Garment charted = read_garment(file(square_vertices + "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n"),
+                                       {PieceRule::automatic, "mm"});
   EXPECT_EQ(charted.rule, PieceRule::charts);
   EXPECT_EQ(charted.texture.col(2), Eigen::Vector2d(1, 1));
 }
@@ -70,11 +70,13 @@ TEST_F(Garments, OfGltfHaveCharts) {
 }
 
 TEST_F(Garments, AreRefusedWithWhatToDo) {
-  EXPECT_THAT(refusal(square + "f 1 2 3\n", {}), HasSubstr("--unit cm"));
-  EXPECT_THAT(refusal(square + "f 1 2 3\n", {PieceRule::automatic, "ell"}), HasSubstr("ell"));
-  EXPECT_THAT(refusal(square), HasSubstr("no faces"));
-  EXPECT_THAT(refusal(square + "f 1 2 3\n", {PieceRule::charts, "cm"}), HasSubstr("no texture coordinates"));
-  EXPECT_THAT(refusal(square + "f 1 2 3\n", {PieceRule::materials, "cm"}), HasSubstr("it has no materials"));
+  EXPECT_THAT(refusal(square_vertices + "f 1 2 3\n", {}), HasSubstr("--unit cm"));
+  EXPECT_THAT(refusal(square_vertices + "f 1 2 3\n", {PieceRule::automatic, "ell"}), HasSubstr("ell"));
+  EXPECT_THAT(refusal(square_vertices), HasSubstr("no faces"));
+  EXPECT_THAT(refusal(square_vertices + "f 1 2 3\n", {PieceRule::charts, "cm"}),
+              HasSubstr("no texture coordinates"));
+  EXPECT_THAT(refusal(square_vertices + "f 1 2 3\n", {PieceRule::materials, "cm"}),
+              HasSubstr("it has no materials"));
   EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 4\nf 1 2 3\n"),
               HasSubstr("face 2 has no area"));
 }

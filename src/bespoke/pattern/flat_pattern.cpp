@@ -82,11 +82,23 @@ void require_same_faces(const Garment& garment, const Garment& source) {
                        "; --source is the product before the map carried it");
 }
 
-/// Flattened, and while pieces are not relieved and darts are left, cut by one and flattened again.
+/// Pieces that overlap themselves, which no cloth can be cut into; then the strain of the worst.
+std::pair<std::size_t, double> faults(const Attempt& result) {
+  std::pair<std::size_t, double> found{0, 0};
+  for (std::size_t p = 0; p < result.strains.size(); ++p) {
+    found.first += result.overlaps[p] ? 1 : 0;
+    found.second = std::max(found.second, result.strains[p].strain_p95);
+  }
+  return found;
+}
+
+/// Flattened, and while pieces are not relieved and darts are left, cut by one and flattened again. A dart
+/// may do harm, in a narrow piece for instance: of all attempts the best.
 Attempt with_darts(const Garment& garment, const Garment* source, const PatternOptions& options, int& darts) {
   CutOptions cut = options.cut;
-  Attempt result = attempt(garment, source, options, cut);
-  for (darts = 0; darts < options.max_darts; ++darts) {
+  Attempt result = attempt(garment, source, options, cut), best = result;
+  darts = 0;
+  for (int cuts = 1; cuts <= options.max_darts; ++cuts) {
     const std::optional<std::size_t> worst = worst_piece(result, options.strain_limit);
     if (!worst) break;
     const Piece& piece = result.cut.pieces[*worst];
@@ -96,8 +108,11 @@ Attempt with_darts(const Garment& garment, const Garment* source, const PatternO
       cut.further_edges.push_back({piece.vertices[static_cast<std::size_t>(path[k])],
                                    piece.vertices[static_cast<std::size_t>(path[k + 1])]});
     result = attempt(garment, source, options, cut);
+    if (!(faults(result) < faults(best))) continue;
+    best = result;
+    darts = cuts;
   }
-  return result;
+  return best;
 }
 
 /// The source's pieces, flattened alike.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bespoke/error.h"
 
@@ -73,10 +74,11 @@ NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstra
   const Eigen::VectorXd lengths = gradients.rowwise().norm();
   // H has no positive entry off its diagonal, so that its inverse has no negative one.
   const Eigen::SparseMatrix<double, Eigen::RowMajor> amounts_of_places = places.cwiseAbs();
-  const Eigen::VectorXd row_sums =
+  Eigen::VectorXd row_sums =
       (amounts_of_places * energy(Eigen::VectorXd(amounts_of_places.transpose() * lengths)))
-          .cwiseProduct(lengths)
-          .cwiseMax(1e-300);
+          .cwiseProduct(lengths);
+  // What moves no node, as a node against itself, keeps a multiplier of 0.
+  row_sums = (row_sums.array() > 0).select(row_sums, std::numeric_limits<double>::infinity());
   multipliers = multipliers.cwiseMax(0);
   Eigen::VectorXd ahead = multipliers;
   double momentum = 1;
