@@ -61,6 +61,7 @@ TEST_F(Garments, OfGltfHaveCharts) {
   mesh.product.corners = {0, 1, 2, 0, 2, 3};
   mesh.product.texture.resize(2, 6);
   mesh.product.texture << 0, 0.25, 0.25, 0.5, 0.75, 0.5, 0, 0, 0.25, 0, 0.25, 0.25;
+  mesh.targets = {mesh.product.vertices};
   write_glb(directory_ / "garment.glb", mesh, {});
   const Garment garment = read_garment(directory_ / "garment.glb", {});
   EXPECT_EQ(garment.rule, PieceRule::charts);
