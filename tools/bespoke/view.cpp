@@ -48,7 +48,8 @@ CorrectedProducts corrected_products(const ViewArguments& arguments, const MapMo
   if (!arguments.clearance.is_used()) return corrected;
   const OpenedMap map =
       open_map(arguments.models.map, MapForm::grids, {.untrusted = arguments.models.untrusted});
-  ClearanceKeeper keeper(arguments.clearance, {}, arguments.models.unit);
+  ClearanceKeeper keeper(arguments.clearance, {}, arguments.models.unit,
+                         arguments.models.pose.value_or(ModelPose::shown));
   const std::vector<std::string>& names = arguments.models.products;
   corrected.places.resize(names.size());
   corrected.found.resize(names.size());
