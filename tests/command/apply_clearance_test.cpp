@@ -117,7 +117,7 @@ TEST_F(ApplyClearance, WhatCannotBeClearedIsReportedAndExitsWithThree) {
 
 TEST_F(ApplyClearance, RefusesWhatHasNoMeaning) {
   for (const auto& [options, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--clearance", "lots"}, "is keep, off, a length"},
+           {{"--clearance", "lots"}, "is keep, same, off, a length"},
            {{"--require-clear"}, "needs --clearance"},
            {{"--layers"}, "needs --clearance"},
            {{"--clearance", "keep", "--t", "0.5"}, "--t is 1"},

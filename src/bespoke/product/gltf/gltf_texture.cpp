@@ -30,7 +30,8 @@ Eigen::Matrix2Xd texture_of(const GltfFile& file, const std::vector<GltfAccessor
 Eigen::Matrix2Xd corner_texture(const std::filesystem::path& path) {
   const std::string ending = lower_ending(path);
   if (ending != ".gltf" && ending != ".glb") return {};
-  const GltfFile file = read_gltf(InputFile(path));
+  const InputFile input(path);  // which the file reads from as long as it lives
+  const GltfFile file = read_gltf(input);
   const std::vector<GltfAccessor> accessors = read_accessors(file);
   const GltfScene scene = read_scene(file, accessors);
   GatheredFaces gathered(file.path);
