@@ -40,13 +40,9 @@ class RegistrationEnergyTest : public testing::Test {
                          (normals.col(i) + 0.2 * Vector3::Random()).normalized(), 0.01 * (i % 5),
                          0.1 * (i % 3)});
     }
-    for (int i = 0; i < 7; ++i) {
-      cuts_.push_back({});
-      cuts_.back().vertex = 3 * i;
-      cuts_.back().point = sphere_.vertices.col(3 * i) + 0.1 * Vector3::Random();
-      cuts_.back().tangent = Vector3::Random().normalized();
-      cuts_.back().length = 0.1;
-    }
+    for (int i = 0; i < 7; ++i)
+      cuts_.push_back({3 * i, 0.1, sphere_.vertices.col(3 * i) + 0.1 * Vector3::Random(),
+                       Vector3::Random().normalized()});
     const ClosestPointTree tree(sphere_);
     for (const double weight : {infinity, 3.0, infinity})
       anchors_.push_back({nodes_.at_point(*tree.closest(Vector3::Random()), sphere_.faces),
