@@ -68,6 +68,31 @@ TEST(FitNodes, TellsBodiesThatKeepTheirShapeFromOthers) {
   EXPECT_EQ(rigidity([](const Vector3& x) { return Vector3(x[0], x[1] * (1.3 + 0.3 * x[0]), x[2]); }), 1);
 }
 
+// A sphere with a cap that stands out, as a bent source may where a joint bends at another place than the
+// target's; anchors around the cap are met.
+TEST(FitNodes, ABentSourceMovesInwardWhereItIsOutside) {
+  const TriangleMesh sphere = shapes::icosphere(4);
+  TriangleMesh source = sphere;
+  std::vector<int> cap, marked;
+  for (int i = 0; i < sphere.vertices.cols(); ++i) {
+    const double height = sphere.vertices(2, i);
+    if (height > 0.9) cap.push_back(i);
+    source.vertices.col(i) *= 1 + 0.08 * std::max(0.0, height - 0.8) / 0.2;
+    if (i < 42 && height < 0.8) marked.push_back(i);
+  }
+  const Points anchors = sphere.vertices(Eigen::all, marked);
+  const Eigen::VectorXd weights = Eigen::VectorXd::Constant(anchors.cols(), infinity);
+  const TargetSurface surface(sphere);
+  const auto height_of_cap = [&](bool is_posed) {
+    NodeFitInput input{source,  source.vertices,          surface, anchors, anchors,
+                       weights, diagonal(sphere.vertices)};
+    input.is_posed = is_posed;
+    const Points fitted = fit_nodes(input).vertices(Eigen::all, cap);
+    return (fitted.colwise().norm().array() - 1).abs().mean();
+  };
+  EXPECT_LT(height_of_cap(true), 0.5 * height_of_cap(false));
+}
+
 TEST(FitNodes, WeighsSoftAnchorsLess) {
   const TriangleMesh sphere = shapes::icosphere(3);
   const TargetSurface surface(sphere);

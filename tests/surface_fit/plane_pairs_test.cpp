@@ -89,6 +89,28 @@ TEST(PlanePairs, AreNotCreasedWhereAnotherSheetIsTheCounterpart) {
   EXPECT_LT(largest_crease(true, sheet), 1e-6);
 }
 
+/// The scale gains of pairs between a plate and one above it, or below, both ways, given the certainty of the
+/// source's pose.
+std::vector<double> scale_gains(double source_height, double certainty) {
+  const TriangleMesh plate = shapes::square_grid(6);
+  const TargetSurface from(shapes::moved(plate, {Matrix3::Identity(), Vector3(0, 0, source_height)})),
+      to(plate);
+  const Eigen::VectorXd certainties = Eigen::VectorXd::Constant(plate.vertices.cols(), certainty);
+  std::vector<double> found;
+  for (const PlanePair& pair :
+       find_plane_pairs({from, to, from.areas(), to.areas(), 1.5, &certainties}, every_vertex, {}))
+    found.push_back(pair.outlier_scale_gain);
+  return found;
+}
+
+TEST(PlanePairs, OfABentSourceOutsideHaveTheScaleGainOfItsCertainty) {
+  const std::vector<double> above = scale_gains(0.05, 0.7), below = scale_gains(-0.05, 0.7);
+  ASSERT_EQ(above.size(), 50u);
+  ASSERT_EQ(below.size(), 50u);
+  for (const double outlier_scale_gain : above) EXPECT_NEAR(outlier_scale_gain, 0.7, 1e-12);
+  for (const double outlier_scale_gain : below) EXPECT_NEAR(outlier_scale_gain, 0, 1e-12);
+}
+
 // Two sheets close to each other, which have changed places on the target.
 TEST(PlanePairs, StayWithinTheirPatches) {
   const TriangleMesh sheet = shapes::square_grid(6);

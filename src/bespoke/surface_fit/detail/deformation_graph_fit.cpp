@@ -218,23 +218,23 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
     summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
     return summary.anchor_turn_degrees;
   };
-  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors) {
-    return NodeFitting(
-        {rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
-         scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas, scene.patches},
-        settings.nodes, progress);
+  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
+    return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
+                        scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas,
+                        scene.patches, is_posed},
+                       settings.nodes, progress);
   };
   if (are_out_of_reach(scene, anchors, settings)) {
     degrees_by_anchors();
   } else {
-    NodeFitting straight = fitting(scene.surface, anchors);
+    NodeFitting straight = fitting(scene.surface, anchors, false);
     if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.min_rigid_turn))
       return straight.fit_fine();
   }
   summary.posed_by_anchors = true;
   const AnchorPose pose = posing->bent();
   const TriangleMesh bent{pose.vertices, scene.surface.faces};
-  NodeFitting posed = fitting(bent, pose.anchor_sources);
+  NodeFitting posed = fitting(bent, pose.anchor_sources, true);
   posed.fit_coarse();
   return posed.fit_fine();
 }

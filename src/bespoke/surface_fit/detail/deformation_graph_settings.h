@@ -133,6 +133,12 @@ struct ReciprocitySettings {
   double rounding = 1e-6;    ///< of the largest distance searched: nearer points are reciprocal
 };
 
+/// Sources that anchors have posed and that still lie outside the target (pose_certainty.h): where anchors
+/// determine the pose, a signed residual along the normal is a difference of shape.
+struct OutsideResidualSettings {
+  double reach = 0.2;  ///< diagonals: r of the certainty
+};
+
 /// One level of nodes.
 struct NodeLevel {
   int nodes = 0;                 ///< requested, over the whole surface
@@ -140,11 +146,13 @@ struct NodeLevel {
   std::size_t samples = 0;       ///< source vertices with a correspondence
   std::size_t back_samples = 0;  ///< target vertices with one
   bool reciprocity = true;  ///< ReciprocitySettings. Not at the coarse level: distances say little there.
+  bool outside_residuals = true;  ///< OutsideResidualSettings
 };
 
 /// The smooth deformation (node_fit.h): non-rigid ICP with an M-estimator on an embedded deformation graph.
 struct NodeFitSettings {
-  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false}, NodeLevel{2500, 9, 8000, 5000}};
+  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
+                                     NodeLevel{2500, 9, 8000, 5000}};
   /// Of the first level without anchors, where surfaces converge more slowly. More let a shape without
   /// features drift along itself.
   int unanchored_iterations = 20;
@@ -159,7 +167,7 @@ struct NodeFitSettings {
   double outlier_floor = 1e-4;  ///< diagonals, added to that scale, where half of the pairs coincide
   /// Of ℓ, added to that scale where far pairs count too (PlanePair::outlier_scale_gain): in sharp creases,
   /// which must unfold.
-  double outlier_scale_gain = 1;
+  double outlier_scale_gain = 1;  // also for posed sources outside the target (OutsideResidualSettings)
   /// Weight of all exact anchors together, times the iteration's number from the second on; the surface's is
   /// 1. It grows, so that anchors lead and leave no dents.
   double anchor_growth = 2;
@@ -174,6 +182,7 @@ struct NodeFitSettings {
   CavitySettings cavities;
   UnmatchedCavitySettings unmatched_cavities;
   ReciprocitySettings reciprocity;
+  OutsideResidualSettings outside_residuals;
 };
 
 /// Layers of space (detail_layers.h): sums of Wendland's C4 functions, coarse to fine.

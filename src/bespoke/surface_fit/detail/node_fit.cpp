@@ -9,6 +9,7 @@
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/cavities.h"
 #include "bespoke/surface_fit/detail/plane_pairs.h"
+#include "bespoke/surface_fit/detail/pose_certainty.h"
 
 namespace bespoke {
 namespace {
@@ -83,6 +84,9 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       rest_(input.rest, input.patches),
       areas_(included_areas(rest_)),
       target_areas_(input.target.areas()),
+      pose_certainty_(input.is_posed ? pose_certainty(input.rest.vertices, input.anchor_sources,
+                                                      settings.outside_residuals.reach * input.diagonal)
+                                     : Eigen::VectorXd()),
       anchors_(node_anchors(input, rest_)),
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
       surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
@@ -146,9 +150,10 @@ void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
     std::vector<PlanePair> planes;
     // Before the anchors are met, closest points mislead.
     if (fit_.iterations > 0 || anchors_.empty())
-      planes = find_plane_pairs(
-          {rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal}, level,
-          settings_);
+      planes =
+          find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
+                            input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
+                           level, settings_);
     if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
     const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);
     NodeGoals goals{fit_.vertices,

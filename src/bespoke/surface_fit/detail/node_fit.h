@@ -29,6 +29,7 @@ struct NodeFitInput {
   Eigen::VectorXd anchor_sigmas = {};
   /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
   FacePatches patches = {};
+  bool is_posed = false;  ///< whether anchors have bent `rest`
 };
 
 struct NodeFit {
@@ -71,6 +72,7 @@ class NodeFitting {
   const Progress& progress_;
   TargetSurface rest_;
   Eigen::VectorXd areas_, target_areas_;
+  Eigen::VectorXd pose_certainty_;  // empty unless anchors have bent the rest surface
   std::vector<NodeAnchor> anchors_;
   BoundaryMatcher boundaries_;
   NodeSurface surface_;

@@ -29,11 +29,21 @@ struct Search {
   }
 };
 
+/// Where anchors tell the pose and the source still lies outside the target, it is its shape that differs,
+/// or a joint that has bent at another place.
+double outside(const Search& search, const FoundPair& pair, int source_vertex) {
+  const Eigen::VectorXd* certainty = search.surfaces.pose_certainty;
+  if (!certainty) return 0;
+  const double step = (pair.match.point - pair.point).dot(pair.match.halfway);
+  const bool is_outside = search.from_source ? step < 0 : step > 0;
+  return is_outside ? (*certainty)[source_vertex] : 0;
+}
+
 /// Ratio of back distance to distance (reciprocity.h) as far as the pair depends on it; 1 beyond.
-double back_ratio(const Search& search, const FoundPair& pair) {
+double back_ratio(const Search& search, const FoundPair& pair, double off) {
   const ReciprocitySettings& settings = search.settings.reciprocity;
   if (may_be_creased(pair)) return back_distance_ratio(pair, search.from(), 1, settings);
-  if (!search.level.reciprocity) return 1;
+  if (!search.level.reciprocity && off == 0) return 1;
   return back_distance_ratio(pair, search.from(), settings.much_nearer, settings);
 }
 
@@ -65,9 +75,10 @@ void append_pairs(const Search& search, std::vector<PlanePair>& pairs) {
       if (!match) continue;
       found[k] = pair_of(search, i, *match);
       const FoundPair pair{points.col(i), *match, limits};
-      const double back = back_ratio(search, pair);
+      const double off = outside(search, pair, found[k].vertex);
+      const double back = back_ratio(search, pair, off);
       const double fading = reciprocity(back, settings);
-      found[k].outlier_scale_gain = fading * crease(pair, back);
+      found[k].outlier_scale_gain = fading * std::max(crease(pair, back), off);
       found[k].weight = search.share() * search.areas()[i] * double(stride) * match->agreement *
                         match->agreement * (search.level.reciprocity ? fading : 1);
     }

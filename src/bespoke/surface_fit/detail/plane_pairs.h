@@ -16,7 +16,8 @@ struct PlanePair {
   double weight = 0;  ///< mesh units squared: the area that the pair represents, times the squared agreement
                       ///< of the normals, times its direction's share
   /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
-  /// the searching surface is creased there (crease.h).
+  /// the searching surface is creased there (crease.h) or, where the source lies outside the target, how
+  /// certainly anchors determine its pose (pose_certainty.h), whichever is more.
   double outlier_scale_gain = 0;
 };
 
@@ -28,6 +29,8 @@ struct PairSurfaces {
   const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
   double diagonal = 0;  ///< of the aligned source, mesh units
+  /// n, of a source that anchors have bent (pose_certainty.h); null of another.
+  const Eigen::VectorXd* pose_certainty = nullptr;
 };
 
 /// Closest compatible points of evenly chosen vertices, from the source to the target first, then back. A
