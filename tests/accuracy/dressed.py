@@ -211,13 +211,14 @@ def diagonal(mesh):
 
 
 def changes(case, garment, carried):
-    """p95 of the change of clearance, per cent of the target's diagonal."""
+    """p95 of the change of clearance, per cent of the target's diagonal; lengths by the program's power of two."""
     before = clearance(garment[0], case["source"])
+    scale = 2.0**round(np.log2(diagonal(case["target"]) / diagonal(case["source"])))
     near = np.abs(before) < 0.02 * diagonal(case["source"])
     if not near.any():
         return None
     after = clearance(carried[near], case["target"])
-    return round(float(100 * np.percentile(np.abs(after - before[near]), 95) / diagonal(case["target"])), 3)
+    return round(float(100 * np.percentile(np.abs(after - scale * before[near]), 95) / diagonal(case["target"])), 3)
 
 
 def farther_out(case, garment):
