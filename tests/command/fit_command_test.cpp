@@ -580,7 +580,8 @@ TEST_F(FitCommand, TellsWhereTheResultIsStretchedBeyondTheBound) {
               AllOf(HasSubstr("edges of the source change in length by more than --max-stretch"),
                     HasSubstr(" times, around ("), HasSubstr("troubleshooting.md#over-stretched")));
   std::size_t told = 0;
-  for (const json& stage : read_json("report.json")["stages"]) {
+  const json report = read_json("report.json");
+  for (const json& stage : report["stages"]) {
     if (stage["name"] != "stretched") continue;
     ++told;
     EXPECT_GT(stage["edges"], 0);
