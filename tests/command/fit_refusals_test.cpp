@@ -112,16 +112,6 @@ TEST_F(FitRefusals, NamesTheAnchorsWhereTheyAloneAreInAnotherUnit) {
     }
 }
 
-// Each target is that of another anchor.
-TEST_F(FitRefusals, RefusesAnchorsThatNoMapMeets) {
-  json anchors = read_json("anchors.json");
-  const json given = anchors["pairs"];
-  const std::size_t count = given.size();
-  for (std::size_t k = 0; k < count; ++k) anchors["pairs"][k]["b"] = given[(5 * k + 3) % count]["b"];
-  write_text(pair_.file("anchors.json"), anchors.dump());
-  expect_refusal(pair_.fit("map.vdb"), 3, "no useful map follows from this fit");
-}
-
 TEST_F(FitRefusals, RefusesAFittedSourceOfOtherConnectivity) {
   write_text(pair_.file("other.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_refusal(pair_.fit("map.vdb", {"--fitted", pair_.file("other.obj")}), 2,
