@@ -45,7 +45,7 @@ TriangleMesh mesh_of(const json& mesh) {
 }
 
 /// Whose vertices and triangles files of `wrap` and `indices` name.
-TriangleMesh corner() {
+TriangleMesh tetrahedron_corner() {
   TriangleMesh mesh{Points(3, 4), Faces(3, 2)};
   mesh.vertices << 0, 1, 0, 0,  //
       0, 0, 1, 0,               //
@@ -58,7 +58,7 @@ TriangleMesh corner() {
 
 TEST(SharedVectors, OfAnchorFiles) {
   const test::ScratchDirectory directory;
-  const TriangleMesh model = corner();
+  const TriangleMesh corner_mesh = tetrahedron_corner();
   for (const json& each : vectors_of("anchor_files.json")) {
     SCOPED_TRACE(each.at("name").get<std::string>());
     std::vector<std::filesystem::path> paths;
@@ -66,7 +66,7 @@ TEST(SharedVectors, OfAnchorFiles) {
       paths.push_back(directory / file.at(0).get<std::string>());
       test::write_text(paths.back(), file.at(1));
     }
-    AnchorFileOptions options{&model, &model};
+    AnchorFileOptions options{&corner_mesh, &corner_mesh};
     if (each.value("models", "LPS") == "RAS") options.models = PatientSystem::ras;
     if (each.contains("fault")) {
       const std::string fault = error_message<FormatError>([&] { read_anchor_files(paths, options); });
