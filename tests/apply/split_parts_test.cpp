@@ -30,7 +30,7 @@ class SplitParts : public test::SplitFiles {
   std::string carried(const std::string& name, const std::string& content, double length) {
     const std::filesystem::path in = file(name, content), out = directory_ / ("out_" + name);
     Product product = read_product(in);
-    VertexParts parts = parts_of_places(in, product.vertices, {{plate_}});
+    VertexParts parts = parts_of_places(in, product.vertices, {{plate_}, {}});
     refined_ = refine_product(std::move(product), bend, length, std::move(parts));
     summary_ = carry_product(in, {out}, test::bend_motion(), {{plate_}, {}, &refined_.splits});
     return out;
@@ -43,7 +43,7 @@ class SplitParts : public test::SplitFiles {
 /// The points of a group of an OBJ file.
 Points points_of(const std::filesystem::path& path, const std::string& group) {
   const Product product = read_product(path);
-  const std::vector<int> part = parts_of_places(path, product.vertices, {{{group}}});
+  const std::vector<int> part = parts_of_places(path, product.vertices, {{{group}}, {}});
   std::vector<Eigen::Index> own;
   for (std::size_t i = 0; i < part.size(); ++i)
     if (part[i] == 0) own.push_back(static_cast<Eigen::Index>(i));

@@ -12,6 +12,7 @@
 #include "bespoke/bake/bake.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/stopwatch.h"
 #include "resampled.h"
