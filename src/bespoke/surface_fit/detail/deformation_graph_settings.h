@@ -27,6 +27,13 @@ struct SimilaritySettings {
   std::size_t max_samples = 4000;  ///< vertices queried: seven unknowns need few
 };
 
+/// Sample weights by curvature (informative_areas.h): bends fix the place along the surface, planes do not.
+struct AreaSettings {
+  double length = 0.01;    ///< ℓ, diagonals: bends of this radius count twice
+  double max_weight = 4;   ///< added to 1 at most: bounds what noise in the normals contributes
+  double shortest = 1e-4;  ///< diagonals: shorter edges count as this long; their normals are rounding
+};
+
 /// Nodes of an embedded deformation graph (Sumner 2007) and how vertices follow them (deformation_nodes.h).
 struct NodeSettings {
   /// Nodes that a vertex follows: a planar neighbourhood of `follow_reach` has about as many.
@@ -166,14 +173,15 @@ struct NodeFitSettings {
   double outlier_medians = 4;   ///< scale of the M-estimator, median distances: weight 1/2 there
   double outlier_floor = 1e-4;  ///< diagonals, added to that scale, where half of the pairs coincide
   /// Of ℓ, added to that scale where far pairs count too (PlanePair::outlier_scale_gain): in sharp creases,
-  /// which must unfold.
-  double outlier_scale_gain = 1;  // also for posed sources outside the target (OutsideResidualSettings)
+  /// which must unfold, and for posed sources outside the target (OutsideResidualSettings).
+  double outlier_scale_gain = 1;
   /// Weight of all exact anchors together, times the iteration's number from the second on; the surface's is
   /// 1. It grows, so that anchors lead and leave no dents.
   double anchor_growth = 2;
   double whole_surface_weight = 100;  ///< soft weights are percentages: this one equals the surface's
   double back_share = 0.5;            ///< weight of target-to-source pairs beside source-to-target ones
   double free_floating = 1e-9;        ///< added to every node's diagonal: a component without pairs stays
+  AreaSettings areas;
   NodeSettings nodes;
   BendingSettings bending;
   ShapeSettings shape;

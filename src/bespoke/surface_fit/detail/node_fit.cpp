@@ -8,6 +8,7 @@
 
 #include "bespoke/statistics.h"
 #include "bespoke/surface_fit/detail/cavities.h"
+#include "bespoke/surface_fit/detail/informative_areas.h"
 #include "bespoke/surface_fit/detail/plane_pairs.h"
 #include "bespoke/surface_fit/detail/pose_certainty.h"
 
@@ -56,8 +57,9 @@ double median_distance(const std::vector<PlanePair>& planes, const Points& verti
 }
 
 /// Of the rest surface, without what is excluded.
-Eigen::VectorXd included_areas(const TargetSurface& rest) {
-  Eigen::VectorXd areas = rest.areas();
+Eigen::VectorXd included_areas(const TargetSurface& rest, const NodeFitInput& input,
+                               const NodeFitSettings& settings) {
+  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
   for (Eigen::Index i = 0; i < areas.size(); ++i)
     if (rest.is_excluded(i)) areas[i] = 0;
   return areas;
@@ -82,8 +84,8 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       settings_(settings_for(input, settings)),
       progress_(progress),
       rest_(input.rest, input.patches),
-      areas_(included_areas(rest_)),
-      target_areas_(input.target.areas()),
+      areas_(included_areas(rest_, input, settings)),
+      target_areas_(informative_areas(input.target, input.diagonal, settings.areas)),
       pose_certainty_(input.is_posed ? pose_certainty(input.rest.vertices, input.anchor_sources,
                                                       settings.outside_residuals.reach * input.diagonal)
                                      : Eigen::VectorXd()),
