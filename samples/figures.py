@@ -129,8 +129,8 @@ def from_model_to_pieces(name, pair, product):
         write(label, spot, base - 40, 22)
     files = [HERE / pair.sample / "pieces.json", HERE / pair.sample / "pieces_carried.json"]
     sizes = np.array([high - low for _, low, high in map(flat_pieces, files)])[:, :2]
-    room = np.array([width / 2 - 80, height - row_height - 110])
-    scale = (room / sizes.max(0)).min()
+    space = np.array([width / 2 - 80, height - row_height - 110])
+    scale = (space / sizes.max(0)).min()
     line = paint("line", (0.16, 0.17, 0.19))
     for k, (file, label) in enumerate(zip(files, ["pieces of M", "pieces of M_new"])):
         middle = (k - 0.5) * width / 2

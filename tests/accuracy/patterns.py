@@ -305,7 +305,7 @@ def flatten(options, file, arguments):
             "flipped": flipped, "overlapping": sum(piece["overlaps_itself"] for piece in flat["pieces"]),
             "seams": len(differences), "seams_beyond_1_mm": sum(d > 1 for d in differences),
             "seams_named": sum(seam["differs"] for seam in flat["seams"]),
-            "most_mm": round(max(differences, default=0), 4), "strain_p95_median": float(np.median(strains)),
+            "max_mm": round(max(differences, default=0), 4), "strain_p95_median": float(np.median(strains)),
             "strain_p95_max": max(strains), "pieces_beyond_2_percent": sum(s > 0.02 for s in strains),
             "darts_suggested": sum("suggested_dart" in piece for piece in flat["pieces"]), "seconds": seconds}, flat
 

@@ -200,7 +200,7 @@ void add_flatten_command(CLI::App& app, const PlanHandler& handle_plan) {
       "pieces by a vertex; what ends inside is a dart. The side of the piece \"longer\" eases in:\n"
       "  {\"seams\":[{\"path\":[12,80,301],\"ease\":15,\"longer\":\"sleeve\"},\n"
       "            {\"edges\":[[4,5],[5,9]]},{\"line\":[9,[12,80,0.4],77]}],\n"
-      "   \"pieces\":[{\"name\":\"front\",\"vertex\":77}],\"widths\":[{\"name\":\"waist\",\"vertex\":9}]}\n\n"
+      "   \"pieces\":[{\"name\":\"front\",\"vertex\":77}],\"widths\":[{\"name\":\"hip\",\"vertex\":9}]}\n\n"
       "Examples:\n"
       "  bespoke flatten skirt.obj --unit cm --auto-cut -o skirt.svg\n"
       "  bespoke flatten carried.obj --source dress.obj --unit cm --seams seams.json --seam-allowance 10 -o "

@@ -32,7 +32,7 @@ constexpr double refined_reach = 2;
 constexpr double softest = 0.25, stiffening = 4;
 // Of the energy, per iteration: while data are soft, and on the finest level; half of that on the one before,
 // …
-constexpr double least_decrease = 1e-2;
+constexpr double min_relative_decrease = 1e-2;
 constexpr int max_iterations = 60, max_evaluations = 3 * max_iterations;
 // Of the bounds on squeeze: where the barriers are. Nearer ones trap the minimiser on its way.
 constexpr double barrier_beyond = 100, length_barrier_beyond = 10;
@@ -191,8 +191,8 @@ class Solver {
     const double stiff = compliance * tolerance_;
     if (level == 1)
       for (double soft = softest * wanted_.colwise().norm().mean(); soft > stiff; soft /= stiffening)
-        run(soft, least_decrease);
-    run(stiff, std::ldexp(least_decrease, level - options_.max_levels));
+        run(soft, min_relative_decrease);
+    run(stiff, std::ldexp(min_relative_decrease, level - options_.max_levels));
     if (summary_.iterations.empty()) summary_.blocked = evaluations > blocked_beyond * iterations;
     const double volume = weighted_volume();
     objective(coefficients_, unused);
