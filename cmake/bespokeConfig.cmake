@@ -1,10 +1,12 @@
-# Components: the libraries, of which every one finds what it links; all of them where none is named.
+# Components: the libraries; all of them where none is named. `bespoke` alone finds what the core links, any other all.
 set(bespoke_found_libraries bespoke product paper pipeline page batch)
 if(NOT bespoke_FIND_COMPONENTS)
   set(bespoke_FIND_COMPONENTS ${bespoke_found_libraries})
 endif()
 foreach(component IN LISTS bespoke_FIND_COMPONENTS)
-  if(NOT component IN_LIST bespoke_found_libraries)
+  if(component IN_LIST bespoke_found_libraries)
+    set(bespoke_${component}_FOUND TRUE)
+  elseif(bespoke_FIND_REQUIRED_${component})
     set(bespoke_FOUND FALSE)
     set(bespoke_NOT_FOUND_MESSAGE "bespoke has no component ${component}, only ${bespoke_found_libraries}")
     return()

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bespoke/json_reason.h"
+
 namespace bespoke {
 namespace {
 
@@ -22,6 +24,12 @@ TEST(Words, AreListedAsAlternatives) {
   EXPECT_EQ(alternatives({"a"}), "a");
   EXPECT_EQ(alternatives({"a", "b"}), "a or b");
   EXPECT_EQ(alternatives({"a", "b", "c"}), "a, b or c");
+}
+
+TEST(JsonReason, IsTheSentenceAlone) {
+  EXPECT_EQ(json_reason("[json.exception.out_of_range.403] key 'unit' not found"), "key 'unit' not found");
+  EXPECT_EQ(json_reason("[1] is a place] of its own"), "[1] is a place] of its own");
+  EXPECT_EQ(json_reason(""), "");
 }
 
 }  // namespace

@@ -31,24 +31,9 @@ __attribute__((target("avx512f,prefer-vector-width=512"))) void run_with_avx512(
 }
 #endif
 
-/// Loop::run(arguments...), compiled once for each instruction set and run with instruction_set(). `run` is
-/// static and [[gnu::always_inline]]. It gives the same bits with all of them: nothing is contracted
+/// Loop<set>::run(arguments...), compiled once for each instruction set and run with instruction_set(). `run`
+/// is static and [[gnu::always_inline]]. It gives the same bits with all of them: nothing is contracted
 /// (-ffp-contract=off), and the order of sums is written down.
-template <class Loop, class... Arguments>
-void run_dispatched(Arguments&&... arguments) {
-  switch (instruction_set()) {
-#if defined(__x86_64__)
-    case InstructionSet::avx512:
-      return run_with_avx512<Loop>(std::forward<Arguments>(arguments)...);
-    case InstructionSet::avx2:
-      return run_with_avx2<Loop>(std::forward<Arguments>(arguments)...);
-#endif
-    default:
-      return Loop::run(std::forward<Arguments>(arguments)...);
-  }
-}
-
-/// The same of a loop that is written for one instruction set at a time.
 template <template <InstructionSet> class Loop, class... Arguments>
 void run_dispatched_by_set(Arguments&&... arguments) {
   switch (instruction_set()) {
@@ -61,6 +46,19 @@ void run_dispatched_by_set(Arguments&&... arguments) {
     default:
       return Loop<InstructionSet::baseline>::run(std::forward<Arguments>(arguments)...);
   }
+}
+
+/// A loop that is written alike for all of them.
+template <class Loop>
+struct OfAnySet {
+  template <InstructionSet>
+  using Of = Loop;
+};
+
+/// The same of a Loop that the compiler makes into vectors by itself.
+template <class Loop, class... Arguments>
+void run_dispatched(Arguments&&... arguments) {
+  run_dispatched_by_set<OfAnySet<Loop>::template Of>(std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace bespoke

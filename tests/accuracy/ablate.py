@@ -57,6 +57,7 @@ def by_value(name, group, **values):
 
 
 RULES = [
+    by_value("weights by curvature", "pairs", AreaSettings__max_weight=0),
     by_value("one similarity may suffice", "similarity", SimilaritySettings__tolerance=0),
     by_value("normals in the distance", "pairs", NodeFitSettings__normal_length=0),
     by_value("target-to-source pairs", "pairs", NodeFitSettings__back_share=0),

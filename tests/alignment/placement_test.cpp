@@ -45,9 +45,9 @@ TEST(PlacementScore, SeesThatHalfOfTheTargetIsLeftOut) {
 }
 
 TEST(PlacementFigures, PreferLessDistortionAmongThoseThatMeetTheTarget) {
-  const PlacementFigures calm{1.01e-4, 0.10, 1}, crumpled{1.00e-4, 0.11, 1}, aside{2e-3, 0.09, 0.95};
-  EXPECT_LT(calm.misfit(), crumpled.misfit());
-  EXPECT_LT(crumpled.misfit(), aside.misfit());
+  const PlacementFigures calm{1.01e-4, 0.10, 1}, folded{1.00e-4, 0.11, 1}, aside{2e-3, 0.09, 0.95};
+  EXPECT_LT(calm.misfit(), folded.misfit());
+  EXPECT_LT(folded.misfit(), aside.misfit());
 }
 
 TEST(PlacementScore, RejectsAnotherNumberOfVertices) {

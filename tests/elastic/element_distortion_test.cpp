@@ -46,9 +46,15 @@ double volume(const NestedElements& elements) {
   return sum;
 }
 
+Distortion added(const NestedElements& elements, const std::vector<Points>& values,
+                 const DistortionBounds& bounds, std::vector<Points>& gradients) {
+  std::vector<double> scratch;
+  return add_distortion(elements, values, bounds, gradients, scratch);
+}
+
 Distortion of(const NestedElements& elements, const std::vector<Points>& values) {
   std::vector<Points> unused = zeros(elements);
-  return add_distortion(elements, values, {}, unused);
+  return added(elements, values, {}, unused);
 }
 
 /// So wide that the barriers vanish.
@@ -60,7 +66,7 @@ TEST(Distortion, VanishesForRotationsAlone) {
             of(elements, linear_values(elements, Matrix3::Identity())).energy);
   std::vector<Points> gradients = zeros(elements);
   const Distortion turned =
-      add_distortion(elements, linear_values(elements, test::random_rotation(1)), no_bounds, gradients);
+      added(elements, linear_values(elements, test::random_rotation(1)), no_bounds, gradients);
   EXPECT_NEAR(turned.energy, 0, 1e-12);
   EXPECT_NEAR(turned.min_determinant, 1, 1e-12);
 }
@@ -70,7 +76,7 @@ TEST(Distortion, IsTheSymmetricDirichletEnergyOfAnAffineMap) {
   Matrix3 f;
   f << 1.2, 0.3, 0, -0.1, 0.8, 0.2, 0.1, 0, 1.5;
   std::vector<Points> gradients = zeros(elements);
-  const Distortion found = add_distortion(elements, linear_values(elements, f), no_bounds, gradients);
+  const Distortion found = added(elements, linear_values(elements, f), no_bounds, gradients);
   EXPECT_NEAR(found.energy, volume(elements) * ((f.squaredNorm() + f.inverse().squaredNorm()) / 2 - 3), 1e-9);
   EXPECT_NEAR(found.min_determinant, f.determinant(), 1e-12);
 }
@@ -144,10 +150,10 @@ TEST(Distortion, GradientAgreesWithFiniteDifferences) {
   const auto energy = [&](double t) {
     std::vector<Points> moved = values, unused = zeros(elements);
     for (std::size_t k = 0; k < moved.size(); ++k) moved[k] += t * direction[k];
-    return add_distortion(elements, moved, bounds, unused).energy;
+    return added(elements, moved, bounds, unused).energy;
   };
   std::vector<Points> gradients = zeros(elements);
-  ASSERT_TRUE(std::isfinite(add_distortion(elements, values, bounds, gradients).energy));
+  ASSERT_TRUE(std::isfinite(added(elements, values, bounds, gradients).energy));
   double slope = 0;
   for (std::size_t k = 0; k < values.size(); ++k) slope += gradients[k].cwiseProduct(direction[k]).sum();
   constexpr double step = 1e-5;
@@ -160,7 +166,7 @@ TEST(Distortion, HasTheSameBitsWithEveryInstructionSet) {
   for (Points& level : values) level = 0.03 * test::random_points(level.cols(), 5);
   test::expect_same_bits_with_every_instruction_set([&] {
     std::vector<Points> gradients = zeros(elements);
-    std::vector<double> result{add_distortion(elements, values, {}, gradients).energy};
+    std::vector<double> result{added(elements, values, {}, gradients).energy};
     for (const Points& level : gradients)
       result.insert(result.end(), level.data(), level.data() + level.size());
     return result;

@@ -46,6 +46,25 @@ TEST(DisplacementImage, MissesASmoothMapByTheSquareOfItsSpacing) {
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
+TEST(DisplacementImage, FindsALargeErrorInASmallPlace) {
+  const Vector3 middle = box.center();
+  const PointFunction bump = [&](const Points& x) {
+    Points moved = x;
+    for (auto&& each : moved.colwise()) each.z() += 0.1 * std::exp(-(each - middle).squaredNorm() / 0.02);
+    return moved;
+  };
+  const DisplacementImage image = sample_displacements(bump, box, 0.2, plenty);
+  double largest = 0;
+  for (int i = 0; i < 8000; ++i) {
+    const Vector3 x = middle + 0.1 * (Vector3(i % 20, i / 20 % 20, i / 400) / 9.5 - Vector3::Ones());
+    largest = std::max(largest, (x + image(x) - bump(x)).norm());
+  }
+  ASSERT_GT(largest, 0.01);
+  const Statistics error = sampling_error(image, bump, box, 5000);
+  EXPECT_LT(error.p95, 0.01 * largest);
+  EXPECT_GT(error.max, 0.9 * largest);
+}
+
 TEST(DisplacementImage, HoldsTheDisplacementAtItsNodes) {
   const DisplacementImage image = sample_displacements(&wave, box, 0.25, plenty);
   Points nodes(3, 4);

@@ -104,6 +104,56 @@ TEST(ElasticSteps, OfFiniteElementsMeetItWithinWhatIsListed) {
             elastic_method(options.elastic).met_within * options.fit_tolerance);
 }
 
+/// A tube bent by 150 degrees in equal steps by finite elements, halved where they are held up or not.
+struct FiniteElementSteps {
+  FiniteElementSteps(int count, bool halve_blocked)
+      : plan(plan_steps(source, fitted, elastic_pairs(source, fitted), count)) {
+    const FitOptions options = options_of(source, ElasticMethod::finite_elements);
+    ElasticOptions elastic;
+    elastic.lambda = options.lambda;
+    elastic.fit_tolerance = options.fit_tolerance;
+    elastic.max_memory = options.max_memory;
+    elastic.max_squeeze = options.max_squeeze;
+    steps = fit_elastic_steps(source, elastic_pairs(source, fitted), plan,
+                              {ElasticMethod::finite_elements, elastic, halve_blocked});
+  }
+
+  bool any_blocked() const { return std::any_of(steps.found.begin(), steps.found.end(), is_blocked); }
+
+  TriangleMesh source = test::tube();
+  Points fitted = test::bent(source.vertices, 150 * degree);
+  StepPlan plan;
+  ElasticSteps steps;
+};
+
+TEST(ElasticSteps, OfFiniteElementsThatAreHeldUpAreHalvedOnce) {
+  ASSERT_TRUE(FiniteElementSteps(2, false).any_blocked());
+  const FiniteElementSteps halved(2, true);
+  const std::vector<double>& times = halved.steps.times;
+  ASSERT_EQ(times.size(), halved.steps.maps.size() + 1);
+  ASSERT_EQ(halved.steps.sources.size(), halved.steps.maps.size());
+  EXPECT_GT(halved.steps.maps.size(), 2u);
+  EXPECT_LE(halved.steps.maps.size(), 4u);
+  EXPECT_EQ(times.front(), 0);
+  EXPECT_EQ(times.back(), 1);
+  for (std::size_t k = 0; k + 1 < times.size(); ++k) EXPECT_GE(times[k + 1] - times[k], 0.25);
+}
+
+TEST(ElasticSteps, OfFiniteElementsAreAsPlannedWhereNothingHoldsThemUp) {
+  const FiniteElementSteps small(12, true);
+  ASSERT_FALSE(small.any_blocked());
+  EXPECT_EQ(small.steps.times, small.plan.times);
+}
+
+TEST(ElasticSteps, OfFiniteElementsAreTwiceAsManyAsTheMotionRequires) {
+  const TriangleMesh source = test::tube();
+  const FittedMapping layers = fit_bent(source, 150 * degree, options_of(source));
+  const FittedMapping elements =
+      fit_bent(source, 150 * degree, options_of(source, ElasticMethod::finite_elements));
+  ASSERT_TRUE(layers.plan && elements.plan);
+  EXPECT_GE(elements.plan->steps(), 2 * layers.plan->steps());
+}
+
 /// A box about a centre.
 TriangleMesh bar(const Vector3& size, const Vector3& center) {
   AffineMap map;

@@ -30,8 +30,8 @@ double min_cosine(const TriangleMesh& before, const Points& after) {
 }
 
 /// With a shape like the surface before.
-RepairedSurface mend(const TriangleMesh& before, const Points& after,
-                     const FaceRepairSettings& settings = {}) {
+RepairedSurface repaired_between(const TriangleMesh& before, const Points& after,
+                                 const FaceRepairSettings& settings = {}) {
   return repair_misoriented_faces({before.vertices, before, after}, settings);
 }
 
@@ -46,7 +46,7 @@ TEST(RepairMisorientedFaces, LeavesASurfaceWithoutMisorientedFacesAsItIs) {
   const TriangleMesh grid = shapes::square_grid(side);
   Points after = grid.vertices;
   for (auto&& x : after.colwise()) x += Vector3(0.3 * x[1], 0.1 * x[0], 0.2 * std::sin(5 * x[0]));
-  const RepairedSurface repaired = mend(grid, after);
+  const RepairedSurface repaired = repaired_between(grid, after);
   EXPECT_EQ(repaired.vertices, after);
   EXPECT_EQ(repaired.repaired_vertices, 0u);
   EXPECT_EQ(repaired.misoriented_faces, 0u);
@@ -59,7 +59,7 @@ TEST(RepairMisorientedFaces, ResetsAVertexMovedAcrossItsNeighbours) {
   const int drawn = vertex_at(grid, 0.5, 0.5);
   after.col(drawn) += Vector3(3 * square, 0, 0);
   ASSERT_LT(min_cosine(grid, after), 0);
-  const RepairedSurface repaired = mend(grid, after);
+  const RepairedSurface repaired = repaired_between(grid, after);
   EXPECT_EQ(repaired.misoriented_faces, 0u);
   EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
   // The neighbours all moved by the shift, so their harmonic mean is the shift.
@@ -75,11 +75,11 @@ TEST(RepairMisorientedFaces, ResetsWhatWasStretchedOrCompressedTooFar) {
   for (const Vector3& way : {Vector3(0, 0, 1), Vector3(0.97, 0, 0)}) {
     Points after = grid.vertices;
     after.col(drawn) += square * way;
-    const auto released = [&](double most) {
+    const auto released = [&](double max_stretch) {
       FaceRepairSettings settings;
       settings.max_degrees = 180;
-      settings.max_stretch = most;
-      return mend(grid, after, settings);
+      settings.max_stretch = max_stretch;
+      return repaired_between(grid, after, settings);
     };
     const RepairedSurface repaired = released(1.3);
     EXPECT_TRUE(repaired.vertices.isApprox(grid.vertices, 1e-6));
@@ -101,9 +101,9 @@ TEST(RepairMisorientedFaces, ResetsAFoldThatTheShapeDoesNotHave) {
     return after;
   };
   const Points folded = with_ridge(50), bent = with_ridge(40);
-  EXPECT_GT(mend(grid, folded).repaired_vertices, 0u);
-  EXPECT_LT(mend(grid, folded).vertices.row(2).maxCoeff(), 0.5 * folded.row(2).maxCoeff());
-  EXPECT_EQ(mend(grid, bent).vertices, bent);
+  EXPECT_GT(repaired_between(grid, folded).repaired_vertices, 0u);
+  EXPECT_LT(repaired_between(grid, folded).vertices.row(2).maxCoeff(), 0.5 * folded.row(2).maxCoeff());
+  EXPECT_EQ(repaired_between(grid, bent).vertices, bent);
   EXPECT_EQ(repair_misoriented_faces({folded, grid, folded}).vertices, folded);
 }
 
@@ -117,7 +117,7 @@ TEST(RepairMisorientedFaces, LeavesNoMisorientedFaceInAFoldedPatch) {
       if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.75 * square)
         x += square * Vector3(shift(random), shift(random), 2 * shift(random));
     ASSERT_LT(min_cosine(grid, after), 0);
-    const RepairedSurface repaired = mend(grid, after);
+    const RepairedSurface repaired = repaired_between(grid, after);
     EXPECT_EQ(repaired.misoriented_faces, 0u);
     EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
   }
@@ -125,12 +125,12 @@ TEST(RepairMisorientedFaces, LeavesNoMisorientedFaceInAFoldedPatch) {
 
 TEST(RepairMisorientedFaces, LeavesWhatWasFoldedSmoothAndRestoresWhatWasFolded) {
   const TriangleMesh smooth = shapes::square_grid(side);
-  TriangleMesh crumpled = smooth;
-  crumpled.vertices.col(vertex_at(smooth, 0.5, 0.5)) += Vector3(0, 0, 2.5 * square);
+  TriangleMesh folded = smooth;
+  folded.vertices.col(vertex_at(smooth, 0.5, 0.5)) += Vector3(0, 0, 2.5 * square);
   const double limit = std::cos(FaceRepairSettings{}.max_degrees * std::numbers::pi / 180);
-  ASSERT_LT(min_cosine(smooth, crumpled.vertices), limit);
-  EXPECT_EQ(mend(crumpled, smooth.vertices).vertices, smooth.vertices);
-  EXPECT_TRUE(mend(smooth, crumpled.vertices).vertices.isApprox(smooth.vertices, 1e-6));
+  ASSERT_LT(min_cosine(smooth, folded.vertices), limit);
+  EXPECT_EQ(repaired_between(folded, smooth.vertices).vertices, smooth.vertices);
+  EXPECT_TRUE(repaired_between(smooth, folded.vertices).vertices.isApprox(smooth.vertices, 1e-6));
 }
 
 TEST(RepairMisorientedFaces, ReleasesNoMoreRingsThanHelp) {
@@ -146,12 +146,12 @@ TEST(RepairMisorientedFaces, ReleasesNoMoreRingsThanHelp) {
       x += square / 4 * Vector3(shift(random), shift(random), shift(random));
     Points after = turn * before.vertices;
     after.col(vertex_at(before, 0.5, 0.5)) += Vector3(0, square, 0);
-    const RepairedSurface all = mend(before, after);
+    const RepairedSurface all = repaired_between(before, after);
     stubborn += all.misoriented_faces > 0 ? 1 : 0;
     for (int most = 1; most < FaceRepairSettings{}.max_rings; ++most) {
       FaceRepairSettings settings;
       settings.max_rings = most;
-      const RepairedSurface fewer = mend(before, after, settings);
+      const RepairedSurface fewer = repaired_between(before, after, settings);
       EXPECT_LE(all.misoriented_faces, fewer.misoriented_faces);
       if (all.misoriented_faces == fewer.misoriented_faces) {
         EXPECT_LE(all.repaired_vertices, fewer.repaired_vertices);
@@ -165,7 +165,7 @@ TEST(RepairMisorientedFaces, LeavesTheFitWhereMostOfItTurned) {
   const TriangleMesh grid = shapes::square_grid(4 * side);
   Points after = grid.vertices;
   after.topRows(1) = 1 - after.topRows(1).array();  // a mirror image: every face has turned
-  const RepairedSurface repaired = mend(grid, after);
+  const RepairedSurface repaired = repaired_between(grid, after);
   EXPECT_EQ(repaired.vertices, after);
   EXPECT_EQ(repaired.repaired_vertices, 0u);
   EXPECT_EQ(repaired.misoriented_faces, static_cast<std::size_t>(grid.faces.cols()));
@@ -178,7 +178,7 @@ TEST(RepairMisorientedFaces, ResetsOnlyWhatTurnedFartherThanItsLimit) {
     Points after = two.vertices;
     const Matrix3 turn = Eigen::AngleAxisd(angle, Vector3::UnitX()).toRotationMatrix();
     after.leftCols(9) = turn * two.vertices.leftCols(9);
-    EXPECT_EQ(mend(two, after).repaired_vertices, beyond > 0 ? 9u : 0u);
+    EXPECT_EQ(repaired_between(two, after).repaired_vertices, beyond > 0 ? 9u : 0u);
   }
 }
 
@@ -190,7 +190,7 @@ TEST(RepairMisorientedFaces, LeavesNoMisorientedFaceWhereShortEdgesMeetLongOnes)
   const int drawn = vertex_at(grid, 0.125, 0.125);
   after.col(drawn) += Vector3(0.1, 0.1, 0);
   ASSERT_LT(min_cosine(grid, after), 0);
-  const RepairedSurface repaired = mend(grid, after);
+  const RepairedSurface repaired = repaired_between(grid, after);
   EXPECT_EQ(repaired.misoriented_faces, 0u);
   EXPECT_GT(min_cosine(grid, repaired.vertices), 0);
 }
@@ -201,7 +201,7 @@ TEST(RepairMisorientedFaces, MovesNothingFarFromMisorientedFaces) {
   for (auto&& x : after.colwise()) x += Vector3(0, 0, 0.3 * x[0] * x[1]);
   const int drawn = vertex_at(grid, 0.25, 0.25);
   after.col(drawn) += Vector3(2 * square, 2 * square, 0);
-  const RepairedSurface repaired = mend(grid, after);
+  const RepairedSurface repaired = repaired_between(grid, after);
   ASSERT_GT(repaired.repaired_vertices, 0u);
   for (Eigen::Index i = 0; i < after.cols(); ++i)
     if ((grid.vertices.col(i) - grid.vertices.col(drawn)).norm() > 10 * square) {
@@ -214,7 +214,7 @@ TEST(RepairMisorientedFaces, ReportsWhatNoNeighboursCanReset) {
   const TriangleMesh single = shapes::triangle();
   Points after = single.vertices;
   after.col(0).swap(after.col(1));
-  const RepairedSurface repaired = mend(single, after);
+  const RepairedSurface repaired = repaired_between(single, after);
   EXPECT_TRUE(repaired.vertices.allFinite());
   EXPECT_EQ(repaired.repaired_vertices, 3u);
   EXPECT_EQ(repaired.misoriented_faces, min_cosine(single, repaired.vertices) < 0 ? 1u : 0u);
@@ -226,7 +226,7 @@ TEST(RepairMisorientedFaces, TakesFacesWithoutAreaAndLooseVertices) {
   mesh.vertices.rightCols(1) = Vector3(5, 5, 5);
   mesh.faces.conservativeResize(3, mesh.faces.cols() + 1);
   mesh.faces.rightCols(1) << 0, 0, 1;
-  const RepairedSurface repaired = mend(mesh, mesh.vertices);
+  const RepairedSurface repaired = repaired_between(mesh, mesh.vertices);
   EXPECT_EQ(repaired.vertices, mesh.vertices);
   EXPECT_EQ(repaired.repaired_vertices, 0u);
 }
@@ -241,9 +241,9 @@ TEST(RepairMisorientedFaces, LeavesAPocketThatWasInsideOutBefore) {
   EXPECT_EQ(left.repaired_vertices, 0u);
   EXPECT_GT(left.misoriented_faces, 0u);
   // Of a bump the same is a fold.
-  const RepairedSurface taken_back = repair_misoriented_faces({out, turned_out, in});
-  EXPECT_GT(taken_back.repaired_vertices, 0u);
-  EXPECT_LT(taken_back.misoriented_faces, left.misoriented_faces);
+  const RepairedSurface of_a_bump = repair_misoriented_faces({out, turned_out, in});
+  EXPECT_GT(of_a_bump.repaired_vertices, 0u);
+  EXPECT_LT(of_a_bump.misoriented_faces, left.misoriented_faces);
 }
 
 TEST(RepairMisorientedFaces, JudgesEveryPatchOnItsOwnAndInAnyPlace) {
@@ -273,11 +273,11 @@ TEST(RepairMisorientedFaces, BendsNothingFartherFromItsShape) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> shift(-1, 1);
   const TriangleMesh grid = shapes::square_grid(2 * side);
-  const auto crumpled = [&](double most) {
+  const auto folded = [&](double max_shift) {
     Points vertices = grid.vertices;
     for (auto&& x : vertices.colwise())
       if ((x - Vector3(0.5, 0.5, 0)).norm() < 0.2)
-        x += most * square * Vector3(shift(random), shift(random), shift(random));
+        x += max_shift * square * Vector3(shift(random), shift(random), shift(random));
     return vertices;
   };
   const std::vector<Hinge> edges = hinges(grid);
@@ -287,17 +287,17 @@ TEST(RepairMisorientedFaces, BendsNothingFartherFromItsShape) {
   };
   FaceRepairSettings settings;
   settings.released_at_least = 1000;
-  int left = 0, taken_back = 0;
+  int left = 0, repairs = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    const TriangleMesh before{crumpled(trial % 2 == 0 ? 1 : 0.2), grid.faces};
-    const Points after = crumpled(trial % 2 == 0 ? 0.2 : 1);
+    const TriangleMesh before{folded(trial % 2 == 0 ? 1 : 0.2), grid.faces};
+    const Points after = folded(trial % 2 == 0 ? 0.2 : 1);
     const RepairedSurface repaired = repair_misoriented_faces({grid.vertices, before, after}, settings);
     EXPECT_LE(bent(repaired.vertices), bent(after));
     left += repaired.repaired_vertices == 0 && repaired.misoriented_faces > 0 ? 1 : 0;
-    taken_back += repaired.repaired_vertices > 0 ? 1 : 0;
+    repairs += repaired.repaired_vertices > 0 ? 1 : 0;
   }
   EXPECT_GT(left, 0);
-  EXPECT_GT(taken_back, 0);
+  EXPECT_GT(repairs, 0);
 }
 
 TEST(Bends, AreAnglesBetweenFacesAgainstTheShapeInAnyPlace) {

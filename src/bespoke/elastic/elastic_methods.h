@@ -61,6 +61,9 @@ struct ElasticMethodRow {
   /// In fit tolerances: vertices missed by more are listed. A least-squares fit refines where the tolerance
   /// is missed and leaves what costs too much distortion.
   double met_within;
+  /// Steps of a chain for each that the motion requires. More than one where a minimiser is held up in large
+  /// ones; these are then halved (elastic_steps.h).
+  int steps_per_required;
   CompositionOfMaps composition;
   StoredMapType stored;
 };

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "bespoke/error.h"
 
@@ -14,6 +16,9 @@ namespace {
 constexpr std::size_t points_per_call = std::size_t{1} << 16;
 
 constexpr std::uint64_t seed = 17;
+
+// One place in so many is looked around in for a larger error.
+constexpr std::size_t share_of_worst = 100;
 
 std::size_t node_count(const DisplacementImage& image) {
   return image.size[0] * image.size[1] * image.size[2];
@@ -56,6 +61,36 @@ DisplacementImage empty_image(const Box& box, double spacing, std::size_t max_me
   return image;
 }
 
+/// |sampled − image| at each column of x, mesh units.
+std::vector<double> errors_at(const DisplacementImage& sampled, const PointFunction& image, const Points& x,
+                              const Progress& progress) {
+  const auto count = static_cast<std::size_t>(x.cols());
+  std::vector<double> errors;
+  while (errors.size() < count) {
+    progress.step("measure", errors.size(), count);
+    const Points part =
+        x.middleCols(static_cast<Eigen::Index>(errors.size()),
+                     static_cast<Eigen::Index>(std::min(points_per_call, count - errors.size())));
+    const Points difference = part + sampled(part) - image(part);
+    for (const auto& column : difference.colwise()) errors.push_back(column.norm());
+  }
+  progress.step("measure", count, count);
+  return errors;
+}
+
+/// The columns of x with the largest errors, as many as there are at most.
+Points worst_places(const Points& x, const std::vector<double>& errors, std::size_t count) {
+  std::vector<Eigen::Index> order(errors.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(count, order.size()));
+  std::partial_sort(order.begin(), end, order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::pair(-errors[static_cast<std::size_t>(a)], a) <
+           std::pair(-errors[static_cast<std::size_t>(b)], b);
+  });
+  order.erase(end, order.end());
+  return x(Eigen::all, order);
+}
+
 }  // namespace
 
 Points DisplacementImage::operator()(const Points& x) const {
@@ -95,21 +130,23 @@ DisplacementImage sample_displacements(const PointFunction& image, const Box& bo
 Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, const Box& box,
                           std::size_t points, const Progress& progress) {
   std::mt19937_64 engine(seed);
-  std::vector<double> errors;
-  while (errors.size() < points) {
-    progress.step("measure", errors.size(), points);
-    Points x(3, static_cast<Eigen::Index>(std::min(points_per_call, points - errors.size())));
-    for (Eigen::Index column = 0; column < x.cols(); ++column)
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const double fraction = static_cast<double>(engine() >> 11) * 0x1p-53;
-        x(axis, column) = box.min()[axis] + fraction * box.sizes()[axis];
-      }
-    const Points difference = x + sampled(x) - image(x);
-    for (Eigen::Index column = 0; column < x.cols(); ++column)
-      errors.push_back(difference.col(column).norm());
-  }
-  progress.step("measure", points, points);
-  return summarize(std::move(errors));
+  const auto fraction = [&] { return static_cast<double>(engine() >> 11) * 0x1p-53; };
+  Points places(3, static_cast<Eigen::Index>(points));
+  for (auto&& x : places.colwise())
+    for (Eigen::Index axis = 0; axis < 3; ++axis) x(axis) = box.min()[axis] + fraction() * box.sizes()[axis];
+  const std::vector<double> errors = errors_at(sampled, image, places, progress);
+  Statistics statistics = summarize(errors);
+
+  // What is narrow, as the space beside the model, is missed by places of the whole box.
+  const Points worst = worst_places(places, errors, points / share_of_worst + 1);
+  for (Eigen::Index column = 0; column < places.cols(); ++column)
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double near = worst(axis, column % worst.cols()) + (fraction() - 0.5) * sampled.spacing;
+      places(axis, column) = std::clamp(near, box.min()[axis], box.max()[axis]);
+    }
+  for (const double error : errors_at(sampled, image, places, progress))
+    statistics.max = std::max(statistics.max, error);
+  return statistics;
 }
 
 }  // namespace bespoke

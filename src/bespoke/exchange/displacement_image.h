@@ -31,8 +31,9 @@ struct DisplacementImage {
 DisplacementImage sample_displacements(const PointFunction& image, const Box& box, double spacing,
                                        std::size_t max_memory, const Progress& progress = {});
 
-/// |what the image makes of x − image(x)| at random points of the box, which the grid covers, mesh units: the
-/// same points for the same box.
+/// |what the image makes of x − image(x)| at so many random points (> 0) of the box, which the grid covers,
+/// mesh units: the same points for the same box. `max` is also over as many more, within half a voxel of the
+/// worst hundredth.
 Statistics sampling_error(const DisplacementImage& sampled, const PointFunction& image, const Box& box,
                           std::size_t points, const Progress& progress = {});
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 
 namespace bespoke {
 namespace {
@@ -63,7 +64,7 @@ WrittenPattern read_pattern(const std::filesystem::path& path) {
     for (const Json& piece : root.at("pieces")) pattern.pieces.push_back(piece_of(piece));
   } catch (const Json::exception& error) {
     throw FormatError(path.string() +
-                      ": is no pattern as `flatten -o pieces.json` writes it: " + error.what());
+                      ": is no pattern as `flatten -o pieces.json` writes it: " + json_reason(error.what()));
   } catch (const FormatError& error) {
     throw FormatError(path.string() + ": " + error.what());
   }

@@ -141,15 +141,18 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   if (plan.steps() > 1) of_a_step.options.max_nodes = 2 * method.options.max_nodes / plan.steps();
   StepFitter fitter(source, pairs, of_a_step, progress);
   std::vector<double> times = plan.times;
-  const double half = 0.75 / static_cast<double>(plan.steps());  // above it steps are whole ones
-  for (std::size_t k = 0; k + 1 < times.size();) {
-    progress.step("elastic", k, times.size() - 1);
-    const bool may_halve =
-        method.halve_blocked && times[k + 1] - times[k] > half && times.size() <= max_useful_steps;
-    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve))
+  std::vector<bool> is_whole(plan.steps(), true);  // no half of a step
+  for (std::size_t k = 0; k < is_whole.size();) {
+    progress.step("elastic", k, is_whole.size());
+    const bool may_halve = method.halve_blocked && is_whole[k] && is_whole.size() < max_useful_steps;
+    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve)) {
       ++k;
-    else
-      times.insert(times.begin() + static_cast<std::ptrdiff_t>(k) + 1, (times[k] + times[k + 1]) / 2);
+      continue;
+    }
+    const auto at = static_cast<std::ptrdiff_t>(k);
+    times.insert(times.begin() + at + 1, (times[k] + times[k + 1]) / 2);
+    is_whole[k] = false;
+    is_whole.insert(is_whole.begin() + at, false);
   }
   ElasticSteps steps = std::move(fitter).steps();
   steps.times = std::move(times);

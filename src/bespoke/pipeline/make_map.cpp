@@ -159,10 +159,10 @@ MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Pr
     require_met_anchors(problem.anchors, anchor_residuals(fit, registration, problem.anchors), options.fit);
 
   // The bake takes another fit where this one's does not do.
-  BakedFit baked = bake_map(fit, measured_at(to_fit, problem.anchors), options, progress);
+  BakedFit baked = bake_map(fit, to_fit, options, progress);
 
-  FittedMapping whole =
-      whole_fit(problem, registration, baked.fit, map_findings(problem, registration, fit, options.fit));
+  FittedMapping whole = whole_fit(problem, registration, baked.fit,
+                                  map_findings(problem, registration, baked.fit, options.fit));
   whole.summary = with_bake(with_named_parts(std::move(whole.summary), problem), baked.baked);
   if (problem.target_cloud) whole.summary.cloud = *problem.target_cloud;
 

@@ -9,7 +9,7 @@
 #include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/fit_mapping.h"
-#include "bespoke/quality/sampled_determinant.h"
+#include "bespoke/report/chain_determinant.h"
 
 namespace bespoke {
 namespace {
@@ -150,9 +150,7 @@ std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
 std::string proved_text(const Asset& asset, const Certificate& certificate) {
   constexpr double notable = 0.01;  // of the affine part's determinant
   const bool is_chain = asset.steps.size() > 1;
-  const double least = is_chain
-                           ? sampled_min_determinant(baked_chain(asset.steps), asset.steps.front().pyramid)
-                           : certificate.min_determinant;
+  const double least = is_chain ? sampled_min_determinant(asset) : certificate.min_determinant;
   const double ratio = least / certificate.affine_determinant;
   const std::string text = "the map is one-to-one in all of space: it folds nowhere";
   if (ratio >= notable) return text;

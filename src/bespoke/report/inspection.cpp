@@ -8,7 +8,7 @@
 
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/summary_json.h"
-#include "bespoke/quality/sampled_determinant.h"
+#include "bespoke/report/chain_determinant.h"
 
 namespace bespoke {
 namespace {
@@ -58,8 +58,7 @@ std::string certificate_text(const Asset& asset, const Certificate& certificate)
          << certificate.certified << " of them, and affine outside; det of the whole at least "
          << number(certificate.min_determinant)
          << ", the product of the steps' bounds, and at sampled places "
-         << number(sampled_min_determinant(baked_chain(asset.steps), asset.steps.front().pyramid))
-         << " or more";
+         << number(sampled_min_determinant(asset)) << " or more";
   } else if (certificate.is_bijection()) {
     text << "proved to be a bijection of all of space (one-to-one): continuous, trilinear in every finest "
             "cell with det of "

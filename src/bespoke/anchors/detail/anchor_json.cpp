@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 
 namespace bespoke {
 namespace {
@@ -227,7 +228,7 @@ Anchors parse_anchor_json(const std::string& text, const std::string& file) {
   try {
     document = ParsedJson::parse(text);
   } catch (const ParsedJson::exception& error) {
-    throw FormatError(file + ": not valid JSON: " + error.what());
+    throw FormatError(file + ": not valid JSON: " + json_reason(error.what()));
   }
   if (!document.is_object()) throw FormatError(file + ": must be an object with a key \"pairs\"");
   Anchors anchors;

@@ -11,6 +11,7 @@
 #include "bespoke/anchors/detail/slicer_markups.h"
 #include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/text_lines.h"
 
@@ -162,7 +163,7 @@ FileSide parse_side(const std::string& text, AnchorFormat format, const std::str
     if (format == AnchorFormat::markups) return parse_markups(text, file, models);
     return {parse_wrap(text, file, *mesh)};
   } catch (const Json::exception& error) {
-    throw FormatError(file + ": not valid JSON: " + error.what());
+    throw FormatError(file + ": not valid JSON: " + json_reason(error.what()));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 
 namespace bespoke {
 namespace {
@@ -87,7 +88,7 @@ Json embedded(const std::string& text, const char* what, Json when_empty) {
       throw InvalidInput(std::string(what) + " must be a JSON " + when_empty.type_name());
     return json;
   } catch (const Json::exception& error) {
-    throw InvalidInput(std::string(what) + " is not JSON: " + error.what());
+    throw InvalidInput(std::string(what) + " is not JSON: " + json_reason(error.what()));
   }
 }
 
@@ -284,7 +285,7 @@ ParsedRecord parse_record(std::string_view json) {
     const Json parsed = parse(json);
     return parse_fields(Field(parsed, "record"));
   } catch (const Json::exception& error) {
-    throw FormatError(std::string("the record is not JSON: ") + error.what());
+    throw FormatError(std::string("the record is not JSON: ") + json_reason(error.what()));
   }
 }
 

@@ -243,12 +243,12 @@ struct Part {
   double min_determinant = infinite;
 };
 
-/// Of one level; `cell_gradients`: 24 numbers a finest cell.
+/// Of one level; `cell_gradients`: 24 numbers a finest cell, and perhaps more behind them.
 Part evaluate_level(const ElementLevel& level, const Points& values, const DistortionBounds& bounds,
                     std::vector<double>& cell_gradients, std::vector<double>& stiffness) {
   const double h = level.voxel_size, volume = h * h * h / 8, area = h * h / 8;
   const std::size_t count = level.finest.size();
-  cell_gradients.resize(24 * count);
+  if (cell_gradients.size() < 24 * count) cell_gradients.resize(24 * count);
   stiffness.resize(count);
   const auto partial = [&](std::size_t begin, std::size_t end) {
     Part part;
@@ -281,23 +281,20 @@ Part evaluate_level(const ElementLevel& level, const Points& values, const Disto
 }  // namespace
 
 Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
-                          const DistortionBounds& bounds, std::vector<Points>& gradients, Distortion memory) {
-  Distortion whole = std::move(memory);
-  whole.energy = 0;
-  whole.min_determinant = infinite;
+                          const DistortionBounds& bounds, std::vector<Points>& gradients,
+                          std::vector<double>& scratch) {
+  Distortion whole;
   whole.stiffness.resize(elements.levels().size());
-  whole.cell_gradients.resize(elements.levels().size());
   for (std::size_t k = 0; k < elements.levels().size(); ++k) {
     const ElementLevel& level = elements.levels()[k];
-    std::vector<double>& cell_gradients = whole.cell_gradients[k];
-    const Part part = evaluate_level(level, values[k], bounds, cell_gradients, whole.stiffness[k]);
+    const Part part = evaluate_level(level, values[k], bounds, scratch, whole.stiffness[k]);
     whole.energy += part.energy;
     whole.min_determinant = std::min(whole.min_determinant, part.min_determinant);
     if (!std::isfinite(whole.energy)) continue;
     parallel_for(level.points.size(), 4096, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p)
         for (int q = level.incident_begin[p]; q < level.incident_begin[p + 1]; ++q) {
-          const double* from = cell_gradients.data() + 3 * level.incident[static_cast<std::size_t>(q)];
+          const double* from = scratch.data() + 3 * level.incident[static_cast<std::size_t>(q)];
           for (int i = 0; i < 3; ++i) gradients[k](i, static_cast<Eigen::Index>(p)) += from[i];
         }
     });

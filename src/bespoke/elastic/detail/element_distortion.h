@@ -20,18 +20,17 @@ struct Distortion {
   /// How stiff each finest cell is, per level: its weight times about the largest second derivative, 4 at
   /// rest; infinite where a bound does not hold. No unit.
   std::vector<std::vector<double>> stiffness;
-  std::vector<std::vector<double>> cell_gradients;  ///< 24 a finest cell, per level, before they are summed
 };
 
 /// ∫ ψ(F) dx over the finest cells by corner quadrature, F = I + ∇u, J = det F ≥ m, s = |F⁻¹|² ≤ S, with
 ///   ψ = |F|²/2 + |F⁻¹|²/2 − 3 + m (1/(J − m) − 1/(1 − m) + (J − 1)/(1 − m)²) + (s/S)²/(1 − s/S):
 /// the symmetric Dirichlet energy (Smith, Schaefer 2015) and two barriers, negligible away from their bounds.
 /// All Bézier coefficients of J in a cell are above m (Johnen, Weill, Remacle 2017), also after splits.
-/// values: of u, 3×points per level; the energy's gradient is added to `gradients`, sized alike. `memory` is
-/// a former result whose vectors are used again.
+/// values: of u, 3×points per level; the energy's gradient is added to `gradients`, sized alike. `scratch`
+/// is kept from call to call.
 Distortion add_distortion(const NestedElements& elements, const std::vector<Points>& values,
                           const DistortionBounds& bounds, std::vector<Points>& gradients,
-                          Distortion memory = {});
+                          std::vector<double>& scratch);
 
 /// The finest cells, per level by their place in ElementLevel::finest, at a corner of which a bound does not
 /// hold, or within which a Bézier coefficient of J is below a tenth of its bound.

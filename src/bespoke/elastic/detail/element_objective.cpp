@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "bespoke/parallel.h"
 
@@ -48,7 +47,7 @@ double ElementObjective::operator()(const Points& coefficients, Points& gradient
   elements_.evaluate(coefficients, values_);
   gradients_.resize(values_.size());
   for (std::size_t k = 0; k < values_.size(); ++k) gradients_[k].setZero(3, values_[k].cols());
-  distortion_ = add_distortion(elements_, values_, bounds_, gradients_, std::move(distortion_));
+  distortion_ = add_distortion(elements_, values_, bounds_, gradients_, scratch_);
   if (!std::isfinite(distortion_.energy)) return distortion_.energy;
   double data = 0;
   for (const Term& term : terms_) {

@@ -56,6 +56,7 @@ class ElementObjective {
   double weight_ = 0;
   Distortion distortion_;
   std::vector<Points> values_, gradients_;  // of the last call, per level
+  std::vector<double> scratch_;             // of add_distortion
 };
 
 }  // namespace bespoke

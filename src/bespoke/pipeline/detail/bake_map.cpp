@@ -39,10 +39,10 @@ class BakeOfAPlan {
     BakedSteps last;
     for (;;) {
       divide_foreseen(last);
-      const PartialBake partial{divisible_steps(), std::move(last)};
-      BakedSteps baked =
-          bake_steps({*fit_.elastic, fit_.step_sources, problem_.source.faces}, bake_, partial, progress_);
-      if (!is_to_be_divided(baked, partial.divisible)) return {std::move(fit_), std::move(baked)};
+      const std::vector<bool> divisible = divisible_steps();
+      BakedSteps baked = bake_steps({*fit_.elastic, fit_.step_sources, problem_.source.faces}, bake_,
+                                    {divisible, std::move(last)}, progress_);
+      if (!is_to_be_divided(baked, divisible)) return {std::move(fit_), std::move(baked)};
       const std::size_t folded = steps() - baked.steps.size();
       baked.steps.erase(baked.steps.begin());
       baked.summaries.erase(baked.summaries.begin());

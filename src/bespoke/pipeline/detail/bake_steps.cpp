@@ -87,9 +87,9 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const Steps
 }
 
 /// The last step first, before `done`, until one folds that may be divided.
-BakedSteps bake_all(const ExactSteps& exact, const BakeOptions& options, const PartialBake& partial,
+BakedSteps bake_all(const ExactSteps& exact, const BakeOptions& options, PartialBake partial,
                     const Progress& progress) {
-  BakedSteps baked = partial.done;
+  BakedSteps baked = std::move(partial.done);
   const std::vector<bool>& divisible = partial.divisible;
   std::size_t used = 0;
   StepsAfter after;
@@ -170,11 +170,12 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.repair_seconds += step.repair_seconds;
 }
 
-BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const PartialBake& partial,
+BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, PartialBake partial,
                       const Progress& progress) {
+  const std::vector<bool> divisible = partial.divisible;
   if (exact.chain.steps().size() == 1) {
-    BakedSteps baked = bake_all(exact, options, partial, progress);
-    if (!is_to_be_divided(baked, partial.divisible)) baked.whole = baked.summaries.front();
+    BakedSteps baked = bake_all(exact, options, std::move(partial), progress);
+    if (!is_to_be_divided(baked, divisible)) baked.whole = baked.summaries.front();
     return baked;
   }
   const Stopwatch watch;
@@ -185,8 +186,8 @@ BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const
   step_options.error_points = std::max<std::size_t>(1, options.error_points / share_of_a_step);
   BakedSteps baked;
   for (const bool again : {false, true}) {
-    baked = bake_all(exact, step_options, again ? PartialBake{} : partial, progress);
-    if (!again && is_to_be_divided(baked, partial.divisible)) return baked;
+    baked = bake_all(exact, step_options, again ? PartialBake{} : std::move(partial), progress);
+    if (!again && is_to_be_divided(baked, divisible)) return baked;
     if (!again && was_divided && options.max_leaves && has_starved_step(baked, *options.max_leaves)) {
       BakedSteps even = bake_all(exact, step_options, {}, progress);
       if (is_bijection(even)) baked = std::move(even);

@@ -39,7 +39,7 @@ struct PartialBake {
 /// Bakes a chain, the last step first, so that the whole meets the tolerance: each step's error is measured
 /// at the end of the chain; where the whole misses, all are baked again, finer. Steps share
 /// BakeOptions::max_leaves; if one gets less than half of an even share, all are baked again.
-BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const PartialBake& partial = {},
+BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, PartialBake partial = {},
                       const Progress& progress = {});
 
 }  // namespace bespoke

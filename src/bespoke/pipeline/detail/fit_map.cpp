@@ -60,9 +60,9 @@ StepRequest required_steps(const MapProblem& problem, const FitOptions& options)
 /// The loop that finds how many steps there are: none where that is given.
 auto* fit_of(const FitOptions& options) {
   if (options.steps) return &fit_steps;
-  if (options.elastic == ElasticMethod::finite_elements) return &fit_unblocked;
-  return elastic_method(options.elastic).composition && options.fit_tolerance > 0 ? &fit_until_met
-                                                                                  : &fit_steps;
+  const ElasticMethodRow& method = elastic_method(options.elastic);
+  if (method.steps_per_required > 1) return &fit_unblocked;
+  return method.composition && options.fit_tolerance > 0 ? &fit_until_met : &fit_steps;
 }
 
 bool is_guided(const MapFit& fit, const FitOptions& options) {

@@ -21,11 +21,7 @@ MapProblem map_problem(const TriangleMesh& source, const Registration& registrat
   if (!off.empty() && elastic_method(options.elastic).meets_points)
     pairs =
         with_anchors(std::move(pairs), registration.anchors, off, inverse(registration.target_from_source));
-  return {source, registration, registration.anchors, std::move(pairs), off.size()};
-}
-
-MapProblem measured_at(const MapProblem& problem, const Anchors& anchors) {
-  return {problem.source, problem.registration, anchors, problem.pairs, problem.anchors_off_surface};
+  return {source, registration, std::move(pairs), off.size()};
 }
 
 std::vector<double> anchor_residuals(const MapFit& fit, const Registration& registration,
@@ -63,7 +59,6 @@ MapFit measured(MapFit fit, const MapProblem& problem, const FitOptions& options
   if (options.fit_tolerance > 0)
     fit.summary.unmet = unmet_vertices(problem.source, images, fitted, met_within(options),
                                        contact ? contact->released : std::vector<ReleasedVertex>{});
-  fit.summary.anchor_residuals = summarize(anchor_residuals(fit, problem.registration, problem.anchors));
   return fit;
 }
 
@@ -98,10 +93,8 @@ StepPlan planned_steps(const MapProblem& problem, const FitOptions& options, int
   StepPlan plan = plan_steps(problem.source, problem.registration.fitted_vertices, problem.pairs, count);
   if (!options.steps) {
     const int required = step_count(plan.path->motion());
-    // In steps that are small enough for layers finite elements are mostly held up.
-    const int finer = options.elastic == ElasticMethod::finite_elements
-                          ? std::max(required, std::min(2 * required, static_cast<int>(max_useful_steps)))
-                          : required;
+    const int finer = std::min(elastic_method(options.elastic).steps_per_required * required,
+                               std::max(required, static_cast<int>(max_useful_steps)));
     plan.times = equal_times(std::max(count, finer));
   }
   require_useful_steps(plan.steps(), options);
@@ -120,7 +113,6 @@ MapFit fit_steps(const MapProblem& problem, const FitOptions& options, const Ste
   const TriangleMesh& source = problem.source;
   const ElasticPairs& pairs = problem.pairs;
   ElasticOptions elastic = elastic_options(options, request.count > 1);
-  elastic.give_up_blocked = request.halve_blocked;
   MapFit fit;
   if (request.count > 1) {
     fit.plan = planned_steps(problem, options, request.count);
@@ -132,6 +124,7 @@ MapFit fit_steps(const MapProblem& problem, const FitOptions& options, const Ste
   } else {
     const Points& fitted = problem.registration.fitted_vertices;
     elastic.growth = power_of_two_scale(growth(source, fitted));
+    elastic.give_up_blocked = request.halve_blocked;
     fit.summary = summary_of(problem, options, request.motion);
     fit = with_steps(
         std::move(fit),

@@ -17,7 +17,6 @@ namespace bespoke {
 struct MapProblem {
   const TriangleMesh& source;        ///< its registered parts
   const Registration& registration;  ///< of it: H'_a and Γ
-  const Anchors& anchors;            ///< that residuals are measured at
   ElasticPairs pairs;
   std::size_t anchors_off_surface =
       0;  ///< that the surface does not carry, whether the method meets them or not
@@ -27,9 +26,6 @@ struct MapProblem {
 /// method meets points.
 MapProblem map_problem(const TriangleMesh& source, const Registration& registration,
                        const FitOptions& options);
-
-/// The same, with residuals at other anchors.
-MapProblem measured_at(const MapProblem& problem, const Anchors& anchors);
 
 /// E, and what was found of it.
 struct MapFit {

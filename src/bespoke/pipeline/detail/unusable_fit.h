@@ -17,7 +17,6 @@ struct MapHealth {
   /// Determinants of ∇E at places on the source, over the cube of the whole surface's growth: one in twenty
   /// is below `low`.
   double low = 1;
-  double least = 1;
 
   /// Volumes shrunk by more than the storage of maps resolves, or a chain that no size of steps keeps from
   /// folding.

@@ -88,6 +88,7 @@ FittedMapping whole_fit(const Problem& problem, const Registration& registration
   whole.plan = fit.plan;
   static_cast<RegistrationSummary&>(whole.summary) = registration.summary;
   whole.summary.elastic = fit.summary;
+  whole.summary.elastic.anchor_residuals = summarize(whole.anchor_residual);
   whole.summary.missed = findings.missed;
   whole.summary.stretched = findings.stretched;
   whole.summary.curves = findings.curves;

@@ -8,7 +8,7 @@ namespace bespoke {
 bool may_be_creased(const FoundPair& pair);
 
 /// How sharply the surface is creased under a pair with this ratio of back distance to distance
-/// (reciprocity.h, searched over the whole distance), 0 to 1: (1 − claimed²)²; cos⁴ α at the bottom of a
+/// (reciprocity.h, searched over the whole distance), 0 to 1: (1 − ratio²)²; cos⁴ α at the bottom of a
 /// wedge of angle 2α with the match on the bisector, 0 where the surface is flat or convex and where the
 /// match is behind it. An armpit under a raised arm is far from its counterpart because it must unfold, not
 /// because the pair is wrong.

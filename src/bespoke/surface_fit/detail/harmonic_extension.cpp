@@ -44,7 +44,8 @@ Points extend_harmonically(const Points& places, const VertexAdjacency& adjacenc
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
   if (factor.info() != Eigen::Success)
-    throw SolverError("the displacements of " + std::to_string(count) + " vertices could not be spread");
+    throw SolverError("harmonic extension: the matrix of " + std::to_string(count) +
+                      " free vertices is not positive definite");
   const Eigen::MatrixX3d solution = factor.solve(right);
   for (int row = 0; row < count; ++row) displacements.col(free[row]) = solution.row(row).transpose();
   return displacements;

@@ -129,16 +129,16 @@ Snapped snap(const Correspondence& found, const SnappedAnchors& anchors, const T
   return result;
 }
 
-/// Puts vertices whose snap turned a face over back to where the smooth displacements brought them.
+/// Resets vertices whose snap flipped a face to where the smooth displacements brought them.
 void undo_turning_snaps(const TriangleMesh& smooth, Snapped& snapped) {
-  // Taking a vertex back can turn a neighbouring face that was fine; few rounds settle that.
+  // Resetting a vertex can flip a neighbouring face; few rounds are enough.
   constexpr int max_rounds = 20;
   const Points smooth_normals = face_normals(smooth);
   Points& vertices = snapped.mesh.vertices;
-  bool taken_back = true;
-  for (int round = 0; round < max_rounds && taken_back; ++round) {
+  bool any_reset = true;
+  for (int round = 0; round < max_rounds && any_reset; ++round) {
     const Points normals = face_normals(snapped.mesh);
-    taken_back = false;
+    any_reset = false;
     for (Eigen::Index face = 0; face < normals.cols(); ++face) {
       if (normals.col(face).dot(smooth_normals.col(face)) > 0) continue;
       for (const int vertex : smooth.faces.col(face)) {
@@ -146,7 +146,7 @@ void undo_turning_snaps(const TriangleMesh& smooth, Snapped& snapped) {
             vertices.col(vertex) == smooth.vertices.col(vertex))
           continue;
         vertices.col(vertex) = smooth.vertices.col(vertex);
-        taken_back = true;
+        any_reset = true;
       }
     }
   }

@@ -19,7 +19,8 @@ class NodeSystem {
   /// node.
   void start_from(const Points& vertices);
 
-  /// One Gauss–Newton step of RegistrationEnergy. Returns where the vertices go, 3×n. Throws SolverError.
+  /// One Gauss–Newton step of RegistrationEnergy, plus free_floating |d|², which determines nodes that
+  /// nothing else does. Returns where the vertices go, 3×n. Throws SolverError.
   Points solve(const NodeGoals& goals);
 
   /// Half of the nodes have edges that differ less from the turned and scaled ones of the shape: root mean

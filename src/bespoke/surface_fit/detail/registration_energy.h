@@ -67,23 +67,25 @@ enum class EnergyTerm { data, cuts, anchors, bending, shape };
 inline constexpr std::array energy_terms{EnergyTerm::data, EnergyTerm::cuts, EnergyTerm::anchors,
                                          EnergyTerm::bending, EnergyTerm::shape};
 
+// clang-format off
 /// The energy of a registration over the displacements d of the nodes of an embedded deformation graph
 /// (Sumner, Schmid, Pauly 2007), which move the rest surface, φ(x) = x + Σ_k ω_k(x) d_k; A is the surface's
 /// area:
 ///
-///   data     Σ_i w_i/A (n_i · (φ(x_i) − y_i))²           both ways; point to plane (Chen, Medioni 1992)
-///   cuts     Σ_b h_b/A |P_b (φ(x_b) − y_b)|²             boundaries that are the same cut, P across it
-///   anchors  Σ_k w_k |φ(a_k) − q_k|²                     the displacements that the anchors ask for
-///   bending  ℓ⁴/g² Σ_j A_j γ_j² |D_j d|²                 thin plate: what no affine map around node j
-///   explains shape    (g s ℓ)² Σ_j A_j mean_k |φ(x_k) − φ(x_j) − c_j R_j e_jk|²   as similar as possible,
-///   R_j the best
-///            rotation of the shape's edges e_jk (Igarashi, Moscovich, Hughes 2005; Sorkine, Alexa 2007)
+///   data     Σ_i w_i/A (n_i · (φ(x_i) − y_i))²    both ways; point to plane (Chen, Medioni 1992)
+///   cuts     Σ_b h_b/A |P_b (φ(x_b) − y_b)|²      boundaries that are the same cut, P across it
+///   anchors  Σ_k w_k |φ(a_k) − q_k|²              where anchors lie on the target
+///   bending  ℓ⁴/g² Σ_j A_j γ_j² |D_j d|²          thin plate: what no affine map around node j explains
+///   shape    (g s ℓ)² Σ_j A_j mean_k |φ(x_k) − φ(x_j) − c_j R_j e_jk|²
+///                                                 as similar as possible, R_j the best rotation of the shape's
+///                                                 edges e_jk (Igarashi et al. 2005; Sorkine, Alexa 2007)
 ///
 /// w_i is the pair's area times its probability of being right, by distance (Cauchy's M-estimator; its scale
 /// is that of the residuals), normals and reciprocity (PlanePair::weight). ℓ is the smoothing length in
 /// spacings of nodes, g the rigidity. w, γ, D and c are those of the displacements `now`: iteratively
-/// reweighted least squares (Holland, Welsch 1977). The orientation of faces is no term: faces that turn over
-/// are repaired afterwards.
+/// reweighted least squares (Holland, Welsch 1977). The orientation of faces is no term: flipped faces are
+/// repaired afterwards.
+// clang-format on
 class RegistrationEnergy {
  public:
   /// now: 3×k. The goals must outlive it.
