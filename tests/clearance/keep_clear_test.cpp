@@ -181,7 +181,9 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   };
   const Points carried = product.vertices.colwise() + Vector3(0, 0, 0.01);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {plates});
-  EXPECT_GT(cleared.summary.after.samples, 0u);
+  // Nowhere is there 0.05: every sample misses, each counted once.
+  EXPECT_EQ(cleared.summary.before.samples, cleared.summary.looked_at);
+  EXPECT_EQ(cleared.summary.after.samples, cleared.summary.looked_at);
   ASSERT_FALSE(cleared.summary.places.empty());
   EXPECT_NEAR(cleared.summary.places.front().missing, 0.03, 0.012);
   EXPECT_EQ(cleared.summary.places.front().obstacle, "the plates");
@@ -210,7 +212,7 @@ TEST(FacePassages, TellWhereALayerIsPassedThroughThatWasNot) {
   for (auto vertex : lower_after.colwise()) vertex.z() += vertex.x() < 0.5 ? 0.2 : -0.2;
   const std::vector<Obstacle> layers = {layer_obstacle("shirt", lower, lower_after, {3, 3})};
   FacePassages passages(upper, upper.vertices, layers);
-  const FacePairs pairs = passages.found(upper.vertices);
+  const FacePairs pairs = passages.found();
   ASSERT_FALSE(pairs.empty());
   EXPECT_TRUE(passages.of_product(pairs).empty());
   const std::vector<PassedThrough> places = passages.places(pairs, 10);
@@ -221,6 +223,46 @@ TEST(FacePassages, TellWhereALayerIsPassedThroughThatWasNot) {
   ClearanceSummary summary;
   summary.passed_through = places;
   EXPECT_THAT(to_string(summary), HasSubstr("passes through shirt at ("));
+}
+
+TEST(CorrectionSamples, AreConstrainedAndCountedOnce) {
+  const TriangleMesh product = test::shell(1.02, 2);
+  std::vector<Obstacle> ball = {test::unit_ball({.ease = 0.1})};
+  ball.front().short_is_breach = true;
+  const Eigen::Matrix2Xi no_lines(2, 0);
+  SampleDistances distances(constraint_samples(product, no_lines, 0.1), product.vertices, ball),
+      checks(check_samples(product, no_lines, 0.1), product.vertices, ball);
+  const Eigen::Index constrained = distances.samples().count(), checked = checks.samples().count();
+  CorrectionSamples samples(distances, checks);
+  distances.look(product.vertices);
+  checks.look(product.vertices);
+  for (int round = 0; round < 3; ++round) {
+    EXPECT_TRUE(samples.constrain_what_misses());
+    EXPECT_EQ(distances.samples().count(), constrained + checked) << round;
+    EXPECT_EQ(samples.count().samples, static_cast<std::size_t>(constrained + checked)) << round;
+    EXPECT_EQ(samples.count().breaches, samples.count().samples) << round;
+  }
+}
+
+TEST(FacePassages, CountThePairsWithEachLayer) {
+  // A wall through the ground from the start, and one that stands above it and comes down to the same place.
+  const TriangleMesh ground = shapes::square_grid(8);
+  TriangleMesh wall = shapes::square_grid(8);
+  for (auto vertex : wall.vertices.colwise()) vertex = Vector3(0.43, vertex.x(), vertex.y() - 0.52);
+  TriangleMesh raised = wall;
+  raised.vertices.row(2).array() += 1;
+  const std::vector<Obstacle> layers = {layer_obstacle("through", wall, wall.vertices, {3, 3}),
+                                        layer_obstacle("above", raised, wall.vertices, {3, 3})};
+  FacePassages passages(ground, ground.vertices, layers);
+  const FacePairs pairs = passages.found();
+  const std::vector<LayerPairs> counts = passages.of_layers(pairs);
+  const std::size_t all = self_intersections(shapes::joined(ground, wall)).size();
+  ASSERT_GT(all, 0u);
+  ASSERT_EQ(counts.size(), 2u);
+  EXPECT_EQ(counts[0].before, all);
+  EXPECT_EQ(counts[0].after, 0u);
+  EXPECT_EQ(counts[1].before, 0u);
+  EXPECT_EQ(counts[1].after, all);
 }
 
 // A sock touches on purpose; a strap is thinner than a voxel.

@@ -37,6 +37,9 @@ class ApplyClearance : public testing::Test {
   json clearance(std::size_t product = 0) const {
     return json::parse(read_text(pair_.file("report.json")))["products"][product].value("clearance", json());
   }
+  json layer_order() const {
+    return json::parse(read_text(pair_.file("report.json"))).value("layer_order", json());
+  }
   std::string out() const { return pair_.file("out.obj"); }
   double nearest_of_output() const {
     const auto distances = model_distances(read_asset(pair_.file("map.vdb")));
@@ -63,6 +66,7 @@ TEST_F(ApplyClearance, KeepsWhatTheProductHad) {
   EXPECT_EQ(clearance()["missed_after"]["samples"], 0);
   EXPECT_EQ(clearance()["new_self_intersections"], 0);
   EXPECT_TRUE(clearance()["clear"]);
+  EXPECT_TRUE(layer_order().is_null());
   // What is written is what was checked.
   EXPECT_GT(nearest_of_output(), -1e-4 * extent(read_obj_points(out())));
 }
@@ -80,6 +84,8 @@ TEST_F(ApplyClearance, LayersKeepTheirOrder) {
   EXPECT_THAT(result.out, HasSubstr("shirt.obj under jacket.obj: 0 pairs"));
   EXPECT_EQ(clearance(1)["layers"][0]["lower"], "shirt.obj");
   EXPECT_EQ(clearance(1)["layers"][0]["new_intersections"], 0);
+  EXPECT_FALSE(layer_order()["found_on_source"]);
+  EXPECT_FALSE(layer_order()["circular"]);
 }
 
 // In whichever order they are named.
@@ -88,6 +94,9 @@ TEST_F(ApplyClearance, LayersAreFoundByHowTheyLieOnTheSource) {
                                                                    "--out-dir", pair_.file("out")});
   ASSERT_EQ(result.exit_code, 0) << result.err << result.out;
   EXPECT_THAT(result.out, HasSubstr("shirt.obj under jacket.obj: 0 pairs"));
+  EXPECT_THAT(result.out, HasSubstr("layers, from the inside to the outside: shirt.obj, jacket.obj (found"));
+  EXPECT_EQ(layer_order()["names"], json({"shirt.obj", "jacket.obj"}));
+  EXPECT_TRUE(layer_order()["found_on_source"]);
   EXPECT_EQ(clearance(0)["layers"][0]["lower"], "shirt.obj");
   EXPECT_TRUE(clearance(0)["passed_through"].empty());
   EXPECT_TRUE(clearance(1)["layers"].empty());
@@ -117,8 +126,8 @@ TEST_F(ApplyClearance, WhatCannotBeClearedIsReportedAndExitsWithThree) {
 
 TEST_F(ApplyClearance, RefusesWhatHasNoMeaning) {
   for (const auto& [options, message] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--clearance", "lots"}, "is keep, same, off, a length"},
-           {{"--require-clear"}, "needs --clearance"},
+           {{"--clearance", "lots"}, "is off, keep, same, a length"},
+           {{"--require-clear"}, "needs --clearance: keep, same, a length"},
            {{"--layers"}, "needs --clearance"},
            {{"--clearance", "keep", "--t", "0.5"}, "--t is 1"},
            {{"--clearance", "keep", "--frames", "2"}, "--t is 1"}}) {

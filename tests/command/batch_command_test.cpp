@@ -134,6 +134,25 @@ TEST_F(BatchCommand, WritesTheBitsOfTheSingleCommands) {
   EXPECT_EQ(records[0]["figures"]["bijection"], true);
 }
 
+TEST_F(BatchCommand, ShowsProductsOnPagesAsItsJobsCarryThem) {
+  json clear = apply("map.vdb", "clear.obj");
+  clear["clearance"] = "1%";
+  const std::vector<json> jobs{fit("map.vdb"), apply("map.vdb", "out.obj"), clear};
+  const ProgramResult result = batch(jobs, {"--html", file("pages")});
+  if (result.exit_code == 4) GTEST_SKIP() << result.err;  // built without pages
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(read("pages/index.html"), HasSubstr("<h1>2 results</h1>"));
+  std::vector<std::string> pages;
+  for (const fs::directory_entry& entry : fs::directory_iterator(file("pages")))
+    if (entry.path().extension() == ".html" && entry.path().filename() != "index.html")
+      pages.push_back(read("pages/" + entry.path().filename().string()));
+  ASSERT_EQ(pages.size(), 2u);
+  const auto shows_clearance = [](const std::string& page) {
+    return page.find("--clearance=1%") != std::string::npos;
+  };
+  EXPECT_EQ(std::count_if(pages.begin(), pages.end(), shows_clearance), 1);
+}
+
 TEST_F(BatchCommand, ShowsWhatItFitsOnPages) {
   json back = apply("map.vdb", "back.obj");
   back["inverse"] = true;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "bespoke/product/mesh_io.h"
 #include "command/example_pair.h"
 
 namespace bespoke::test {
@@ -113,6 +114,21 @@ TEST_F(GradeCommand, GoesOnWithTheOtherSizes) {
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, HasSubstr("3 up to date"));
   EXPECT_THAT(again.out, HasSubstr("| source | S | M |"));
+}
+
+// No shift of a stiff shell clears a body of other proportions.
+TEST_F(GradeCommand, RequiresThatProductsAreClear) {
+  const TriangleMesh source = read_triangle_mesh(file("source.obj"));
+  write_text(file("product.obj"), "g shell\n" + obj_text(1.001 * source.vertices, source.faces));
+  const std::vector<std::string> options{
+      "--target", file("target.obj"), "--anchors", file("anchors.json"), "--rigid",
+      "shell",    "--clearance",      "keep"};
+  EXPECT_EQ(grade(options).exit_code, 0);
+  std::vector<std::string> required = options;
+  required.push_back("--require-clear");
+  const ProgramResult result = grade(required);
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_THAT(result.err, HasSubstr("not clear: product.obj"));
 }
 
 TEST_F(GradeCommand, ShowsTheSizesOnPages) {

@@ -186,6 +186,21 @@ TEST_F(PoseOfCommands, OfProductsIsTheNamedOneToo) {
   EXPECT_NE(measured(skinned("shell.glb"), {}), of_plain);
 }
 
+TEST_F(PoseOfCommands, OfProductsThatMapsAreComparedAtIsTheNamedOne) {
+  ASSERT_EQ(fit(plain("source.glb"), "anchors.json", "map.vdb").exit_code, 0);
+  output({"invert", file("map.vdb"), "-o", file("inverse.vdb")});
+  const auto compared = [&](const std::string& product, const Arguments& more) {
+    Arguments all{"diff", file("map.vdb"), file("inverse.vdb"), "--product", product, "--json", "-q"};
+    all.insert(all.end(), more.begin(), more.end());
+    json found = json::parse(output(all))["products"][0];
+    found.erase("name");
+    return found;
+  };
+  const json of_plain = compared(plain("shell.glb"), {});
+  EXPECT_EQ(compared(skinned("shell.glb"), {"--pose", "stored"}), of_plain);
+  EXPECT_NE(compared(skinned("shell.glb"), {}), of_plain);
+}
+
 TEST_F(PoseOfCommands, OfACataloguesModelsIsThatOfTheirMaps) {
   fs::create_directory(file("maps"));
   ASSERT_EQ(fit(skinned("source.glb"), "anchors.json", "maps/stored.vdb", {"--pose", "stored"}).exit_code, 0);

@@ -110,6 +110,11 @@ TEST(ViewCommand, ShowsProductsThatAreKeptClear) {
   EXPECT_THAT(view({}).out, Not(HasSubstr("clearance")));
   EXPECT_EQ(view({"--clearance", "near"}).exit_code, 1);
   EXPECT_EQ(view({"--layers"}).exit_code, 1);
+  const ProgramResult nothing_worn =
+      bespoke({"view", pair.file("map.vdb"), "--source", pair.file("source.obj"), "--target",
+               pair.file("target.obj"), "--clearance", "keep", "-o", pair.file("view.html")});
+  EXPECT_EQ(nothing_worn.exit_code, 1);
+  EXPECT_THAT(nothing_worn.err, HasSubstr("--clearance: needs --product"));
 }
 
 TEST(PickCommand, WritesAPageForSeams) {
@@ -140,6 +145,7 @@ TEST(PickCommand, RefusesModelsThatDoNotSuit) {
   EXPECT_THAT(refusal({}), HasSubstr("B: is required"));
   EXPECT_THAT(refusal({pair.file("target.obj"), "--seams"}), HasSubstr("is a second"));
   EXPECT_THAT(refusal({"--anchors", pair.file("anchors.json"), "--seams"}), HasSubstr("excludes --anchors"));
+  EXPECT_THAT(refusal({"--pose", "stored", "--seams"}), HasSubstr("--seams: excludes --pose"));
 }
 
 TEST(ReportCommand, WritesPicturesBesideMarkdownAndIntoHtml) {

@@ -1,12 +1,12 @@
 // Picks pairs by real clicks on a page of `bespoke pick`, and fits with what the page saves.
 import assert from "node:assert/strict";
-import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import type { Browser, Page } from "playwright-core";
 
-import { bespoke, drawn_pixels, open_feet, require_browser, scratch_directory, until, type Opened } from "./browser";
+import { bespoke, drawn_pixels, open_feet, open_page, require_browser, scratch_directory, until, type Opened } from "./browser";
 
 require_browser();
 
@@ -152,6 +152,19 @@ test("preview, hint and mirror change what is shown; opening a file replaces the
   await page.locator("input[type=file]").setInputFiles(join(directory, "shoe/anchors.json"));
   await until(async () => (await pairs()).length === given.length);
   assert.deepEqual((await pairs()).map((pair) => pair.a), given.map((pair) => pair.a));
+});
+
+test("the command quotes the models' paths for a shell", async () => {
+  const path = "my models/ann's foot.obj";
+  mkdirSync(join(directory, "my models"));
+  copyFileSync(join(directory, "shoe/source.obj"), join(directory, path));
+  bespoke(directory, "pick", path, "shoe/target.obj", "-o", "quoted.html");
+  const quoted = await open_page(browser, join(directory, "quoted.html"));
+  await quoted.page.getByRole("tab", { name: "Save and import" }).click();
+  const text = await quoted.page.getByRole("tabpanel").innerText();
+  assert.ok(text.includes("bespoke fit 'my models/ann'\\''s foot.obj' shoe/target.obj --anchors anchors.json"), text);
+  assert.deepEqual(quoted.trouble, []);
+  await quoted.page.context().close();
 });
 
 test("two pairs of one name, which fit refuses, are warned of", async () => {

@@ -1,6 +1,6 @@
 // Picks seams of a tube by real clicks on a page of `bespoke pick --seams`, and flattens with what the page saves.
 import assert from "node:assert/strict";
-import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
@@ -129,7 +129,8 @@ test("a reload keeps the work", async () => {
 test("what it saves is what flatten takes", async () => {
   const { page } = opened;
   await page.getByRole("tab", { name: "Save and import" }).click();
-  assert.match(await page.getByRole("tabpanel").innerText(), /bespoke flatten tube\.obj --unit cm --seams seams\.json/);
+  assert.match(await page.getByRole("tabpanel").innerText(), /bespoke flatten tube\.obj --unit UNIT --seams seams\.json/);
+  assert.match(await page.getByRole("tabpanel").innerText(), /UNIT is the length unit that the file’s numbers are in: mm, cm, m or in\./);
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Save seams.json" }).click()]);
   copyFileSync(await download.path(), join(directory, "seams.json"));
   bespoke(directory, "flatten", "tube.obj", "--unit", "cm", "--seams", "seams.json", "-o", "pieces.json", "--quiet");
@@ -162,4 +163,98 @@ test("a file is where another page begins, and what a page imports", async () =>
   assert.deepEqual(await names(), ["centre"]);
   assert.deepEqual(again.trouble, []);
   await again.page.context().close();
+});
+
+/** One triangle, whose positions are in metres, as of every glTF file. */
+function gltf(): string {
+  const data = Buffer.from(Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0).buffer);
+  return JSON.stringify({
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 } }] }],
+    accessors: [{ bufferView: 0, componentType: 5126, count: 3, type: "VEC3", min: [0, 0, 0], max: [1, 1, 0] }],
+    bufferViews: [{ buffer: 0, byteLength: data.length }],
+    buffers: [{ byteLength: data.length, uri: `data:application/octet-stream;base64,${data.toString("base64")}` }],
+  });
+}
+
+/** Of another page of this garment its tab for files, which is shown. */
+async function files_tab(garment: string, ...seams: string[]): Promise<Opened> {
+  bespoke(directory, "pick", garment, "--seams", ...seams, "-o", "other.html");
+  const other = await open_page(browser, join(directory, "other.html"));
+  await other.page.getByRole("tab", { name: "Save and import" }).click();
+  return other;
+}
+
+async function close({ page, trouble }: Opened): Promise<void> {
+  assert.deepEqual(trouble, []);
+  await page.context().close();
+}
+
+test("the command quotes the garment's path for a shell", async () => {
+  mkdirSync(join(directory, "my garments"));
+  copyFileSync(join(directory, "tube.obj"), join(directory, "my garments", "ann's $1.obj"));
+  const other = await files_tab("my garments/ann's $1.obj");
+  assert.ok((await other.page.getByRole("tabpanel").innerText()).includes("bespoke flatten 'my garments/ann'\\''s $1.obj' --unit UNIT --seams"));
+  await close(other);
+});
+
+test("a format with a unit of its own needs none in the command", async () => {
+  writeFileSync(join(directory, "triangle.gltf"), gltf());
+  const other = await files_tab("triangle.gltf"), text = await other.page.getByRole("tabpanel").innerText();
+  assert.match(text, /bespoke flatten triangle\.gltf --seams seams\.json/);
+  assert.doesNotMatch(text, /UNIT/i);
+  await close(other);
+});
+
+test("an ease without its longer side is said and not saved, nor the reverse", async () => {
+  writeFileSync(join(directory, "plain.json"), JSON.stringify({ seams: [{ name: "side", path: [1, vertex(2, 0) + 1] }] }));
+  const other = await files_tab("tube.obj", "plain.json"), { page } = other;
+  const downloads: string[] = [];
+  page.on("download", (download) => downloads.push(download.suggestedFilename()));
+  const fill = async (label: string, text: string): Promise<void> => {
+    await page.getByRole("tab", { name: "Seams" }).click();
+    await page.getByLabel(label).fill(text);
+    await page.getByLabel(label).blur();
+    await page.getByRole("tab", { name: "Save and import" }).click();
+  };
+  const save = (): Promise<void> => page.getByRole("button", { name: "Save seams.json" }).click();
+  const status = page.getByRole("status", { name: "Saving and importing" });
+
+  await fill("Ease of side", "5");
+  await save();
+  assert.equal(await status.innerText(), 'Nothing was saved: seam 1 (“side”) has an ease, but "longer" names no piece.');
+  await fill("Ease of side", "");
+  assert.equal(await status.innerText(), "", "what was said is gone once something changed");
+  await fill("Longer side of side", "front");
+  await save();
+  assert.equal(await status.innerText(), "Nothing was saved: seam 1 (“side”) has a longer side, but no ease.");
+  await fill("Ease of side", "5");
+  assert.deepEqual(downloads, []);
+  const [download] = await Promise.all([page.waitForEvent("download"), save()]);
+  const [seam] = JSON.parse(readFileSync(await download.path(), "utf8")).seams;
+  assert.deepEqual([seam.ease, seam.longer, downloads], [5, "front", ["seams.json"]]);
+  await close(other);
+});
+
+test("a seam of edges that branch is one row, and is saved as it came", async () => {
+  const at = (row: number, side: number): number => vertex(row, side) + 1;
+  const file = { seams: [{ name: "fork", edges: [[at(0, 0), at(1, 0)], [at(1, 0), at(2, 0)], [at(1, 0), at(1, 1)]] }], pieces: [], widths: [] };
+  writeFileSync(join(directory, "fork.json"), JSON.stringify(file));
+  const other = await files_tab("tube.obj", "fork.json"), { page } = other;
+  assert.deepEqual(JSON.parse(await page.evaluate(() => (window as unknown as Exposed).bespoke.saved())), file);
+  await page.getByRole("tab", { name: "Seams" }).click();
+  assert.equal(await page.locator("table.seams tbody tr").count(), 1);
+  await close(other);
+});
+
+test("what a file has wrong is said where it was chosen", async () => {
+  writeFileSync(join(directory, "strange.json"), '{"seams":[{"path":[1,2],"eases":3}]}');
+  const other = await files_tab("tube.obj");
+  await other.page.locator("input[type=file]").setInputFiles(join(directory, "strange.json"));
+  const status = other.page.getByRole("status", { name: "Saving and importing" });
+  await until(async () => (await status.innerText()) === 'Nothing was imported: seam 1 has the key "eases", which means nothing here.');
+  await close(other);
 });

@@ -71,6 +71,13 @@ TEST_F(ReadPatterns, AreRefusedWithWhatIsWrong) {
   EXPECT_THAT(
       complaint(of_piece(R"("faces":[[0,1,2]],"outline":[0],"product_faces":[],"strain_of_faces":[0])")),
       HasSubstr("1 faces, 0 \"product_faces\""));
+  EXPECT_THAT(
+      complaint(of_piece(R"("faces":[[0,1,1.7]],"outline":[0],"product_faces":[0],"strain_of_faces":[0])")),
+      HasSubstr("face 0 names 1.7 of 3"));
+  EXPECT_THAT(
+      complaint(of_piece(R"("faces":[[0,1,2]],"outline":[0],"product_faces":[0.5],"strain_of_faces":[0])")),
+      HasSubstr("\"product_faces\" names 0.5"));
+  EXPECT_THAT(complaint("\xFF\xFE{"), HasSubstr("UTF-16"));
   EXPECT_THROW(read_pattern(directory_ / "none.json"), FileError);
 }
 

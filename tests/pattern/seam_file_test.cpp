@@ -13,6 +13,7 @@ namespace bespoke {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class SeamFiles : public ::testing::Test {
  protected:
@@ -66,6 +67,13 @@ TEST_F(SeamFiles, AreRefusedWithWhatIsWrong) {
   EXPECT_THAT(complaint(R"({"seams":[{"path":[1,2],"line":[1,2]}]})"), HasSubstr("needs one of"));
   EXPECT_THAT(complaint(R"({"seams":[{"path":[1,2],"ease":3}]})"), HasSubstr("both, or neither"));
   EXPECT_THAT(complaint(R"({"seams":[],"widths":[{"vertex":2}]})"), HasSubstr("width 1 needs"));
+  EXPECT_THROW(read_seam_file(directory_ / "none.json", grid_), FileError);
+}
+
+TEST_F(SeamFiles, AreTextsAsOtherProgramsWriteThem) {
+  EXPECT_EQ(read("\xEF\xBB\xBF{\"seams\":[{\"edges\":[[1,2]]}]}").edges().size(), 1u);
+  EXPECT_THAT(complaint("{"), HasSubstr("seams.json: not valid JSON: parse error"));
+  EXPECT_THAT(complaint("{"), Not(HasSubstr("json.exception")));
   EXPECT_THROW(read_seam_file(directory_ / "none.json", grid_), FileError);
 }
 

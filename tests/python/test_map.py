@@ -140,6 +140,8 @@ def test_clearance_keeps_products_outside_and_layers_in_order(pair, tmp_path):
     assert "clearance" not in pair.map.apply(files[0], output).json["products"][0]
     with pytest.raises(bespoke.InvalidInput, match="not 'lots'"):
         pair.map.apply(files[0], output, clearance="lots")
+    with pytest.raises(bespoke.InvalidInput, match="layers are kept under the product where there is a clearance"):
+        pair.map.apply(files[1], output, layers=files[:1])
     with pytest.raises(bespoke.InvalidInput, match="where t is 1"):
         pair.map.apply(files[0], output, 0.5, clearance="keep")
 

@@ -8,7 +8,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double max_stretch = 3;
+constexpr double bound = 3;
 
 /// A ball, and anchors on it that move.
 struct MeetingScene {
@@ -20,7 +20,7 @@ struct MeetingScene {
 
   AnchorMeeting meet() const {
     return meet_anchors_within({surface, target, sources, targets, diagonal(surface.vertices)},
-                               surface.vertices, max_stretch);
+                               surface.vertices, bound);
   }
 };
 
@@ -44,7 +44,7 @@ TEST(MeetAnchorsWithin, LetsAnchorsThatContradictEachOtherShareTheBlame) {
   const MeetingScene scene(columns({left, right, far}),
                            columns({{0, -0.1, 0.02}, {0, 0.1, 0.02}, {0, 0, 0.02}}));
   const AnchorMeeting meeting = scene.meet();
-  EXPECT_LE(largest_stretch(scene.surface, meeting.vertices), max_stretch);
+  EXPECT_LE(largest_stretch(scene.surface, meeting.vertices), bound);
   EXPECT_GT(meeting.anchor_sigmas[0], 0);
   EXPECT_EQ(meeting.anchor_sigmas[0], meeting.anchor_sigmas[1]);
   EXPECT_EQ(meeting.anchor_sigmas[2], 0);

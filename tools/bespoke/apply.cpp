@@ -188,11 +188,16 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   progress.step("apply", arguments.products.size(), arguments.products.size());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!arguments.report.empty())
-    files.write_text(arguments.report, apply_report(applied, times(arguments), seconds));
+    files.write_text(arguments.report,
+                     apply_report(applied, times(arguments), seconds, keeper.layer_order()));
   files.keep();
 
   context.findings.figures = figures(applied);
   if (!arguments.run.quiet && !map.reading().empty()) std::printf("%s\n", map.reading().c_str());
+  if (keeper.layer_order()) {
+    if (!arguments.run.quiet) std::printf("%s\n", to_string(*keeper.layer_order()).c_str());
+    warn_of_layers(context, *keeper.layer_order());
+  }
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary, arguments.skeleton);
     if (!arguments.run.quiet && applied[i].clearance) print_clearance(plan[i].back(), *applied[i].clearance);

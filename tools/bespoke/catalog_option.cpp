@@ -1,6 +1,10 @@
 #include "catalog_option.h"
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "bespoke/catalog/catalog_file.h"
 #include "bespoke/catalog/find_map.h"
@@ -14,41 +18,61 @@
 namespace bespoke::command {
 namespace {
 
-/// By which the maps of the catalogue know a model: of its file, in either pose of a skinned one or, where
-/// the file says a unit, of the model in the unit of a map. Where none knows it, of the file.
-/// read(unit, hash): the model, in that unit, in the pose that has this hash, if one has.
-template <class Read>
-std::string known_hash(const Catalog& catalog, ModelRecord CatalogEntry::*side, const std::string& file,
-                       const Read& read) {
-  const std::string as_given = content_hash(read("", ""));
-  const bool says_unit = !unit_of_format(file).empty(), is_posed = has_two_poses(file);
-  std::map<std::string, std::string> in_unit;
-  for (const CatalogEntry& entry : catalog.assets) {
-    const std::string& known = (entry.*side).hash;
-    if (known == as_given) return known;
-    if (is_posed && content_hash(read(entry.unit, known)) == known) return known;
-    if (!says_unit) continue;
-    const auto [hash, is_new] = in_unit.try_emplace(entry.unit);
-    if (is_new) hash->second = content_hash(read(entry.unit, ""));
-    if (hash->second == known) return known;
+/// Hashes by which a catalogue may know a model's file: in each pose of a skinned one, as the file has it or
+/// in the unit of a map. Each pose is read once, each unit hashed once.
+class ModelHashes {
+ public:
+  /// read(pose): the model, a TargetModel.
+  template <class Read>
+  ModelHashes(std::filesystem::path file, const Read& read) : file_(std::move(file)) {
+    models_.push_back(read(ModelPose::shown));
+    if (has_two_poses(file_)) models_.push_back(read(ModelPose::stored));
+    for (const TargetModel& model : models_) as_given_.push_back(content_hash(model));
   }
-  return as_given;
+
+  const std::string& shown() const { return as_given_.front(); }
+
+  bool contain(const std::string& hash, const std::string& unit) {
+    if (is_among(hash, as_given_)) return true;
+    const double scale = scale_to_unit(file_, unit);
+    if (scale == 1) return false;
+    const auto [of_unit, is_new] = in_unit_.try_emplace(unit);
+    if (is_new)
+      for (const TargetModel& model : models_)
+        of_unit->second.push_back(content_hash(TriangleMesh{scale * model.mesh.vertices, model.mesh.faces}));
+    return is_among(hash, of_unit->second);
+  }
+
+ private:
+  static bool is_among(const std::string& hash, const std::vector<std::string>& hashes) {
+    return std::find(hashes.begin(), hashes.end(), hash) != hashes.end();
+  }
+
+  std::filesystem::path file_;
+  std::vector<TargetModel> models_;
+  std::vector<std::string> as_given_;
+  std::map<std::string, std::vector<std::string>> in_unit_;
+};
+
+/// The one of the model by which a map of the catalogue knows it; where none does, that of its file.
+std::string known_hash(const Catalog& catalog, ModelRecord CatalogEntry::*side, ModelHashes model) {
+  for (const CatalogEntry& entry : catalog.assets)
+    if (model.contain((entry.*side).hash, entry.unit)) return (entry.*side).hash;
+  return model.shown();
 }
 
 /// Of the model, or as it is given.
 std::string source_hash(const CatalogOption& option, const Catalog& catalog) {
   if (option.source.empty()) return option.source_hash;
-  return known_hash(catalog, &CatalogEntry::source, option.source,
-                    [&](const std::string& unit, const std::string& hash) {
-                      return read_source(option.source, unit, hash);
-                    });
+  const auto read = [&](ModelPose pose) {
+    return TargetModel{read_source_model(option.source, pose).mesh, std::nullopt, {}};
+  };
+  return known_hash(catalog, &CatalogEntry::source, {option.source, read});
 }
 std::string target_hash(const CatalogOption& option, const Catalog& catalog) {
   if (option.target.empty()) return option.target_hash;
-  return known_hash(catalog, &CatalogEntry::target, option.target,
-                    [&](const std::string& unit, const std::string& hash) {
-                      return read_target(option.target, unit, hash);
-                    });
+  const auto read = [&](ModelPose pose) { return read_target(option.target, pose); };
+  return known_hash(catalog, &CatalogEntry::target, {option.target, read});
 }
 
 /// With a map that is named: what products are checked against.

@@ -12,7 +12,6 @@
 #include "bespoke/error.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
-#include "length_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -49,13 +48,7 @@ PreparedProducts& prepared_products() {
   return products;
 }
 
-/// The ease that the option names; none to keep distances.
-ClearanceRule rule_of(const ClearanceOption& option, const ModelSizes& sizes) {
-  if (option.distance == "keep") return {};
-  if (option.distance == "same") return {.ease = std::nullopt, .same = true};
-  const Length ease = parse_length("--clearance", option.distance, LengthRange::not_negative);
-  return {ease.in_mesh_units(sizes.source_diagonal) * (ease.percent ? sizes.scale() : 1)};
-}
+std::string file_name(const std::string& path) { return fs::path(path).filename().string(); }
 
 /// Of the two models as the map leads.
 ModelSizes sizes_of(const OpenedMap& map) {
@@ -83,19 +76,12 @@ void add_require_clear(CLI::App& app, ClearanceOption& option) {
 }
 
 void require_valid(const ClearanceOption& option) {
-  if (option.is_used() && option.distance != "keep" && option.distance != "same") {
-    try {
-      parse_length("--clearance", option.distance, LengthRange::not_negative);
-    } catch (const CLI::ValidationError&) {
-      throw CLI::ValidationError("--clearance",
-                                 "is keep, same, off, a length such as 0.02, or a percentage of the "
-                                 "source's diagonal such as 0.5%; not '" +
-                                     option.distance + "'");
-    }
-  }
+  if (option.is_used() && !parse_clearance(option.distance, {1, 1}))
+    throw CLI::ValidationError(
+        "--clearance", "is off, " + std::string(clearance_grammar) + "; not '" + option.distance + "'");
   if (!option.is_used() && (option.require_clear || option.layers))
     throw CLI::ValidationError(option.layers ? "--layers" : "--require-clear",
-                               "needs --clearance keep, or a length");
+                               "needs --clearance: " + std::string(clearance_grammar));
 }
 
 std::vector<std::size_t> ClearanceKeeper::order(const std::vector<std::string>& products,
@@ -104,14 +90,22 @@ std::vector<std::size_t> ClearanceKeeper::order(const std::vector<std::string>& 
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (!option_.is_used() || products.size() < 2) return order;
   are_layers_ = true;
-  if (option_.layers || !std::all_of(products.begin(), products.end(),
-                                     [](const std::string& name) { return can_read_product(name); }))
+  if (!std::all_of(products.begin(), products.end(),
+                   [](const std::string& name) { return can_read_product(name); }))
     return order;
+  layer_order_ = LayerOrder{};
+  for (const std::string& name : products) layer_order_->names.push_back(file_name(name));
+  if (option_.layers) return order;
   std::vector<TriangleMesh> meshes;
   for (const std::string& name : products)
     meshes.push_back(
         prepared_products().get(name, parts_, product_scale(name, map.unit, unit_), pose_).prepared->mesh());
-  return nesting_order(meshes, sizes_of(map).source_diagonal);
+  const Nesting nesting = nesting_of(meshes, sizes_of(map).source_diagonal);
+  const std::vector<std::string> names = layer_order_->names;
+  layer_order_ = LayerOrder{{}, true, {}, nesting.is_circular};
+  for (const std::size_t i : nesting.order) layer_order_->names.push_back(names[i]);
+  for (const auto& [a, b] : nesting.interleaved) layer_order_->interleaved.emplace_back(names[a], names[b]);
+  return nesting.order;
 }
 
 OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap& map) {
@@ -123,7 +117,7 @@ OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap
                        read_product_endings());
   const ModelSizes sizes = sizes_of(map);
   if (!clearer_)
-    clearer_.emplace(rule_of(option_, sizes),
+    clearer_.emplace(parse_clearance(option_.distance, sizes).value(),
                      are_layers_ ? ProductClearer::Products::layers : ProductClearer::Products::alone);
   OpenedMap own = map;
   own.elastic = clearer_->corrected(
@@ -146,6 +140,21 @@ void ClearanceKeeper::require_clear() const {
     throw SolverError("not clear: " + names +
                       "; the lines above and the report say where. More anchors there, a smaller --clearance "
                       "or a looser product may help");
+}
+
+std::string to_string(const LayerOrder& order) {
+  std::string text = "layers, from the inside to the outside: ";
+  for (const std::string& name : order.names) text += (&name == &order.names.front() ? "" : ", ") + name;
+  if (order.is_found) text += " (found on the source; --layers sets another order)";
+  for (const auto& [a, b] : order.interleaved)
+    text += "; neither of " + a + " and " + b + " lies over the other";
+  return text;
+}
+
+void warn_of_layers(const RunContext& context, const LayerOrder& order) {
+  if (order.is_circular)
+    context.warn("no order of the layers is right: they lie over each other in a circle; " + to_string(order),
+                 Entry::layers_in_a_circle);
 }
 
 void print_clearance(const std::string& output, const ProductClearance& clearance) {

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/clearance/nesting.h"
 #include "bespoke/clearance/product_clearer.h"
 #include "bespoke/pipeline/open_map.h"
+#include "run_options.h"
 
 namespace bespoke::command {
 
@@ -54,6 +56,9 @@ class ClearanceKeeper {
   /// Of the last product; nothing where clearance is off.
   std::optional<ProductClearance> last() const;
 
+  /// Nothing where a single product, or none, is kept clear.
+  const std::optional<LayerOrder>& layer_order() const { return layer_order_; }
+
   /// Throws SolverError, naming them, where products are not clear and must be.
   void require_clear() const;
 
@@ -63,8 +68,15 @@ class ClearanceKeeper {
   std::string unit_;
   ModelPose pose_;
   bool are_layers_ = false;
+  std::optional<LayerOrder> layer_order_;
   std::optional<ProductClearer> clearer_;
 };
+
+/// "layers, from the inside to the outside: shirt.obj, jacket.obj (found on the source; …)".
+std::string to_string(const LayerOrder& order);
+
+/// Warns where no order is right.
+void warn_of_layers(const RunContext& context, const LayerOrder& order);
 
 /// Every line after "OUT: ".
 void print_clearance(const std::string& output, const ProductClearance& clearance);

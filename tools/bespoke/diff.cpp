@@ -10,6 +10,7 @@
 #include "length_option.h"
 #include "map_models.h"
 #include "output_files.h"
+#include "pose_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -19,6 +20,7 @@ struct DiffArguments {
   std::vector<std::string> products;
   std::string output;
   std::optional<Length> within;
+  std::optional<ModelPose> pose;  ///< of skinned products
   bool json = false;
   bool untrusted = false;
   RunOptions run;
@@ -56,7 +58,8 @@ void run(const DiffArguments& arguments, const RunContext& context) {
   require_one_unit(arguments, a, b);
   std::vector<Points> products;
   for (const std::string& product : arguments.products)
-    products.push_back(read_product_in(product, a.record.unit).mesh.vertices);
+    products.push_back(
+        read_product_in(product, a.record.unit, "", arguments.pose.value_or(ModelPose::shown)).mesh.vertices);
   ComparedMaps compared{a, b, map_difference(a, b, products, context.progress), record_difference(a, b),
                         arguments.products};
   if (a.record.source.hash != b.record.source.hash)
@@ -83,6 +86,7 @@ void add_diff_command(CLI::App& app, const PlanHandler& handle_plan) {
   diff->add_option("--product", arguments->products, "Also say how far its vertices end up apart; repeatable")
       ->type_name("MESH")
       ->allow_extra_args(false);
+  add_pose_option(*diff, arguments->pose, "skinned glTF products");
   diff->add_flag("--untrusted", arguments->untrusted, untrusted_help);
   begin_group(*diff, quality_group);
   add_length_option(*diff, "--within", arguments->within,

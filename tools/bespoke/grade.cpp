@@ -38,9 +38,11 @@ struct GradeArguments {
 
 std::vector<ShownMap> shown_sizes(const GradeRequest& request, const std::vector<GradeSize>& sizes) {
   std::vector<ShownMap> shown;
-  for (const GradeSize& size : sizes)
-    shown.push_back(
-        {size.line, size.name, size.map, request.source, size.target, request.products, {}, {}, size.t});
+  for (const GradeSize& size : sizes) {
+    ProductsAsWorn worn{request.products, {}, std::nullopt, {request.clearance}};
+    if (const auto pose = pose_of(size)) worn.pose = value_of(model_poses, *pose);
+    shown.push_back({size.line, size.name, size.map, request.source, size.target, worn, {}, {}, size.t});
+  }
   return shown;
 }
 

@@ -78,7 +78,7 @@ ManifestJob apply_job(const GradeRequest& request, const GradeSize& size) {
     job.entries.push_back({"source", {request.source}});
     job.entries.push_back({"target", {size.target}});
     if (request.clearance != "off") job.entries.push_back({"clearance", {request.clearance}});
-    if (request.require_clear) job.entries.push_back({"require-clear", {}, true});
+    if (request.require_clear) job.entries.push_back({"require-clear", {"true"}, true});
   }
   if (const auto pose = pose_of(size)) job.entries.push_back({"pose", {*pose}});
   if (!request.rigid.empty()) job.entries.push_back({"rigid", request.rigid});

@@ -50,10 +50,22 @@ std::string free_name(const std::string& name, std::set<std::string>& taken) {
   return free;
 }
 
-std::vector<TriangleMesh> meshes_of(const std::vector<std::string>& products, const std::string& map_unit) {
-  std::vector<TriangleMesh> meshes;
-  for (const std::string& path : products) meshes.push_back(read_product_in(path, map_unit).mesh);
-  return meshes;
+/// How a job carries its products.
+ProductsAsWorn worn_by(const ManifestJob& line) {
+  ProductsAsWorn worn{{}, value_of(line, "unit"), std::nullopt, {}};
+  worn.pose = bespoke::value_of(model_poses, value_of(line, "pose"));
+  if (const std::string distance = value_of(line, "clearance"); !distance.empty())
+    worn.clearance.distance = distance;
+  worn.clearance.layers = !values_of(line, "layers").empty();
+  return worn;
+}
+
+/// What of it the options of a job say; the same for jobs that one page can show.
+std::string options_text(const ProductsAsWorn& worn) {
+  std::string text = "unit " + worn.unit + ", clearance " + worn.clearance.distance;
+  if (worn.pose) text += ", pose " + std::string(name_of(model_poses, *worn.pose));
+  if (worn.clearance.layers) text += ", layers";
+  return text;
 }
 
 std::vector<std::string> file_names(const std::vector<std::string>& paths) {
@@ -64,19 +76,27 @@ std::vector<std::string> file_names(const std::vector<std::string>& paths) {
 
 std::vector<JobFile> inputs_of(const ShownMap& shown) {
   std::vector<JobFile> inputs{{"map", shown.map}, {"source", shown.source}, {"target", shown.target}};
-  for (const std::string& product : shown.products) inputs.push_back({"product", product});
+  for (const std::string& product : shown.worn.files) inputs.push_back({"product", product});
   return inputs;
+}
+
+void add_worn(const ProductsAsWorn& worn, ManifestJob& line) {
+  line.entries.push_back({"product", worn.files});
+  if (!worn.unit.empty()) line.entries.push_back({"unit", {worn.unit}});
+  if (worn.pose) line.entries.push_back({"pose", {std::string(name_of(model_poses, *worn.pose))}});
+  if (worn.clearance.is_used()) line.entries.push_back({"clearance", {worn.clearance.distance}});
+  if (worn.clearance.layers) line.entries.push_back({"layers", {"true"}, true});
 }
 
 }  // namespace
 
 std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
   std::vector<ShownMap> shown;
-  std::map<fs::path, std::size_t> row_of;
+  std::map<fs::path, std::vector<std::size_t>> rows_of;
   for (const ManifestJob& line : manifest.jobs) {
     const std::string map = value_of(line, "output");
     if (line.command != "fit" || map.empty()) continue;
-    row_of.try_emplace(fs::path(map).lexically_normal(), shown.size());
+    rows_of.try_emplace(fs::path(map).lexically_normal(), std::vector{shown.size()});
     shown.push_back({line.line,
                      name_of(map),
                      map,
@@ -88,13 +108,25 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
                      1});
   }
   for (const ManifestJob& line : manifest.jobs) {
-    const auto row = row_of.find(fs::path(value_of(line, "map")).lexically_normal());
+    const auto rows = rows_of.find(fs::path(value_of(line, "map")).lexically_normal());
     const bool goes_there = line.command == "apply" && values_of(line, "inverse").empty();
-    if (!goes_there || row == row_of.end()) continue;
-    std::vector<std::string>& products = shown[row->second].products;
+    if (!goes_there || rows == rows_of.end()) continue;
+    const ProductsAsWorn worn = worn_by(line);
+    const auto is_alike = [&](std::size_t row) {
+      return shown[row].worn.files.empty() || options_text(shown[row].worn) == options_text(worn);
+    };
+    auto row = std::find_if(rows->second.begin(), rows->second.end(), is_alike);
+    if (row == rows->second.end()) {
+      ShownMap other = shown[rows->second.front()];
+      other.worn = {};
+      row = rows->second.insert(row, shown.size());
+      shown.push_back(std::move(other));
+    }
+    ProductsAsWorn& there = shown[*row].worn;
+    if (there.files.empty()) there = worn;
     for (std::string& product : values_of(line, "product"))
-      if (std::find(products.begin(), products.end(), product) == products.end())
-        products.push_back(std::move(product));
+      if (std::find(there.files.begin(), there.files.end(), product) == there.files.end())
+        there.files.push_back(std::move(product));
   }
   return shown;
 }
@@ -108,7 +140,9 @@ HtmlPages::HtmlPages(fs::path directory, const std::vector<ShownMap>& maps)
   std::set<std::string> taken{"index"};
   for (const ShownMap& shown : maps) {
     const std::string name = free_name(shown.name, taken);
-    const fs::path& page = page_of.try_emplace(shown.map, directory_ / (name + ".html")).first->second;
+    const fs::path& page =
+        page_of.try_emplace(shown.map + "\n" + options_text(shown.worn), directory_ / (name + ".html"))
+            .first->second;
     rows_.push_back({shown, page, directory_ / (name + ".png")});
   }
 }
@@ -124,7 +158,7 @@ std::vector<ManifestJob> HtmlPages::page_lines() const {
                     {"source", {shown.source}},
                     {"target", {shown.target}},
                     {"output", {row.page.string()}}};
-    if (!shown.products.empty()) line.entries.push_back({"product", shown.products});
+    if (!shown.worn.files.empty()) add_worn(shown.worn, line);
     if (!shown.confidence.empty()) line.entries.push_back({"confidence", {shown.confidence}});
     if (!shown.fit_report.empty()) line.entries.push_back({"fit-report", {shown.fit_report}});
     lines.push_back(std::move(line));
@@ -138,7 +172,7 @@ std::vector<BatchJob> HtmlPages::picture_jobs(OpenedMaps& maps) const {
     BatchJob job;
     job.line = row.shown.line;
     job.command = "picture";
-    job.options = {{"t", format_number(row.shown.t, 17)}};
+    job.options = {{"t", format_number(row.shown.t, 17)}, {"worn", options_text(row.shown.worn)}};
     job.inputs = inputs_of(row.shown);
     job.outputs = {{"output", row.picture}};
     job.shared_map = row.shown.map;
@@ -168,7 +202,7 @@ void HtmlPages::write_index() const {
                  std::move(entry),
                  page.filename().string(),
                  picture.filename().string(),
-                 file_names(shown.products)};
+                 file_names(shown.worn.files)};
     }
   });
   std::vector<MapIndexRow> rows;
@@ -195,12 +229,19 @@ void HtmlPages::write(const std::string& scene, const OpenedMap& map) const {
 void HtmlPages::write_picture(const Row& row, const OpenedMap& map) {
   const TriangleMesh source = read_source(row.shown.source, map.unit, map.source_hash);
   const TriangleMesh target = read_target(row.shown.target, map.unit, map.target_hash).mesh;
-  const std::vector<TriangleMesh> products = meshes_of(row.shown.products, map.unit);
+  const ProductsAsWorn& worn = row.shown.worn;
+  std::vector<NamedProduct> products;
+  for (const std::string& path : worn.files)
+    products.push_back(read_product_in(path, map.unit, worn.unit, worn.pose_or_shown()));
+  std::vector<Points> cleared;
+  if (row.shown.t == 1) cleared = corrected_products(worn, products, map).places;
+  std::vector<TriangleMesh> meshes;
+  for (NamedProduct& product : products) meshes.push_back(std::move(product.mesh));
   OutputFiles files;
   files.write_text(
       row.picture,
       carried_picture(
-          {*map.elastic, map.target_from_source, {map.path}, row.shown.t, source, target, products},
+          {*map.elastic, map.target_from_source, {map.path}, row.shown.t, source, target, meshes, cleared},
           picture_pixels));
   files.keep();
 }

@@ -8,6 +8,7 @@
 #include "bespoke/batch/batch_job.h"
 #include "bespoke/batch/manifest.h"
 #include "bespoke/batch/opened_maps.h"
+#include "corrected_products.h"
 
 namespace bespoke::command {
 
@@ -18,16 +19,18 @@ struct ShownMap {
   std::string map;
   std::string source;
   std::string target;
-  std::vector<std::string> products;
+  ProductsAsWorn worn;
   std::string confidence;  ///< what the fit wrote beside the map; empty without
   std::string fit_report;
   double t = 1;
 };
 
-/// What a manifest fits, with the products that its other jobs carry by it, to the target.
+/// What a manifest fits, with the products that its other jobs carry by it, to the target: one for each way
+/// in which they are worn.
 std::vector<ShownMap> fitted_maps(const Manifest& manifest);
 
-/// The directory of `--html`: a page for every map, a picture for every row, and an index of them.
+/// The directory of `--html`: a page for every map and way of wearing, a picture for every row, and an index
+/// of them.
 class HtmlPages {
  public:
   /// Throws FileError in a build without pages, and where `directory` is something else.

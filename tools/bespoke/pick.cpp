@@ -1,6 +1,4 @@
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +14,7 @@
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
+#include "bespoke/text_lines.h"
 #include "commands.h"
 #include "help.h"
 #include "output_files.h"
@@ -52,24 +51,18 @@ void write_page(const std::string& output, const std::string& scene) {
   outputs.keep();
 }
 
-std::string text_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw FileError(path + ": cannot be opened");
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void pick_seams(const PickArguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.source};
   if (!arguments.seams.empty()) inputs.emplace_back(arguments.seams);
   require_safe_outputs(inputs, {arguments.output});
-  const Product product = read_product(arguments.source, arguments.pose.value_or(ModelPose::shown));
+  const Product product = read_product(arguments.source);
   const TriangleMesh garment{product.vertices, triangulated(product)};
   if (garment.faces.cols() == 0)
     throw InvalidInput(arguments.source + ": it has no faces, so there is nothing to cut");
   std::string seams;
   if (!arguments.seams.empty()) {
-    read_seam_file(arguments.seams, garment);  // says what is wrong in it
-    seams = text_of(arguments.seams);
+    seams = read_text_file(arguments.seams);
+    parse_seams(seams, arguments.seams, garment);  // says what is wrong in it
   }
   write_page(arguments.output, seam_scene({arguments.source, garment, product.unit, seams,
                                            "Seams of " + name_of_file(arguments.source), typed_command()}));
@@ -94,6 +87,8 @@ void run(const PickArguments& arguments) {
   if (arguments.is_for_seams && !arguments.target.empty())
     throw CLI::ValidationError("--seams",
                                "are picked on one garment, but " + arguments.target + " is a second");
+  if (arguments.is_for_seams && arguments.pose)
+    throw CLI::ValidationError("--seams", "excludes --pose: `flatten` cuts garments as a viewer shows them");
   if (arguments.is_for_seams && !arguments.anchors.empty())
     throw CLI::ValidationError("--seams", "excludes --anchors");
   if (!arguments.is_for_seams && arguments.target.empty())

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 #include "bespoke/product/mesh_io.h"
 #include "clearance_option.h"
 #include "commands.h"
+#include "corrected_products.h"
 #include "help.h"
 #include "map_models.h"
 #include "output_files.h"
@@ -37,33 +39,18 @@ std::vector<JobFile> inputs(const ViewArguments& arguments) {
 
 std::vector<JobFile> outputs(const ViewArguments& arguments) { return {{"output", arguments.output}}; }
 
-/// Products where --clearance takes them, in their order, and what was found; or empty.
-struct CorrectedProducts {
-  std::vector<Points> places;  ///< 3×n, target frame
-  std::vector<ProductClearance> found;
-};
-
-CorrectedProducts corrected_products(const ViewArguments& arguments, const MapModels& models) {
-  CorrectedProducts corrected;
-  if (!arguments.clearance.is_used()) return corrected;
-  const OpenedMap map =
-      open_map(arguments.models.map, MapForm::grids, {.untrusted = arguments.models.untrusted});
-  ClearanceKeeper keeper(arguments.clearance, {}, arguments.models.unit,
-                         arguments.models.pose.value_or(ModelPose::shown));
-  const std::vector<std::string>& names = arguments.models.products;
-  corrected.places.resize(names.size());
-  corrected.found.resize(names.size());
-  for (const std::size_t i : keeper.order(names, map)) {
-    const OpenedMap own = keeper.corrected(names[i], map);
-    corrected.places[i] = own.target_from_source * (*own.elastic)(models.products[i].mesh.vertices);
-    corrected.found[i] = *keeper.last();
-  }
-  return corrected;
+/// Opens the map again, as a carrier, where products are to be kept clear.
+CorrectedProducts where_kept_clear(const ViewArguments& arguments, const MapModels& models) {
+  const MapModelArguments& given = arguments.models;
+  if (!arguments.clearance.is_used()) return {};
+  return corrected_products({given.products, given.unit, given.pose, arguments.clearance}, models.products,
+                            open_map(given.map, MapForm::grids, {.untrusted = given.untrusted}));
 }
 
-std::vector<std::string> notes_of(const std::vector<ProductClearance>& found) {
+std::vector<std::string> notes_of(const CorrectedProducts& corrected) {
   std::vector<std::string> notes;
-  for (const ProductClearance& product : found) {
+  if (corrected.order) notes.push_back(to_string(*corrected.order));
+  for (const ProductClearance& product : corrected.found) {
     notes.push_back(product.product + ": " + to_string(product.summary));
     for (const LayerContact& contact : product.layers) notes.push_back(to_string(contact));
   }
@@ -77,15 +64,19 @@ void run(const ViewArguments& arguments, const RunContext& context) {
   for (const std::string& path : arguments.patterns)
     patterns.push_back({patterns.size(), read_pattern(path)});
   const MapModels models = read_map_models(arguments.models);
-  const CorrectedProducts corrected = corrected_products(arguments, models);
+  const CorrectedProducts corrected = where_kept_clear(arguments, models);
   const std::string scene =
       view_scene({models.asset, models.source, models.target, models.products, models.findings,
                   std::filesystem::path(arguments.models.map).filename().string(), context.command,
-                  std::move(patterns), corrected.places, notes_of(corrected.found)},
+                  std::move(patterns), corrected.places, notes_of(corrected)},
                  {.max_faces = arguments.max_faces}, context.progress);
   OutputFiles files;
   files.write_text(arguments.output, whole_page(scene));
   files.keep();
+  if (corrected.order) {
+    if (!arguments.run.quiet) std::printf("%s\n", to_string(*corrected.order).c_str());
+    warn_of_layers(context, *corrected.order);
+  }
   if (!arguments.run.quiet)
     for (const ProductClearance& found : corrected.found) print_clearance(found.product, found);
   warn_of_penetration(context, models, corrected.places);
@@ -126,6 +117,8 @@ void add_view_command(CLI::App& app, const PlanHandler& handle_plan) {
   view->callback([arguments, handle_plan] {
     const ViewArguments given = std::exchange(*arguments, {});
     require_valid(given.clearance);
+    if (given.clearance.is_used() && given.models.products.empty())
+      throw CLI::ValidationError("--clearance", "needs --product: products are what is kept clear");
     handle_plan(
         {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });

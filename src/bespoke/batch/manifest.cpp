@@ -9,6 +9,7 @@
 
 #include "bespoke/csv_rows.h"
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/text_lines.h"
 
@@ -63,8 +64,7 @@ Json parse_object(const std::string& text) {
   try {
     object = Json::parse(text, watch);
   } catch (const Json::parse_error& error) {
-    const std::string what = error.what();
-    fail("not one JSON object: " + what.substr(what.find("] ") + 2));
+    fail("not one JSON object: " + json_reason(error.what()));
   }
   if (!object.is_object()) fail("not a JSON object but " + std::string(object.type_name()));
   if (!twice.empty()) fail("\"" + twice + "\" is given twice");

@@ -7,8 +7,8 @@
 
 namespace bespoke {
 
-/// One option of a job as the command line would take it: no value is a flag that is off, several are those
-/// of an option that may be repeated.
+/// One option of a job as the command line would take it: a flag that is on has the value "true", one that is
+/// off none; several values are those of an option that may be repeated.
 struct ManifestEntry {
   std::string key;
   std::vector<std::string> values;

@@ -41,11 +41,13 @@ TriangleMesh together(const TriangleMesh& a, const Points& a_places, const Trian
   return both;
 }
 
-/// Pairs of a face of the first `split` ones and another.
-std::vector<std::pair<int, int>> pairs_between(const TriangleMesh& both, int split) {
-  std::vector<std::pair<int, int>> pairs = self_intersections(both);
-  std::erase_if(
-      pairs, [&](const std::pair<int, int>& pair) { return (pair.first < split) == (pair.second < split); });
+/// Pairs of a face of `a` and one of `b`.
+std::vector<std::pair<int, int>> pairs_between(const TriangleMesh& a, const Points& a_places,
+                                               const TriangleMesh& b, const Points& b_places) {
+  if (!bounding_box(a_places).intersects(bounding_box(b_places))) return {};
+  const Eigen::Index split = a.faces.cols();
+  auto pairs = intersections_of_first(together(a, a_places, b, b_places), split);
+  std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return pair.second < split; });
   return pairs;
 }
 
@@ -98,9 +100,8 @@ LayerContact layer_contact(const WornProduct& lower, const Points& lower_after, 
   LayerContact contact{lower.name, upper.name};
   const TriangleMesh &a = lower.prepared->mesh(), &b = upper.prepared->mesh();
   if (a.faces.cols() == 0 || b.faces.cols() == 0) return contact;
-  const int split = static_cast<int>(a.faces.cols());
-  const auto before = pairs_between(together(a, a.vertices, b, b.vertices), split);
-  const auto after = pairs_between(together(a, lower_after, b, upper_after), split);
+  const auto before = pairs_between(a, a.vertices, b, b.vertices);
+  const auto after = pairs_between(a, lower_after, b, upper_after);
   std::vector<std::pair<int, int>> further;
   std::set_difference(after.begin(), after.end(), before.begin(), before.end(), std::back_inserter(further));
   contact.before = before.size();

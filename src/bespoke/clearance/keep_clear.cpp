@@ -64,11 +64,6 @@ void describe_moves(const PreparedProduct& product, const Points& carried, const
   summary.strain_after = edge_strain(mesh, cleared.vertices);
 }
 
-/// Vertices that moved at some time.
-void unite(std::vector<char>& flags, const std::vector<char>& further) {
-  for (std::size_t i = 0; i < flags.size(); ++i) flags[i] = flags[i] || further[i];
-}
-
 /// Those of the product, and those nearest to its layers.
 ProductSamples checked_samples(const PreparedProduct::Data& data, const std::vector<Obstacle>& obstacles) {
   ProductSamples samples = data.checks;
@@ -85,10 +80,6 @@ double parting_margin(const std::vector<Obstacle>& obstacles) {
   double least = std::numeric_limits<double>::infinity();
   for (const Obstacle& obstacle : obstacles) least = std::min(least, obstacle.tolerance);
   return std::isfinite(least) ? parted_share * least : 0;
-}
-
-MissedDistances together(const MissedDistances& a, const MissedDistances& b) {
-  return {a.samples + b.samples, a.inside + b.inside, a.breaches + b.breaches, std::max(a.most, b.most)};
 }
 
 }  // namespace
@@ -108,38 +99,34 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   watch = {};
   SampleDistances distances(data.samples, data.mesh.vertices, obstacles);
   distances.look(carried);
-  summary.before = together(distances.count(), checks.count());
+  CorrectionSamples samples(distances, checks);
+  summary.before = samples.count();
   Correction correction(data, carried, obstacles);
   correction.solve(distances, rounds_of_a_solve);
   summary.solve_seconds = watch.seconds();
-  std::vector<char> touched = correction.moved();
   for (int look = 0; look < max_checks; ++look) {
     watch = {};
-    checks.look(correction.vertices(), touched);
-    const std::vector<int> missed = checks.missed();
+    samples.look_at_checks(correction.vertices(), correction.moved());
     summary.check_seconds += watch.seconds();
-    if (missed.empty()) break;
     watch = {};
-    distances.append(checks, missed);
+    if (!samples.constrain_what_misses()) break;
     correction.solve(distances, rounds_of_a_solve / 2);
-    unite(touched, correction.moved());
     summary.solve_seconds += watch.seconds();
   }
   watch = {};
   FacePassages passages(data.mesh, carried, obstacles);
-  FacePairs left = part_faces(passages, parting_margin(obstacles), correction, {distances, checks});
-  if (std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& one) { return one.is_soft; })) {
-    unite(touched, correction.moved());
-    checks.look(correction.vertices(), touched);
-    left = draw_near(passages, left, correction, {distances, checks});
-  }
+  FacePairs left = part_faces(passages, parting_margin(obstacles), correction, samples);
+  if (std::any_of(obstacles.begin(), obstacles.end(), [](const Obstacle& one) { return one.is_soft; }))
+    left = draw_near(passages, left, correction, samples);
+  summary.solve_seconds += watch.seconds();
+  watch = {};
   summary.new_self_intersections = passages.of_product(left).size();
+  summary.layers = passages.of_layers(left);
   summary.passed_through = passages.places(left, place_radius * diagonal(carried));
-  unite(touched, correction.moved());
   cleared.vertices = correction.vertices();
-  checks.look(cleared.vertices, touched);
-  summary.after = together(distances.count(), checks.count());
-  distances.append(checks, checks.missed());
+  samples.look_at_checks(cleared.vertices, correction.moved());
+  summary.after = samples.count();
+  samples.constrain_what_misses();
   summary.places = worst_places(distances, cleared.vertices, obstacles, place_radius * diagonal(carried));
   describe_moves(product, carried, correction, cleared);
   summary.check_seconds += watch.seconds();

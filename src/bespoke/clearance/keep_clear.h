@@ -25,6 +25,12 @@ struct PassedThrough {
   std::size_t pairs = 0;            ///< of faces, nearest to it
 };
 
+/// Pairs of faces of a product and of a layer below it that pass through each other.
+struct LayerPairs {
+  std::size_t before = 0;  ///< on the source: left as they are
+  std::size_t after = 0;   ///< that were none on the source
+};
+
 /// Samples that miss what is required of them by more than the tolerance.
 struct MissedDistances {
   std::size_t samples = 0;   ///< of all that were looked at
@@ -47,7 +53,8 @@ struct ClearanceSummary {
   /// Pairs of faces that pass through each other, and did not as carried.
   std::size_t new_self_intersections = 0;
   std::vector<PassedThrough> passed_through;  ///< itself or a layer, the most pairs first, ten at most
-  double solve_seconds = 0;                   ///< of the correction
+  std::vector<LayerPairs> layers;             ///< with each layer among the obstacles, in their order
+  double solve_seconds = 0;                   ///< of the correction, parting faces and drawing near with it
   double check_seconds = 0;                   ///< of what was looked at before and afterwards
 
   /// Nothing is inside that was outside or short of a required ease, nothing passes through itself that did

@@ -1,7 +1,6 @@
 #include "bespoke/clearance/nesting.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "bespoke/clearance/obstacle.h"
 
@@ -20,7 +19,7 @@ std::size_t count_above(const TriangleMesh& product, const Obstacle& below) {
 
 }  // namespace
 
-std::vector<std::size_t> nesting_order(const std::vector<TriangleMesh>& products, double source_diagonal) {
+Nesting nesting_of(const std::vector<TriangleMesh>& products, double source_diagonal) {
   const std::size_t count = products.size();
   const ModelSizes sizes{source_diagonal, source_diagonal};
   std::vector<std::vector<std::size_t>> above(count, std::vector<std::size_t>(count, 0));
@@ -34,24 +33,28 @@ std::vector<std::size_t> nesting_order(const std::vector<TriangleMesh>& products
     const auto over = static_cast<double>(above[a][b]), under = static_cast<double>(above[b][a]);
     return over > min_share * (over + under);
   };
-  std::vector<std::size_t> order;
+  Nesting nesting;
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = a + 1; b < count; ++b)
+      if (above[a][b] + above[b][a] > 0 && !lies_over(a, b) && !lies_over(b, a))
+        nesting.interleaved.emplace_back(a, b);
   std::vector<char> is_placed(count, 0);
-  while (order.size() < count) {
-    // The first with none left under it; of a circle the first.
-    std::size_t next = count;
-    for (std::size_t i = 0; i < count && next == count; ++i) {
-      if (is_placed[i]) continue;
-      bool is_free = true;
-      for (std::size_t j = 0; j < count; ++j)
-        is_free = is_free && (j == i || is_placed[j] || !lies_over(i, j));
-      if (is_free) next = i;
-    }
-    if (next == count)
+  const auto is_free = [&](std::size_t i) {
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != i && !is_placed[j] && lies_over(i, j)) return false;
+    return !is_placed[i];
+  };
+  while (nesting.order.size() < count) {
+    std::size_t next = 0;
+    while (next < count && !is_free(next)) ++next;
+    if (next == count) {
+      nesting.is_circular = true;
       next = static_cast<std::size_t>(std::find(is_placed.begin(), is_placed.end(), 0) - is_placed.begin());
+    }
     is_placed[next] = 1;
-    order.push_back(next);
+    nesting.order.push_back(next);
   }
-  return order;
+  return nesting;
 }
 
 }  // namespace bespoke

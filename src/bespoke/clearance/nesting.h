@@ -1,15 +1,34 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
 
-/// The order of products (numbers of the list) from the inside to the outside, by how they lie on the source:
-/// one lies over another where most of what of them is within 2.5 % of `source_diagonal` (mesh units) of the
-/// other's faces is on that side. Products that do not lie over each other keep the order of the list.
-std::vector<std::size_t> nesting_order(const std::vector<TriangleMesh>& products, double source_diagonal);
+/// How products lie over each other, as numbers of their list.
+struct Nesting {
+  std::vector<std::size_t> order;  ///< from the inside to the outside
+  /// Pairs, the smaller number first, that are near each other while neither lies over the other.
+  std::vector<std::pair<std::size_t, std::size_t>> interleaved;
+  /// Whether some lie over each other in a circle, so that no order is right.
+  bool is_circular = false;
+};
+
+/// The order in which the products of a call are kept from each other.
+struct LayerOrder {
+  std::vector<std::string> names;  ///< from the inside to the outside
+  bool is_found = false;           ///< on the source; else the call named them so
+  std::vector<std::pair<std::string, std::string>> interleaved = {};  ///< and left as the call named them
+  bool is_circular = false;
+};
+
+/// Of products on the source: one lies over another where most of what of them is within 2.5 % of
+/// `source_diagonal` (mesh units) of the other's faces is on that side. Those that do not lie over each other
+/// keep the order of the list.
+Nesting nesting_of(const std::vector<TriangleMesh>& products, double source_diagonal);
 
 }  // namespace bespoke

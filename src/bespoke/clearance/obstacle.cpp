@@ -27,8 +27,6 @@ constexpr double near_share = 0.02, looseness = 0.001;
 
 }  // namespace
 
-double ModelSizes::scale() const { return power_of_two_scale(target_diagonal / source_diagonal); }
-
 Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const ModelSizes& sizes,
                        const ClearanceRule& rule) {
   const double most = told_by_band * distances->target.band();

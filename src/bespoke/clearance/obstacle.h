@@ -2,11 +2,11 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "bespoke/asset/model_distances.h"
+#include "bespoke/clearance/clearance_rule.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -29,7 +29,8 @@ struct Obstacle {
   /// The distance that points of the product need after the map, by where they were on the source (3×n,
   /// source frame); minus infinity where nothing is required. Target's mesh units.
   SignedDistances required;
-  /// Of a layer, instead of `required` and `distance`: by where places were on the source (3×k).
+  /// Of a layer, instead of `required`, `distance` and `uncertainty`: by where places were on the source
+  /// (3×k).
   std::function<SidePlanes(const Points& x)> planes = {};
   /// Signed distance at points in the target frame (3×n), positive outside, mesh units.
   SignedDistances distance;
@@ -45,21 +46,6 @@ struct Obstacle {
   bool short_is_breach = false;
   /// Whether what misses it moves as a bystander may and no farther, and is no miss to tell of.
   bool is_soft = false;
-};
-
-/// What clearance is required.
-struct ClearanceRule {
-  /// At least that distance, target's mesh units. Without it each point keeps the one that it had.
-  std::optional<double> ease;
-  /// Without an ease: places near the source come no farther away either, as far as bystanders may move.
-  bool same = false;
-};
-
-/// Of the sizes of two models: what is a length of the source on the target (power_of_two_scale).
-struct ModelSizes {
-  double source_diagonal = 0;  ///< mesh units, > 0
-  double target_diagonal = 0;  ///< mesh units, > 0
-  double scale() const;        ///< a power of two
 };
 
 /// Misses of this share of the target's diagonal are none: 0.2 mm on a person, as fine as garments are

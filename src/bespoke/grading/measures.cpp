@@ -9,6 +9,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/grading/detail/surface_line.h"
+#include "bespoke/json_reason.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "bespoke/text_lines.h"
@@ -85,8 +86,7 @@ Json parse_file(const std::filesystem::path& path) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
-    const std::string what = error.what();
-    throw FormatError(path.string() + ": " + what.substr(what.find("] ") + 2));
+    throw FormatError(path.string() + ": " + json_reason(error.what()));
   }
 }
 

@@ -15,9 +15,13 @@ std::string carried_picture(const CarriedScene& scene, int size) {
         {inverse(scene.target_from_source) * scene.target.vertices, scene.target.faces, {model_colour}});
   else
     meshes.push_back({carried(scene.source.vertices), scene.source.faces, {model_colour}});
-  for (const TriangleMesh& product : scene.products)
-    if (product.faces.cols() > 0)
-      meshes.push_back({carried(product.vertices), product.faces, {product_colour}});
+  for (std::size_t i = 0; i < scene.products.size(); ++i) {
+    const TriangleMesh& product = scene.products[i];
+    if (product.faces.cols() == 0) continue;
+    const Points places = scene.cleared.empty() ? carried(product.vertices)
+                                                : inverse(scene.target_from_source) * scene.cleared[i];
+    meshes.push_back({places, product.faces, {product_colour}});
+  }
   return png(draw(meshes, DrawnFrom::front, size));
 }
 

@@ -19,6 +19,8 @@ struct CarriedScene {
   const TriangleMesh& source;
   const TriangleMesh& target;
   const std::vector<TriangleMesh>& products;
+  /// Where products were moved off the target at t = 1: 3×n each, target frame; or empty.
+  std::vector<Points> cleared = {};
 };
 
 /// A square PNG of `size` (> 0) pixels; the same scene gives the same bytes. Throws InvalidInput for models

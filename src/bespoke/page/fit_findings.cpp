@@ -1,25 +1,15 @@
 #include "bespoke/page/fit_findings.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/summary_json.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
-namespace {
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path))
-    throw FileError(path.string() + ": cannot be opened for reading");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-}  // namespace
 
 FitFindings findings_of(const FittedMapping& fit) {
   FitFindings findings{fit.confidence, std::vector<FitFindings::Unmet>()};
@@ -29,7 +19,7 @@ FitFindings findings_of(const FittedMapping& fit) {
 }
 
 std::vector<double> read_confidence(const std::filesystem::path& path) {
-  std::istringstream lines(text_of(path));
+  std::istringstream lines(read_text_file(path));
   std::vector<double> values;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -45,14 +35,14 @@ std::vector<double> read_confidence(const std::filesystem::path& path) {
 
 std::vector<FitFindings::Unmet> read_unmet_vertices(const std::filesystem::path& path) {
   try {
-    const Json report = Json::parse(text_of(path));
+    const Json report = Json::parse(read_text_file(path));
     std::vector<FitFindings::Unmet> unmet;
     for (const Json& entry : report.at("unmet_vertices"))
       unmet.push_back({entry.at("vertex").get<int>(), entry.at("residual").get<double>(),
                        entry.at("reason").get<std::string>()});
     return unmet;
   } catch (const Json::exception& error) {
-    throw FormatError(path.string() + ": not a report of `bespoke fit`: " + error.what());
+    throw FormatError(path.string() + ": not a report of `bespoke fit`: " + json_reason(error.what()));
   }
 }
 

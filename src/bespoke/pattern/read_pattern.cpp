@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "bespoke/error.h"
 #include "bespoke/json_reason.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -16,10 +17,13 @@ using Json = nlohmann::json;
 
 /// The numbers of a list, each one of 0 … limit − 1.
 std::vector<int> numbers(const Json& list, Eigen::Index limit, const std::string& what) {
-  auto all = list.get<std::vector<int>>();
-  for (const int number : all)
-    if (number < 0 || number >= limit)
-      throw FormatError(what + " names " + std::to_string(number) + " of " + std::to_string(limit));
+  if (!list.is_array()) throw FormatError(what + " is no list");
+  std::vector<int> all;
+  for (const Json& number : list) {
+    if (!number.is_number_integer() || number < 0 || number >= limit)
+      throw FormatError(what + " names " + number.dump() + " of " + std::to_string(limit));
+    all.push_back(number.get<int>());
+  }
   return all;
 }
 
@@ -43,7 +47,8 @@ WrittenPiece piece_of(const Json& json) {
     piece.faces.col(static_cast<Eigen::Index>(f)) << corners[0], corners[1], corners[2];
   }
   piece.outline = numbers(json.at("outline"), count, where + "its outline");
-  piece.product_faces = json.at("product_faces").get<std::vector<int>>();
+  piece.product_faces =
+      numbers(json.at("product_faces"), std::numeric_limits<int>::max(), where + "\"product_faces\"");
   piece.strain = json.at("strain_of_faces").get<std::vector<double>>();
   if (piece.product_faces.size() != faces.size() || piece.strain.size() != faces.size())
     throw FormatError(where + std::to_string(faces.size()) + " faces, " +
@@ -55,11 +60,10 @@ WrittenPiece piece_of(const Json& json) {
 }  // namespace
 
 WrittenPattern read_pattern(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  if (!in) throw FileError(path.string() + ": cannot be opened");
+  const std::string text = read_text_file(path);
   WrittenPattern pattern{path.string(), {}};
   try {
-    const Json root = Json::parse(in);
+    const Json root = Json::parse(text);
     if (root.at("unit") != "mm") throw FormatError("its unit is not mm");
     for (const Json& piece : root.at("pieces")) pattern.pieces.push_back(piece_of(piece));
   } catch (const Json::exception& error) {

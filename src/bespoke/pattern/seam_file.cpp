@@ -1,12 +1,13 @@
 #include "bespoke/pattern/seam_file.h"
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "bespoke/error.h"
+#include "bespoke/json_reason.h"
 #include "bespoke/mesh/surface_paths.h"
+#include "bespoke/text_lines.h"
 
 namespace bespoke {
 namespace {
@@ -149,12 +150,14 @@ std::vector<std::array<int, 2>> SeamFile::edges() const {
 }
 
 SeamFile read_seam_file(const std::filesystem::path& path, const TriangleMesh& mesh) {
-  std::ifstream in(path);
-  if (!in) throw FileError(path.string() + ": cannot be opened");
+  return parse_seams(read_text_file(path), path, mesh);
+}
+
+SeamFile parse_seams(const std::string& text, const std::filesystem::path& path, const TriangleMesh& mesh) {
   try {
-    return SeamReader(path.string(), mesh).run(Json::parse(in));
+    return SeamReader(path.string(), mesh).run(Json::parse(text));
   } catch (const Json::exception& error) {
-    throw FormatError(path.string() + ": " + error.what());
+    throw FormatError(path.string() + ": not valid JSON: " + json_reason(error.what()));
   }
 }
 

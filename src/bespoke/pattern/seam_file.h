@@ -46,4 +46,7 @@ struct SeamFile {
 /// in it.
 SeamFile read_seam_file(const std::filesystem::path& path, const TriangleMesh& mesh);
 
+/// The same of the text of such a file.
+SeamFile parse_seams(const std::string& text, const std::filesystem::path& path, const TriangleMesh& mesh);
+
 }  // namespace bespoke

@@ -67,12 +67,16 @@ class FaceBoxes {
 }  // namespace
 
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh) {
+  return intersections_of_first(mesh, mesh.faces.cols());
+}
+
+std::vector<std::pair<int, int>> intersections_of_first(const TriangleMesh& mesh, Eigen::Index count) {
   require_valid(mesh, "the mesh to intersect with itself");
   const FaceBoxes faces(mesh);
   const BoxTree tree = build_box_tree(faces.boxes);
   using Pairs = std::vector<std::pair<int, int>>;
   return parallel_reduce(
-      faces.boxes.size(), 256, Pairs(),
+      static_cast<std::size_t>(std::min(count, mesh.faces.cols())), 256, Pairs(),
       [&](std::size_t begin, std::size_t end) {
         Pairs pairs;
         for (std::size_t i = begin; i < end; ++i) {

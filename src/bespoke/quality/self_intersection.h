@@ -14,4 +14,7 @@ namespace bespoke {
 /// Throws InvalidInput for a mesh that is not valid.
 std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh);
 
+/// Of them those with one of the first `count` faces, without looking for the others.
+std::vector<std::pair<int, int>> intersections_of_first(const TriangleMesh& mesh, Eigen::Index count);
+
 }  // namespace bespoke

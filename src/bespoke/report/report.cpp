@@ -119,7 +119,7 @@ std::string fit_report(const Problem& input, const MadeMap& made, double seconds
 }
 
 std::string apply_report(const std::vector<AppliedProduct>& products, const std::vector<double>& times,
-                         double seconds) {
+                         double seconds, const std::optional<LayerOrder>& layers) {
   Json entries = Json::array();
   for (const AppliedProduct& product : products) {
     entries.push_back({{"name", product.name},
@@ -136,11 +136,16 @@ std::string apply_report(const std::vector<AppliedProduct>& products, const std:
     if (product.clearance) entries.back()["clearance"] = clearance_json(*product.clearance);
     if (!product.summary.parts.empty()) entries.back()["parts"] = parts(product.summary.parts);
   }
-  const Json json = {{"command", "apply"},
-                     {"times", times},
-                     {"products", std::move(entries)},
-                     {"seconds", seconds},
-                     {"peak_memory", peak_memory()}};
+  Json json = {{"command", "apply"},
+               {"times", times},
+               {"products", std::move(entries)},
+               {"seconds", seconds},
+               {"peak_memory", peak_memory()}};
+  if (layers)
+    json["layer_order"] = {{"names", layers->names},
+                           {"found_on_source", layers->is_found},
+                           {"interleaved", layers->interleaved},
+                           {"circular", layers->is_circular}};
   return json.dump(2) + "\n";
 }
 

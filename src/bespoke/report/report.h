@@ -7,6 +7,7 @@
 
 #include "bespoke/apply/apply_to_product.h"
 #include "bespoke/clearance/clear_products.h"
+#include "bespoke/clearance/nesting.h"
 #include "bespoke/pipeline/make_map.h"
 
 namespace bespoke {
@@ -24,8 +25,8 @@ struct AppliedProduct {
   std::optional<ProductClearance> clearance = {};  ///< where it was kept
 };
 
-/// What was applied at which times, as a JSON object.
+/// What was applied at which times, as a JSON object. `layers`: of products that were kept from each other.
 std::string apply_report(const std::vector<AppliedProduct>& products, const std::vector<double>& times,
-                         double seconds);
+                         double seconds, const std::optional<LayerOrder>& layers = std::nullopt);
 
 }  // namespace bespoke

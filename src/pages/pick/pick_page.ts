@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
 
+import { command_text } from "../controls/command_text";
 import { button_group, checkbox, element, save_text, tabs, theme_button } from "../controls/elements";
 import { mirrored, symmetry_plane, type Plane } from "../maths/mirror";
 import { shown } from "../maths/numbers";
@@ -284,7 +285,7 @@ class PickPage {
     this.redo_button.disabled = !this.history.can_redo;
     this.list.replaceChildren(...pairs.map((pair, i) => this.pair_row(pair, i)));
     this.warnings.replaceChildren(...this.checks.warnings.map((text) => element("li", { class: "warn" }, text)));
-    this.command.textContent = `bespoke fit ${this.record.source_path} ${this.record.target_path} --anchors anchors.json -o map.vdb`;
+    this.command.textContent = command_text(["bespoke", "fit", this.record.source_path, this.record.target_path, "--anchors", "anchors.json", "-o", "map.vdb"]);
     this.sides.a.show_hint(this.has_hint ? next_place(this.sides.a.surface.places(), pairs.flatMap((pair) => (pair.a === null ? [] : [pair.a]))) : null);
     this.show_preview();
   }

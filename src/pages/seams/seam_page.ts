@@ -1,5 +1,6 @@
 import { Vector3 } from "three";
 
+import { command_text } from "../controls/command_text";
 import { button_group, element, save_text, tabs, theme_button } from "../controls/elements";
 import { border_vertices } from "../maths/edge_paths";
 import { shown } from "../maths/numbers";
@@ -9,7 +10,7 @@ import { UndoLog } from "../pick/undo_log";
 import { unpacked_exact_points } from "../scene/decode";
 import type { ExactPointsReference, SeamsRecord, Triple } from "../scene/scene";
 import { Model } from "../view/models";
-import { parse_seams, seams_json } from "./seam_file";
+import { parse_kept, parse_seams, seams_json } from "./seam_file";
 import { copy_of, type NamedVertex, new_seam, type PickedSeam, SeamRoutes, type SeamWork } from "./seam_work";
 
 const colours = ["#be185d", "#0f766e", "#7e22ce", "#c2410c", "#1d6fd1", "#4d7c0f", "#a16207", "#334155"];
@@ -26,6 +27,8 @@ const tools: { value: Tool; label: string; help: string }[] = [
   { value: "width", label: "Width", help: "Click where the width across the grain is to be in the table of sizes." },
 ];
 
+const reason = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
 /** The page for picking where a garment is cut. */
 export function seam_page(root: HTMLElement, record: SeamsRecord, bytes: Uint8Array): void {
   new SeamPage(root, record, bytes);
@@ -38,8 +41,8 @@ class SeamPage {
   private readonly border: Set<number>;
   private readonly list = element("tbody", {});
   private readonly names = element("tbody", {});
-  private readonly command = element("pre", {});
   private readonly message = element("p", { class: "warn", role: "status" });
+  private readonly file_message = element("p", { class: "warn", role: "status", "aria-label": "Saving and importing" });
   private readonly help = element("p", { class: "soft" });
   private readonly undo = element("button", { type: "button", onclick: () => this.log.undo() }, "Undo");
   private readonly redo = element("button", { type: "button", onclick: () => this.log.redo() }, "Redo");
@@ -53,7 +56,7 @@ class SeamPage {
     this.routes = new SeamRoutes(new SurfaceGraph(exact ? unpacked_exact_points(bytes, exact as ExactPointsReference) : model.knots[0], model.faces));
     this.border = border_vertices(this.routes.graph);
     const given = record.seams === null ? { seams: [], pieces: [], widths: [] } : this.parsed(record.seams);
-    this.log = new UndoLog(`bespoke-seams-${record.key}`, given, (kept) => JSON.parse(kept) as SeamWork, copy_of, () => this.refresh());
+    this.log = new UndoLog(`bespoke-seams-${record.key}`, given, parse_kept, copy_of, () => this.changed());
     this.side = new ModelSide(model, model.record.name, {
       clicked: (point) => this.clicked(this.vertex_at(point)),
       missed: (x, y) => this.clicked_beside(x, y),
@@ -104,11 +107,27 @@ class SeamPage {
       element("h2", {}, "Pieces and widths"),
       element("table", {}, heading("", "name", ""), this.names));
     const saving = element("section", {},
-      element("p", {}, element("button", { type: "button", class: "main", onclick: () => save_text("seams.json", seams_json(this.log.work, this.routes)) }, "Save seams.json")),
-      element("h2", {}, "Then flatten"), this.command,
+      element("p", {}, element("button", { type: "button", class: "main", onclick: () => this.save() }, "Save seams.json")), this.file_message,
+      element("h2", {}, "Then flatten"), ...this.flatten_command(),
       element("h2", {}, "Import"), open,
       element("p", { class: "soft" }, "Work is kept in this browser until it is deleted."));
     return element("aside", { class: "panel" }, ...tabs([{ title: "Seams", body: seams }, { title: "Save and import", body: saving }]));
+  }
+
+  private flatten_command(): HTMLElement[] {
+    const { garment_path, unit } = this.record;
+    const words = ["bespoke", "flatten", garment_path, ...(unit === "" ? ["--unit", "UNIT"] : []), "--seams", "seams.json", "-o", "pieces.pdf"];
+    const command = element("pre", {}, command_text(words));
+    return unit === "" ? [command, element("p", { class: "soft" }, "UNIT is the length unit that the file’s numbers are in: mm, cm, m or in.")] : [command];
+  }
+
+  private save(): void {
+    try {
+      save_text("seams.json", seams_json(this.log.work, this.routes));
+      this.file_message.textContent = "";
+    } catch (error) {
+      this.file_message.textContent = `Nothing was saved: ${reason(error)}.`;
+    }
   }
 
   private async read(input: HTMLInputElement): Promise<void> {
@@ -120,7 +139,7 @@ class SeamPage {
       this.log.change((all) => Object.assign(all, work));
       this.say("");
     } catch (error) {
-      this.say(`Nothing was imported: ${error instanceof Error ? error.message : String(error)}.`);
+      this.file_message.textContent = `Nothing was imported: ${reason(error)}.`;
     }
   }
 
@@ -155,7 +174,7 @@ class SeamPage {
     this.say("");
     if (this.tool === "piece" || this.tool === "width") return this.name(this.tool === "piece" ? "pieces" : "widths", vertex);
     const seams = this.log.work.seams, seam = seams[this.chosen], kind = this.tool === "edges" ? "edges" : "line";
-    const leads_on = seam !== undefined && seam.fixed === null && seam.kind === kind;
+    const leads_on = seam !== undefined && seam.fixed_ways === null && seam.kind === kind;
     if (!leads_on) {
       if (this.tool === "dart" && !this.is_open_at(vertex)) return this.say("A dart begins at the border of the garment or on a seam.");
       this.chosen = seams.length;
@@ -163,7 +182,7 @@ class SeamPage {
     }
     if (seam.vertices[seam.vertices.length - 1] === vertex) return;
     const longer = { ...seam, vertices: [...seam.vertices, vertex] };
-    if (this.routes.way(longer) === null) return this.say(separate);
+    if (this.routes.ways(longer) === null) return this.say(separate);
     const index = this.chosen;
     if (this.tool === "dart") this.chosen = -1;
     this.log.change((work) => (work.seams[index] = longer));
@@ -171,7 +190,7 @@ class SeamPage {
 
   /** At the border, or on a seam. */
   private is_open_at(vertex: number): boolean {
-    return this.border.has(vertex) || this.log.work.seams.some((seam) => (this.routes.way(seam) ?? []).includes(vertex));
+    return this.border.has(vertex) || this.log.work.seams.some((seam) => (this.routes.ways(seam) ?? []).flat().includes(vertex));
   }
 
   private free_name(stem: string): string {
@@ -192,9 +211,9 @@ class SeamPage {
     const index = this.chosen;
     this.log.change_again((work) => {
       const seam = work.seams[index];
-      if (seam === undefined || seam.fixed !== null) return;
+      if (seam === undefined || seam.fixed_ways !== null) return;
       const moved = { ...seam, vertices: seam.vertices.map((own, i) => (i === number ? vertex : own)) };
-      if (this.routes.way(moved) !== null) work.seams[index] = moved;
+      if (this.routes.ways(moved) !== null) work.seams[index] = moved;
     });
   }
 
@@ -202,7 +221,7 @@ class SeamPage {
     if (event.key === "Enter" || event.key === "Escape") this.choose(-1);
     if (event.key !== "Delete" && event.key !== "Backspace") return;
     const seam = this.log.work.seams[this.chosen];
-    if (seam === undefined || seam.fixed !== null) return;
+    if (seam === undefined || seam.fixed_ways !== null) return;
     const index = this.chosen;
     if (seam.vertices.length <= 1) return this.remove(index);
     this.log.change((work) => (work.seams[index] = { ...seam, vertices: seam.vertices.slice(0, -1) }));
@@ -235,6 +254,12 @@ class SeamPage {
     return (this.log.work.seams[this.chosen]?.vertices ?? []).map((vertex) => ({ vertex }));
   }
 
+  /** What was said of files may no longer be true. */
+  private changed(): void {
+    this.file_message.textContent = "";
+    this.refresh();
+  }
+
   private refresh(): void {
     if (this.side === undefined) return;
     const { seams, pieces, widths } = this.log.work;
@@ -243,9 +268,7 @@ class SeamPage {
     this.redo.disabled = !this.log.can_redo;
     this.list.replaceChildren(...seams.map((seam, i) => this.seam_row(seam, i)));
     this.names.replaceChildren(...pieces.map((piece, i) => this.name_row("pieces", piece, i)), ...widths.map((width, i) => this.name_row("widths", width, i)));
-    const unit = this.record.unit === "" ? " --unit cm" : ""; // which the format does not say
-    this.command.textContent = `bespoke flatten ${this.record.garment_path}${unit} --seams seams.json -o pieces.pdf`;
-    const lines = seams.map((seam, i) => ({ points: this.routes.line(seam), colour: colour_of(i), width: i === this.chosen ? 4 : 2.5 }));
+    const lines = seams.flatMap((seam, i) => this.routes.lines(seam).map((points) => ({ points, colour: colour_of(i), width: i === this.chosen ? 4 : 2.5 })));
     const marker = ({ vertex }: { vertex: number }, colour: string, number: number | null, size: SideMarker["size"]): SideMarker => ({ number, point: this.routes.graph.place(vertex), colour, size });
     this.side.show([
       ...this.handles().map((handle, i) => marker(handle, colour_of(this.chosen), i, "plain")),
@@ -253,7 +276,7 @@ class SeamPage {
       ...widths.map((width) => marker(width, "#c2410c", null, "small")),
     ], lines, []);
     const seam = seams[this.chosen];
-    this.side.show_task(this.tool === "piece" || this.tool === "width" ? "" : seam === undefined || seam.fixed !== null ? "a click begins a seam" : `a click leads ${seam.name} on`);
+    this.side.show_task(this.tool === "piece" || this.tool === "width" ? "" : seam === undefined || seam.fixed_ways !== null ? "a click begins a seam" : `a click leads ${seam.name} on`);
   }
 
   private seam_row(seam: PickedSeam, index: number): HTMLElement {

@@ -6,14 +6,14 @@ import type { Triple } from "../scene/scene";
 /** A vertex, or two of them and the share of the way between. */
 export type EdgePoint = number | [number, number, number];
 
-/** A seam as it is being picked: vertices that were clicked, or the way of a file, which stays as it is. */
+/** A seam as it is being picked: vertices that were clicked, or the ways of a file, which stay as they are. */
 export interface PickedSeam {
   name: string;
   /** Along edges from vertex to vertex, or straight over the faces. */
   kind: "edges" | "line";
   vertices: number[];
-  /** Of a file: all points of the way. */
-  fixed: EdgePoint[] | null;
+  /** Of a file: all points of each way; several only along edges, where these branch or lie apart. */
+  fixed_ways: EdgePoint[][] | null;
   /** Millimetres that the side of the piece `longer` is longer by. */
   ease: number | null;
   longer: string;
@@ -35,41 +35,41 @@ export function copy_of({ seams, pieces, widths }: SeamWork): SeamWork {
 }
 
 export function new_seam(name: string, kind: PickedSeam["kind"], vertices: number[]): PickedSeam {
-  return { name, kind, vertices, fixed: null, ease: null, longer: "" };
+  return { name, kind, vertices, fixed_ways: null, ease: null, longer: "" };
 }
 
 /** Of an edge: a way that passes a vertex nearer than this goes through it, so that no faces become slivers. */
 const near_vertex = 0.02;
 
 export class SeamRoutes {
-  private readonly known = new WeakMap<number[], Map<string, EdgePoint[] | null>>();
+  private readonly known = new WeakMap<number[], Map<string, EdgePoint[][] | null>>();
 
   constructor(readonly graph: SurfaceGraph) {}
 
-  /** The whole way of a seam; null where no way joins two of its vertices. */
-  way(seam: PickedSeam): EdgePoint[] | null {
-    if (seam.fixed !== null) return seam.fixed;
-    const of_kind = this.known.get(seam.vertices) ?? new Map<string, EdgePoint[] | null>();
+  /** All points of a seam: of one that was clicked a single way; null where no way joins two of its vertices. */
+  ways(seam: PickedSeam): EdgePoint[][] | null {
+    if (seam.fixed_ways !== null) return seam.fixed_ways;
+    const of_kind = this.known.get(seam.vertices) ?? new Map<string, EdgePoint[][] | null>();
     this.known.set(seam.vertices, of_kind);
-    let way = of_kind.get(seam.kind);
-    if (way === undefined) of_kind.set(seam.kind, (way = this.found(seam)));
-    return way;
+    let ways = of_kind.get(seam.kind);
+    if (ways === undefined) of_kind.set(seam.kind, (ways = this.found(seam)));
+    return ways;
   }
 
   place(point: EdgePoint): Triple {
     return typeof point === "number" ? this.graph.place(point) : between(this.graph.place(point[0]), this.graph.place(point[1]), point[2]);
   }
 
-  line(seam: PickedSeam): Triple[] {
-    return (this.way(seam) ?? []).map((point) => this.place(point));
+  lines(seam: PickedSeam): Triple[][] {
+    return (this.ways(seam) ?? []).map((way) => way.map((point) => this.place(point)));
   }
 
   length(seam: PickedSeam): number {
-    const line = this.line(seam);
-    return line.slice(1).reduce((sum, point, i) => sum + Math.hypot(...minus(point, line[i])), 0);
+    const lengths = this.lines(seam).flatMap((line) => line.slice(1).map((point, i) => Math.hypot(...minus(point, line[i]))));
+    return lengths.reduce((sum, length) => sum + length, 0);
   }
 
-  private found(seam: PickedSeam): EdgePoint[] | null {
+  private found(seam: PickedSeam): EdgePoint[][] | null {
     const way: EdgePoint[] = seam.vertices.slice(0, 1);
     for (let i = 1; i < seam.vertices.length; ++i) {
       const from = seam.vertices[i - 1], to = seam.vertices[i];
@@ -77,7 +77,7 @@ export class SeamRoutes {
       if (part === null) return null;
       way.push(...part.slice(1));
     }
-    return way;
+    return [way];
   }
 
   private straight(from: number, to: number): EdgePoint[] | null {

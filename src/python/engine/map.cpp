@@ -126,19 +126,12 @@ std::shared_ptr<const ElasticMap> cleared_map(const Asset& asset, std::shared_pt
     throw InvalidInput("clearance is kept from the target, where t is 1; leave out t");
   const ModelSizes sizes{asset.record.source.box.diagonal().norm(),
                          asset.record.target.box.diagonal().norm()};
-  ClearanceRule rule;
-  rule.same = request.clearance == "same";
-  if (request.clearance != "keep" && !rule.same) {
-    const auto ease = parse_length(request.clearance, LengthRange::not_negative);
-    if (!ease)
-      throw InvalidInput(
-          "clearance is \"keep\", \"same\", \"off\", a length or a percentage of the source's diagonal, not "
-          "'" +
-          request.clearance + "'");
-    rule.ease = ease->in_mesh_units(sizes.source_diagonal) * (ease->percent ? sizes.scale() : 1);
-  }
+  const std::optional<ClearanceRule> rule = parse_clearance(request.clearance, sizes);
+  if (!rule)
+    throw InvalidInput("clearance is \"off\", " + std::string(clearance_grammar) + "; not '" +
+                       request.clearance + "'");
   const ClearanceMap map{std::move(elastic), asset.target_from_source, model_distances(asset), sizes};
-  ProductClearer clearer(rule, ProductClearer::Products::layers);
+  ProductClearer clearer(*rule, ProductClearer::Products::layers);
   const auto corrected = [&](const fs::path& file, const std::vector<RigidPart>& parts) {
     return clearer.corrected(
         read_worn_product(file, parts, product_scale(file, asset.record.unit, request.unit), request.pose),
@@ -169,6 +162,9 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
   if (unit.empty()) options.model_box = Box(record.source.box.min() / scale, record.source.box.max() / scale);
   // Not the owner: the map outlives the call.
   const std::shared_ptr<const ElasticMap> carrier(std::shared_ptr<void>(), &map.carrier());
+  if (clearance == "off" && !layers.empty())
+    throw InvalidInput(
+        "layers are kept under the product where there is a clearance: \"keep\", \"same\" or a length");
   AppliedProduct applied{product.filename().string(), {}, {}};
   applied.summary = released(callback, [&](const Progress& progress) {
     options.progress = progress;

@@ -44,21 +44,21 @@ class Misses {
 };
 
 /// One pass. Whether it was taken.
-bool draw(FacePassages& passages, FacePairs& left, Correction& correction, const CorrectionSamples& samples) {
-  std::vector<char> touched = correction.moved();
+bool draw(FacePassages& passages, FacePairs& left, Correction& correction, CorrectionSamples& samples) {
   const NodeVectors before = correction.displacement();
-  const Misses at_constraints(samples.distances), at_checks(samples.checks);
+  const Misses at_constraints(samples.distances()), at_checks(samples.checks());
   const auto look = [&] {
-    for (std::size_t v = 0; v < touched.size(); ++v) touched[v] = touched[v] || correction.moved()[v];
-    samples.checks.look(correction.vertices(), touched);
-    return passages.found(correction.vertices());
+    const Points vertices = correction.vertices();
+    samples.look_at_checks(vertices, correction.moved());
+    passages.move_to(vertices);
   };
-  for (int round = 0; round < draws; ++round) correction.draw(before, samples.distances);
+  for (int round = 0; round < draws; ++round) correction.draw(before, samples.distances());
   const NodeVectors further = correction.displacement() - before;
   Eigen::VectorXd shares = Eigen::VectorXd::Ones(further.rows());
   for (int round = 0; round < max_rounds; ++round) {
-    correction.move_to(before + shares.asDiagonal() * further, samples.distances);
-    FacePairs pairs = look();
+    correction.move_to(before + shares.asDiagonal() * further, samples.distances());
+    look();
+    FacePairs pairs = passages.found();
     FacePairs more;
     std::set_difference(pairs.begin(), pairs.end(), left.begin(), left.end(), std::back_inserter(more));
     std::vector<int> harmed;
@@ -71,7 +71,7 @@ bool draw(FacePassages& passages, FacePairs& left, Correction& correction, const
     }
     correction.shorten_draws(harmed, shares);
   }
-  correction.move_to(before, samples.distances);
+  correction.move_to(before, samples.distances());
   look();
   return false;
 }
@@ -79,7 +79,7 @@ bool draw(FacePassages& passages, FacePairs& left, Correction& correction, const
 }  // namespace
 
 FacePairs draw_near(FacePassages& passages, FacePairs left, Correction& correction,
-                    const CorrectionSamples& samples) {
+                    CorrectionSamples& samples) {
   for (int pass = 0; pass < max_passes_of_draws && draw(passages, left, correction, samples); ++pass)
     continue;
   return left;

@@ -8,6 +8,6 @@ namespace bespoke {
 /// pass through each other than the pairs `left` that are found so far, draws are shortened. A pass whose
 /// shortening does not end is taken back. Returns the pairs that are left.
 FacePairs draw_near(FacePassages& passages, FacePairs left, Correction& correction,
-                    const CorrectionSamples& samples);
+                    CorrectionSamples& samples);
 
 }  // namespace bespoke

@@ -8,7 +8,7 @@ namespace {
 // Of the product of the edges' lengths: shorter, a cross product has no direction.
 constexpr double min_sine = 1e-3;
 
-// Of the faces' extent along the axis: nearer, rounding decides whether they are apart.
+// Of the largest coordinates along the axis: nearer, rounding decides whether they are apart.
 constexpr double min_gap = 1e-9;
 
 Vector3 edge(const Matrix3& face, int k) { return face.col((k + 1) % 3) - face.col(k); }
@@ -46,9 +46,9 @@ std::optional<Parting> parting(const Matrix3& first_before, const Matrix3& secon
     const Vector3 now = axis_of(first_now, second_now, i);
     if (before.isZero(0) || now.isZero(0)) continue;
     for (const double sign : {1.0, -1.0}) {
-      const double extent = (before.transpose() * first_before).cwiseAbs().maxCoeff() +
-                            (before.transpose() * second_before).cwiseAbs().maxCoeff();
-      if (!(gap(first_before, second_before, sign * before) > min_gap * extent)) continue;
+      const double largest = (before.transpose() * first_before).cwiseAbs().maxCoeff() +
+                             (before.transpose() * second_before).cwiseAbs().maxCoeff();
+      if (!(gap(first_before, second_before, sign * before) > min_gap * largest)) continue;
       const double overlap = -gap(first_now, second_now, sign * now);
       if (!least || overlap < least->overlap) least = {sign * now, overlap};
     }

@@ -40,24 +40,26 @@ FacePassages::FacePassages(const TriangleMesh& product, const Points& carried,
     ends_.emplace_back(static_cast<int>(face), obstacle.name);
   }
   carried_ = now_.vertices;
-  if (faces == 0) return;
-  const FacePairs on_source =
-      vertices > product_vertices_ ? self_intersections({on_source_, now_.faces}) : FacePairs();
-  for (const auto& pair : on_source)
-    if (!is_of_product(pair.second)) before_.push_back(pair);
-  for (const auto& pair : self_intersections(now_))
+}
+
+void FacePassages::look_before() {
+  at_carried_ = intersections_of_first({carried_, now_.faces}, product_faces_);
+  if (ends_.size() > 1)
+    for (const auto& pair : intersections_of_first({on_source_, now_.faces}, product_faces_))
+      if (!is_of_product(pair.second)) before_.push_back(pair);
+  for (const auto& pair : *at_carried_)
     if (is_of_product(pair.second)) before_.push_back(pair);
   std::sort(before_.begin(), before_.end());
 }
 
-FacePairs FacePassages::found(const Points& vertices) {
+FacePairs FacePassages::found() {
   FacePairs further;
-  if (product_faces_ == 0) return further;
-  now_.vertices.leftCols(product_vertices_) = vertices;
-  const FacePairs after = self_intersections(now_);
+  const bool is_carried = now_.vertices == carried_;
+  if (product_faces_ == 0 || (is_carried && ends_.size() == 1)) return further;
+  if (!at_carried_) look_before();
+  const FacePairs after = is_carried ? *at_carried_ : intersections_of_first(now_, product_faces_);
   std::set_difference(after.begin(), after.end(), before_.begin(), before_.end(),
                       std::back_inserter(further));
-  std::erase_if(further, [&](const auto& pair) { return !is_of_product(pair.first); });
   return further;
 }
 
@@ -66,6 +68,20 @@ FacePairs FacePassages::of_product(const FacePairs& pairs) const {
   for (const auto& pair : pairs)
     if (is_of_product(pair.second)) own.push_back(pair);
   return own;
+}
+
+std::vector<LayerPairs> FacePassages::of_layers(const FacePairs& pairs) const {
+  std::vector<LayerPairs> counts(ends_.size() - 1);
+  const auto layer_of = [&](int face) -> LayerPairs& {
+    const auto end =
+        std::find_if(ends_.begin(), ends_.end(), [&](const auto& one) { return face < one.first; });
+    return counts[static_cast<std::size_t>(end - ends_.begin()) - 1];
+  };
+  for (const auto& pair : before_)
+    if (!is_of_product(pair.second)) ++layer_of(pair.second).before;
+  for (const auto& pair : pairs)
+    if (!is_of_product(pair.second)) ++layer_of(pair.second).after;
+  return counts;
 }
 
 std::vector<PassedThrough> FacePassages::places(const FacePairs& pairs, double radius) const {

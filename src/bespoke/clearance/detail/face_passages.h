@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,13 +18,17 @@ using FacePairs = std::vector<std::pair<int, int>>;
 /// among themselves as carried, through layers on the source.
 class FacePassages {
  public:
-  /// `carried`: 3×n, the product's vertices on the target. All must outlive it.
+  /// `carried`: 3×n, the product's vertices on the target, where they are at first.
   FacePassages(const TriangleMesh& product, const Points& carried, const std::vector<Obstacle>& obstacles);
 
-  /// With the product's vertices here (3×n), in increasing order.
-  FacePairs found(const Points& vertices);
+  /// The product's vertices are here (3×n).
+  void move_to(const Points& vertices) { now_.vertices.leftCols(product_vertices_) = vertices; }
+  /// In increasing order. Intersects nothing where a product without layers is as carried.
+  FacePairs found();
   /// Of them those of the product alone.
   FacePairs of_product(const FacePairs& pairs) const;
+  /// Of each layer, in the order of the obstacles: those on the source, and of `pairs`. After `found`.
+  std::vector<LayerPairs> of_layers(const FacePairs& pairs) const;
 
   /// Where they are, one in a neighbourhood of `radius` (mesh units), ten at most.
   std::vector<PassedThrough> places(const FacePairs& pairs, double radius) const;
@@ -36,15 +41,17 @@ class FacePassages {
 
  private:
   Matrix3 corners(int face, const Points& vertices) const;
+  void look_before();
   void add_pushes(const std::pair<int, int>& pair, double margin, std::vector<Push>& pushes) const;
   bool is_of_product(int face) const { return face < product_faces_; }
   const std::string& name_of(int face) const;
 
   int product_faces_;
   Eigen::Index product_vertices_;
-  TriangleMesh now_;            // the product, then the layers
-  Points on_source_, carried_;  // the same vertices
-  FacePairs before_;
+  TriangleMesh now_;                               // the product, then the layers
+  Points on_source_, carried_;                     // the same vertices
+  std::optional<FacePairs> at_carried_;            // all pairs there, once they are needed
+  FacePairs before_;                               // what is left as it is, made with them
   std::vector<std::pair<int, std::string>> ends_;  // after which face the product and each layer end
 };
 

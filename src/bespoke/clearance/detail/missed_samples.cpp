@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace bespoke {
 namespace {
@@ -31,7 +32,7 @@ void append_columns(const Points& from, const std::vector<int>& columns, Points&
 
 SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source,
                                  const std::vector<Obstacle>& obstacles)
-    : samples_(std::move(samples)), obstacles_(obstacles) {
+    : samples_(std::move(samples)), own_(static_cast<int>(samples_.count())), obstacles_(obstacles) {
   const Points places = places_of(samples_, on_source);
   for (const Obstacle& obstacle : obstacles) {
     planes_.push_back(obstacle.planes ? obstacle.planes(places) : SidePlanes());
@@ -122,6 +123,7 @@ std::vector<int> SampleDistances::missed() const {
 MissedDistances SampleDistances::count() const {
   MissedDistances count;
   for (const int i : missed()) {
+    if (i >= own_) break;
     ++count.samples;
     bool is_inside = false, is_breach = false;
     for (std::size_t o = 0; o < obstacles_.size(); ++o) {
@@ -136,6 +138,26 @@ MissedDistances SampleDistances::count() const {
     if (is_inside || is_breach) ++count.breaches;
   }
   return count;
+}
+
+void CorrectionSamples::look_at_checks(const Points& vertices, const std::vector<char>& moved) {
+  touched_.resize(moved.size(), 0);
+  for (std::size_t v = 0; v < moved.size(); ++v) touched_[v] = touched_[v] || moved[v];
+  checks_.look(vertices, touched_);
+}
+
+bool CorrectionSamples::constrain_what_misses() {
+  const std::vector<int> missed = checks_.missed();
+  std::vector<int> further;
+  for (const int column : missed)
+    if (!std::exchange(is_constrained_[static_cast<std::size_t>(column)], 1)) further.push_back(column);
+  distances_.append(checks_, further);
+  return !missed.empty();
+}
+
+MissedDistances CorrectionSamples::count() const {
+  const MissedDistances a = distances_.count(), b = checks_.count();
+  return {a.samples + b.samples, a.inside + b.inside, a.breaches + b.breaches, std::max(a.most, b.most)};
 }
 
 std::vector<MissedPlace> worst_places(const SampleDistances& distances, const Points& on_target,

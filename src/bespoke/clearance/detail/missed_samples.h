@@ -24,7 +24,7 @@ class SampleDistances {
     return obstacles_[obstacle].planes ? Vector3(planes_[obstacle].normals.col(sample)) : Vector3::Zero();
   }
 
-  /// Some of another's after these.
+  /// Some of another's after these: they are constrained with them and not counted.
   void append(const SampleDistances& other, const std::vector<int>& columns);
 
   const ProductSamples& samples() const { return samples_; }
@@ -44,6 +44,7 @@ class SampleDistances {
   /// Columns that miss what some obstacle requires.
   std::vector<int> missed() const;
 
+  /// Of the samples that it was made with.
   MissedDistances count() const;
 
  private:
@@ -52,10 +53,40 @@ class SampleDistances {
   void look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns, const Points& places);
 
   ProductSamples samples_;
+  int own_;  // of them, first
   const std::vector<Obstacle>& obstacles_;
   /// Of each obstacle, of each sample; `least`: what keeps it outside although the distance is uncertain.
   std::vector<std::vector<double>> required_, distance_, least_;
   std::vector<SidePlanes> planes_;  // of layers
+};
+
+/// What a correction is solved and checked by.
+class CorrectionSamples {
+ public:
+  /// `distances`: constrained from the start; `checks`: looked at, as carried so far. Both must outlive it.
+  CorrectionSamples(SampleDistances& distances, SampleDistances& checks)
+      : distances_(distances),
+        checks_(checks),
+        is_constrained_(static_cast<std::size_t>(checks.samples().count()), 0) {}
+
+  SampleDistances& distances() const { return distances_; }
+  const SampleDistances& checks() const { return checks_; }
+
+  /// Looks at the checks where they moved at some time: the vertices (3×n) as they are, n flags of those that
+  /// are not as carried.
+  void look_at_checks(const Points& vertices, const std::vector<char>& moved);
+
+  /// Checks that miss join what is constrained, each once. Whether any misses.
+  bool constrain_what_misses();
+
+  /// Of both, each sample once.
+  MissedDistances count() const;
+
+ private:
+  SampleDistances& distances_;
+  SampleDistances& checks_;
+  std::vector<char> is_constrained_;  // of the checks
+  std::vector<char> touched_;         // vertices that moved at some time
 };
 
 /// The worst places of what misses, one in a neighbourhood of `radius` (mesh units), ten at most.

@@ -17,56 +17,50 @@ constexpr int max_passes = 2;
 /// The correction with the fewest pairs so far.
 class Best {
  public:
-  Best(FacePassages& passages, Correction& correction, CorrectionSamples samples)
-      : passages_(passages), correction_(correction), samples_(samples), touched_(correction.moved()) {
+  Best(FacePassages& passages, Correction& correction, CorrectionSamples& samples)
+      : passages_(passages), correction_(correction), samples_(samples) {
     pairs_ = look();
     keep();
   }
 
   const FacePairs& pairs() const { return pairs_; }
-  const CorrectionSamples& samples() const { return samples_; }
+  CorrectionSamples& samples() const { return samples_; }
   Correction& correction() const { return correction_; }
 
   /// Takes the correction as it is now, if it is better. The pairs as it is now.
   FacePairs take() {
     FacePairs now = look();
-    if (now.size() < pairs_.size() && samples_.breaches() <= breaches_) {
+    if (now.size() < pairs_.size() && samples_.count().breaches <= breaches_) {
       pairs_ = now;
       keep();
     }
     return now;
   }
 
-  /// What was looked at and misses joins the constraints.
-  void constrain_what_misses() {
-    std::vector<int> further;
-    is_constrained_.resize(static_cast<std::size_t>(samples_.checks.samples().count()), 0);
-    for (const int column : samples_.checks.missed())
-      if (!std::exchange(is_constrained_[static_cast<std::size_t>(column)], 1)) further.push_back(column);
-    samples_.distances.append(samples_.checks, further);
-  }
-
+  /// Goes back to the best.
   void restore() {
-    correction_.move_to(u_, samples_.distances);
-    look();
+    correction_.move_to(u_, samples_.distances());
+    look_at_checks();
   }
 
  private:
   FacePairs look() {
-    for (std::size_t v = 0; v < touched_.size(); ++v) touched_[v] = touched_[v] || correction_.moved()[v];
+    look_at_checks();
+    return passages_.found();
+  }
+  void look_at_checks() {
     const Points vertices = correction_.vertices();
-    samples_.checks.look(vertices, touched_);
-    return passages_.found(vertices);
+    samples_.look_at_checks(vertices, correction_.moved());
+    passages_.move_to(vertices);
   }
   void keep() {
     u_ = correction_.displacement();
-    breaches_ = samples_.breaches();
+    breaches_ = samples_.count().breaches;
   }
 
   FacePassages& passages_;
   Correction& correction_;
-  CorrectionSamples samples_;
-  std::vector<char> touched_, is_constrained_;
+  CorrectionSamples& samples_;
   FacePairs pairs_;
   NodeVectors u_;
   std::size_t breaches_ = 0;
@@ -78,7 +72,7 @@ void join(const FacePassages& passages, Best& best) {
     const std::size_t before = best.pairs().size();
     const FacePairs own = passages.of_product(best.pairs());
     if (own.empty()) return;
-    best.correction().move_to(best.correction().joined(own), best.samples().distances);
+    best.correction().move_to(best.correction().joined(own), best.samples().distances());
     best.take();
     best.restore();
     if (best.pairs().size() == before) return;
@@ -92,8 +86,8 @@ void push(const FacePassages& passages, double margin, Best& best, std::set<std:
   for (int round = 0; round < max_pushes && vain < max_vain_pushes && !pairs.empty(); ++round) {
     const std::size_t fewest = best.pairs().size();
     held.insert(pairs.begin(), pairs.end());
-    best.constrain_what_misses();
-    best.correction().push(passages.pushes({held.begin(), held.end()}, margin), best.samples().distances);
+    best.samples().constrain_what_misses();
+    best.correction().push(passages.pushes({held.begin(), held.end()}, margin), best.samples().distances());
     pairs = best.take();
     vain = best.pairs().size() < fewest ? 0 : vain + 1;
   }
@@ -103,7 +97,7 @@ void push(const FacePassages& passages, double margin, Best& best, std::set<std:
 }  // namespace
 
 FacePairs part_faces(FacePassages& passages, double margin, Correction& correction,
-                     CorrectionSamples samples) {
+                     CorrectionSamples& samples) {
   Best best(passages, correction, samples);
   std::set<std::pair<int, int>> held;
   for (int pass = 0; pass < max_passes && !best.pairs().empty(); ++pass) {

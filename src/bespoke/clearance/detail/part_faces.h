@@ -4,18 +4,10 @@
 
 namespace bespoke {
 
-/// What a correction is checked by.
-struct CorrectionSamples {
-  SampleDistances& distances;  ///< constrained
-  SampleDistances& checks;     ///< looked at
-
-  std::size_t breaches() const { return distances.count().breaches + checks.count().breaches; }
-};
-
 /// Parts faces that pass through each other, or through a layer, only since the product was carried and
 /// corrected: by moves in common, and where these do not help by rounds of pushes, as long as fewer do then
 /// and no more samples breach the rule. Returns the pairs that are left.
 FacePairs part_faces(FacePassages& passages, double margin, Correction& correction,
-                     CorrectionSamples samples);
+                     CorrectionSamples& samples);
 
 }  // namespace bespoke

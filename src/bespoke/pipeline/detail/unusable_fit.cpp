@@ -108,7 +108,7 @@ MapHealth map_health(const ElasticChain& elastic, const TriangleMesh& source, co
   for (Eigen::Index k = 0; k < x.cols(); ++k)
     determinants.push_back(Matrix3((linear + gradients.middleCols<3>(3 * k)) / size).determinant());
   std::sort(determinants.begin(), determinants.end());
-  return {elastic.steps().size(), determinants[determinants.size() / one_in], determinants.front()};
+  return {elastic.steps().size(), determinants[determinants.size() / one_in]};
 }
 
 void require_usable(const ElasticChain& elastic, const TriangleMesh& source, const Points& fitted,
