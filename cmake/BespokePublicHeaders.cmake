@@ -27,10 +27,8 @@ set(BESPOKE_PUBLIC_HEADERS
   mesh/triangle_mesh.h
   pipeline/certify_map.h
   pipeline/derive_map.h
-  pipeline/fit_options.h
   pipeline/make_map.h
   pipeline/open_map.h
-  pipeline/problem.h
   product/format_unit.h
   product/mesh_io.h
   product/model_pose.h
@@ -43,6 +41,8 @@ set(BESPOKE_PUBLIC_HEADERS
   quality/product_quality.h
   quality/signed_distance.h
   quality/surface_distance.h
+  registration/fit_options.h
+  registration/problem.h
   report/inspection.h
   rigid/rigid_transform.h
   statistics.h

@@ -30,8 +30,8 @@ import numpy as np
 import public_pairs
 
 ROOT = Path(__file__).resolve().parents[2]
-MODULES = ("alignment", "anchors", "pipeline", "surface_fit")
-SETTINGS = "surface_fit/detail/deformation_graph_settings.h"
+MODULES = ("alignment", "anchor_checks", "anchors", "pipeline", "registration", "surface_fit")
+SETTINGS = "surface_fit/deformation_graph_settings.h"
 CANDIDATE = 1.01  # of the errors on the first pairs: what costs more stays
 NUMBER = r"-?\d[\d.']*(?:e-?\d+)?"
 # What is no number of the method: work shared out, texts, sizes of types, and the printed method.
@@ -65,10 +65,10 @@ RULES = [
     Rule("reciprocity, layers", "pairs", file="surface_fit/detail/detail_layers.cpp",
          old="step.areas[i] * found->agreement * found->agreement * reciprocity(back, settings)",
          new="step.areas[i] * found->agreement * found->agreement"),
-    Rule("larger scale in creases", "pairs", file="surface_fit/detail/plane_pairs.cpp",
+    Rule("larger scale in creases", "pairs", file="surface_fit/matching/plane_pairs.cpp",
          old="fading * std::max(crease(pair, back), off)", new="fading * off"),
     by_value("larger scale outside the target", "pairs", NodeLevel__outside_residuals=0),
-    Rule("weights by agreement of normals", "pairs", file="surface_fit/detail/plane_pairs.cpp",
+    Rule("weights by agreement of normals", "pairs", file="surface_fit/matching/plane_pairs.cpp",
          old="match->agreement *\n                        match->agreement *", new="1 *"),
     by_value("open boundaries that are the same cut", "pairs", NodeFitSettings__boundary_start=1000),
     by_value("walls that face each other have no counterpart", "cavities", CavitySettings__reach=0),
@@ -80,16 +80,16 @@ RULES = [
     by_value("long edges halved", "shape", DeformationGraphSettings__edges_per_area=1e-9),
     by_value("uncertainty along the surfaces", "anchors", AnchorSettings__along_surface=0),
     by_value("inaccurate anchors reinforced", "anchors", AnchorSettings__max_reinforced=1),
-    Rule("exact anchors weigh more with every iteration", "anchors", file="surface_fit/detail/node_fit.cpp",
+    Rule("exact anchors weigh more with every iteration", "anchors", file="surface_fit/graph/node_fit.cpp",
          old="settings_.anchor_growth * (iteration + 1)", new="settings_.anchor_growth"),
-    Rule("anchors alone in the first iteration", "anchors", file="surface_fit/detail/node_fit.cpp",
+    Rule("anchors alone in the first iteration", "anchors", file="surface_fit/graph/node_fit.cpp",
          old="fit_.iterations > 0 || anchors_.empty()", new="true"),
     Rule("targets of inaccurate anchors brought to the surface", "anchors",
          file="surface_fit/detail/deformation_graph_fit.cpp",
          old="if (!(anchors.sigmas.array() > 0).any()) return;", new="if (anchors.sigmas.size() >= 0) return;"),
     by_value("posed by anchors", "pose", PoseSettings__anchor_reach=1e9, PoseSettings__min_rigid_turn=1e9),
     by_value("posed where nearly rigid", "pose", PoseSettings__min_rigid_turn=1e9),
-    Rule("fine nodes of the pose", "pose", file="surface_fit/detail/anchor_pose.cpp",
+    Rule("fine nodes of the pose", "pose", file="surface_fit/graph/anchor_pose.cpp",
          old="iteration < settings_.iterations[1]", new="iteration < 0"),
     by_value("layers of space", "layers", DetailSettings__scales=0),
     by_value("point to point beside point to plane", "layers", DetailSettings__slide=0),
@@ -106,18 +106,18 @@ RULES = [
          old="accuracy.sigma = deviation < least ? 0 : deviation;", new="accuracy.sigma = 0;"),
     Rule("swapped anchors dropped", "σ", file="anchors/anchor_accuracy.cpp",
          old="accuracy.swapped = swapped_anchors(anchors);", new="accuracy.swapped = {};"),
-    Rule("contradicting anchors share their difference", "σ", file="pipeline/detail/register_by_anchors.cpp",
+    Rule("contradicting anchors share their difference", "σ", file="registration/detail/register_by_anchors.cpp",
          old="if (doubts) let_contradicting_share(", new="if (false) let_contradicting_share("),
-    Rule("outliers among anchors", "outliers", file="pipeline/detail/register_by_anchors.cpp",
+    Rule("outliers among anchors", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (!suspects.empty()) best", new="if (false) best"),
-    Rule("rejected anchors reinstated", "outliers", file="pipeline/detail/register_by_anchors.cpp",
+    Rule("rejected anchors reinstated", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (rejected.size() == 1 || rejected.size() > few)", new="if (true)"),
-    Rule("each of a few outliers tested alone", "outliers", file="pipeline/detail/register_by_anchors.cpp",
+    Rule("each of a few outliers tested alone", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="rejected.size() <= few && undoubted > trusting", new="false"),
-    Rule("counterparts along the surfaces", "outliers", file="pipeline/detail/register_by_anchors.cpp",
+    Rule("counterparts along the surfaces", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (counterparts.sources.cols() == 0) return registration;",
          new="if (counterparts.sources.cols() >= 0) return registration;"),
-    Rule("contacts separated", "contact", file="pipeline/registration.cpp",
+    Rule("contacts separated", "contact", file="registration/registration.cpp",
          old="if (apart.summary.touching == 0) return registration;",
          new="if (apart.summary.touching + 1 > 0) return registration;"),
 ]

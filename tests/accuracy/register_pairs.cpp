@@ -9,8 +9,8 @@
 
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/pipeline/make_map.h"
-#include "bespoke/pipeline/registration.h"
 #include "bespoke/product/mesh_io.h"
+#include "bespoke/registration/registration.h"
 #include "bespoke/thread_arena.h"
 
 namespace {

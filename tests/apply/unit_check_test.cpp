@@ -49,5 +49,24 @@ TEST(UnitCheck, WarnsOfAFewPoints) {
   EXPECT_EQ(require_unit_of_map("a.obj", around_model(), map, model), "");
 }
 
+// As small in the band as a button, or as large as no garment: near the origin some of it is always in reach.
+TEST(UnitCheck, TellsWhatIsInReachAndOfNoUsualSize) {
+  const Box about_origin(Vector3(-10, -10, -10), Vector3(10, 10, 10));
+  const AnalyticMap map({{Vector3(0, 0, 0), 20, Vector3(1, 0, 0)}});
+  const Points product = 7 * Points::Random(3, 5000);
+  const auto warning = [&](const Points& points) {
+    return require_unit_of_map("a.obj", points, map, about_origin);
+  };
+  EXPECT_EQ(warning(product), "");
+  for (const double factor : {39.37, 100.0, 1000.0}) {
+    EXPECT_THAT(warning(product / factor), HasSubstr("of the model's, but multiplied by"));
+    EXPECT_THAT(test::error_message<InvalidInput>([&] { warning(product * factor); }),
+                HasSubstr("as if it were in another unit"));
+  }
+  EXPECT_THAT(warning(product / 100), HasSubstr("multiplied by 100 it would lie around it"));
+  const Points button = (0.1 * Points::Random(3, 500)).colwise() + Vector3(0, 0, 10);
+  EXPECT_EQ(warning(button), "");
+}
+
 }  // namespace
 }  // namespace bespoke

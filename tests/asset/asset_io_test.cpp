@@ -9,9 +9,9 @@
 #include <functional>
 
 #include "asset/small_asset.h"
-#include "bespoke/asset/detail/grid_conversion.h"
 #include "bespoke/asset/detail/record_json.h"
 #include "bespoke/asset/detail/trailer.h"
+#include "bespoke/asset/grids/grid_conversion.h"
 #include "bespoke/error.h"
 
 namespace bespoke {

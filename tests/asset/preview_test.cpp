@@ -1,4 +1,4 @@
-#include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/grids/preview.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/asset/detail/preview.h"
 #include "bespoke/asset/detail/trailer.h"
+#include "bespoke/asset/grids/preview.h"
 #include "support/file_text.h"
 #include "support/scratch_directory.h"
 #include "support/shapes.h"

@@ -1,11 +1,11 @@
-#include "bespoke/bake/detail/balanced_values.h"
+#include "bespoke/bake/pyramid/balanced_values.h"
 
 #include <gmock/gmock.h>
 
 #include <functional>
 #include <vector>
 
-#include "bespoke/bake/detail/sampled_levels.h"
+#include "bespoke/bake/pyramid/sampled_levels.h"
 #include "bespoke/mapping/elastic_map.h"
 
 namespace bespoke {

@@ -1,4 +1,4 @@
-#include "bespoke/clearance/detail/corrected_map.h"
+#include "bespoke/clearance/corrected_map.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "bespoke/asset/asset_io.h"
-#include "bespoke/asset/detail/grid_conversion.h"
 #include "bespoke/asset/detail/record_json.h"
 #include "bespoke/asset/detail/trailer.h"
+#include "bespoke/asset/grids/grid_conversion.h"
 #include "command/refusal.h"
 #include "support/shapes.h"
 
@@ -108,7 +108,7 @@ TEST_F(BadAnchors, ThatDoNotFixTheMap) {
   expect_refusal(fit_with("a.json", json_of({o, o, o})), 2, "all at one place");
   expect_refusal(fit_with("a.json", json_of({o, o, o}, sigma)), 2, "all at one place");
   expect_refusal(fit_with("a.json", json_of({o, x, y}, sigma)), 2,
-                 "needs 4 anchor pairs that are not coplanar; there are 3");
+                 "the coarse warp needs 4 anchor pairs; there are 3");
   expect_refusal(fit_with("a.json", json_of({o, x, y, z, x}, sigma)), 2,
                  "anchor pairs 1 and 4 have the same place on the source; remove one");
   EXPECT_FALSE(pair_.has("map.vdb"));

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "bespoke/error.h"
-#include "bespoke/lattice/pyramid_lookup.h"
+#include "bespoke/lattice/pyramid_index.h"
 #include "support/instruction_sets.h"
 #include "support/random_pyramid.h"
 

@@ -1,8 +1,8 @@
-#include "bespoke/pattern/detail/barrier_descent.h"
+#include "bespoke/pattern/flattening/barrier_descent.h"
 
 #include <gtest/gtest.h>
 
-#include "bespoke/pattern/detail/flat_start.h"
+#include "bespoke/pattern/flattening/flat_start.h"
 #include "pattern/bent_cloth.h"
 #include "pattern/mesh_parts.h"
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/mesh/half_edge_mesh.h"
 #include "bespoke/pattern/piece.h"
+#include "bespoke/topology/half_edge_mesh.h"
 
 namespace bespoke::test {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/half_edge_mesh.h"
+#include "bespoke/topology/half_edge_mesh.h"
 #include "pattern/tubes.h"
 #include "support/error_message.h"
 #include "support/shapes.h"

@@ -7,8 +7,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
-#include "bespoke/pattern/detail/grain.h"
-#include "bespoke/pattern/detail/sheet_formats.h"
+#include "bespoke/pattern/sheet/grain.h"
+#include "bespoke/pattern/sheet/sheet_formats.h"
 #include "bespoke/pattern/write_pattern.h"
 #include "pattern/mesh_parts.h"
 #include "pattern/tubes.h"

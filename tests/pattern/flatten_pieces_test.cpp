@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/flat_faces.h"
-#include "bespoke/pattern/detail/flat_start.h"
-#include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/flattening/flat_faces.h"
+#include "bespoke/pattern/flattening/flat_start.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
 #include "bespoke/pattern/self_overlap.h"
 #include "pattern/bent_cloth.h"
 #include "pattern/mesh_parts.h"

@@ -1,4 +1,4 @@
-#include "bespoke/pattern/detail/local_global.h"
+#include "bespoke/pattern/flattening/local_global.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 
 #include "bespoke/pattern/cut_pieces.h"
-#include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
 #include "pattern/bent_cloth.h"
 #include "pattern/mesh_parts.h"
 

@@ -1,4 +1,4 @@
-#include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

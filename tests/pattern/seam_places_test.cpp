@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/piece_marks.h"
+#include "bespoke/pattern/sheet/piece_marks.h"
 #include "bespoke/pattern/size_table.h"
 #include "pattern/tubes.h"
 #include "support/error_message.h"

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/seam_allowance.h"
+#include "bespoke/pattern/sheet/seam_allowance.h"
 #include "bespoke/unknown_ending.h"
 #include "pattern/tubes.h"
 #include "support/file_text.h"

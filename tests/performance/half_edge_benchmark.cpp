@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/mesh/edge_refinement.h"
-#include "bespoke/mesh/half_edge_mesh.h"
-#include "bespoke/mesh/mesh_components.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/topology/edge_refinement.h"
+#include "bespoke/topology/half_edge_mesh.h"
+#include "bespoke/topology/mesh_components.h"
 #include "support/shapes.h"
 
 namespace bespoke {

@@ -1,7 +1,7 @@
 #include "resampled.h"
 
-#include "bespoke/mesh/decimation.h"
-#include "bespoke/mesh/edge_refinement.h"
+#include "bespoke/topology/decimation.h"
+#include "bespoke/topology/edge_refinement.h"
 
 namespace bespoke {
 

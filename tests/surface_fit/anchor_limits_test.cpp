@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/anchor_limits.h"
+#include "bespoke/surface_fit/graph/anchor_limits.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/anchor_pose.h"
+#include "bespoke/surface_fit/graph/anchor_pose.h"
 
 #include <gtest/gtest.h>
 

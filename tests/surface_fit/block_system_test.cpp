@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/block_system.h"
+#include "bespoke/surface_fit/graph/block_system.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/boundary_match.h"
+#include "bespoke/surface_fit/matching/boundary_match.h"
 
 #include <gtest/gtest.h>
 

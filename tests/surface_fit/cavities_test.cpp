@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/cavities.h"
+#include "bespoke/surface_fit/matching/cavities.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/crease.h"
+#include "bespoke/surface_fit/matching/crease.h"
 
 #include <gtest/gtest.h>
 

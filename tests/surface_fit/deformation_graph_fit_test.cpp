@@ -7,7 +7,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/rigid/rigid_alignment.h"
-#include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "bespoke/surface_fit/graph/deformation_nodes.h"
 #include "support/arithmetic.h"
 #include "support/bent_tube.h"
 #include "support/fitting_scene.h"

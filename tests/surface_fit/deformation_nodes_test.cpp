@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/deformation_nodes.h"
+#include "bespoke/surface_fit/graph/deformation_nodes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/harmonic_extension.h"
+#include "bespoke/surface_fit/matching/harmonic_extension.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

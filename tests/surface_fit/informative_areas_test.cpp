@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/informative_areas.h"
+#include "bespoke/surface_fit/matching/informative_areas.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/node_fit.h"
+#include "bespoke/surface_fit/graph/node_fit.h"
 
 #include <gtest/gtest.h>
 

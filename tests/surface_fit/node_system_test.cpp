@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/node_system.h"
+#include "bespoke/surface_fit/graph/node_system.h"
 
 #include <gtest/gtest.h>
 

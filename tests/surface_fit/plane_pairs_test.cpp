@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/plane_pairs.h"
+#include "bespoke/surface_fit/matching/plane_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/pose_certainty.h"
+#include "bespoke/surface_fit/graph/pose_certainty.h"
 
 #include <gtest/gtest.h>
 

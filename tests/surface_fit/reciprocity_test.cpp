@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/reciprocity.h"
+#include "bespoke/surface_fit/matching/reciprocity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/registration_energy.h"
+#include "bespoke/surface_fit/graph/registration_energy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/similarity_fit.h"
+#include "bespoke/surface_fit/graph/similarity_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/target_surface.h"
+#include "bespoke/surface_fit/matching/target_surface.h"
 
 #include <gtest/gtest.h>
 
@@ -111,9 +111,9 @@ void expect_answers_in_one_patch(const TargetSurface& surface) {
   EXPECT_EQ(left()->point, Vector3(0.3, 0.6, 0));
   EXPECT_LT(surface.mesh().vertices(0, surface.mesh().faces.col(left()->face)).mean(), 0.5);
   EXPECT_FALSE(surface.match({0.7, 0.6, 0.05}, up, limits));  // nearest where the patch ends
-  limits.boundary_answers = true;
+  limits.matches_boundary = true;
   EXPECT_EQ(surface.match({0.7, 0.6, 0.05}, up, limits)->point, Vector3(0.5, 0.6, 0));
-  limits.boundary_answers = false;
+  limits.matches_boundary = false;
   limits.patch = FacePatches::none;
   EXPECT_FALSE(left());
   EXPECT_EQ(surface.match({0.7, 0.6, 0.15}, up, limits)->point, Vector3(0.7, 0.6, 0));

@@ -1,4 +1,4 @@
-#include "bespoke/surface_fit/detail/unmatched_cavities.h"
+#include "bespoke/surface_fit/matching/unmatched_cavities.h"
 
 #include <gtest/gtest.h>
 

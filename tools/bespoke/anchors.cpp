@@ -7,18 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "bespoke/anchor_checks/contradicting_anchors.h"
 #include "bespoke/anchors/anchor_accuracy.h"
 #include "bespoke/anchors/anchor_audit.h"
 #include "bespoke/anchors/anchor_files.h"
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/anchor_scale.h"
-#include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/cloud/target_model.h"
 #include "bespoke/error.h"
 #include "bespoke/output_stream.h"
-#include "bespoke/pipeline/anchor_suggestions.h"
 #include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
+#include "bespoke/registration/anchor_suggestions.h"
 #include "bespoke/rigid/rigid_alignment.h"
 #include "commands.h"
 #include "help.h"

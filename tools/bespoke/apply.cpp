@@ -274,7 +274,8 @@ void add_apply_command(CLI::App& app, const PlanHandler& handle_plan) {
   begin_group(*apply, input_group);
   apply->add_option("MAP", arguments->map, "Map made by `bespoke fit`; not with --from")->required();
   apply->add_option("PRODUCT", arguments->products,
-                    "Meshes or point sets around the source, by their endings: " + product_endings());
+                    "Meshes or point sets around the source, by their endings: " + product_endings() +
+                        ", or .3mf, whose faces are read and written anew");
   add_catalog_option(*apply, arguments->catalog);
   apply->add_flag("--untrusted", arguments->untrusted, untrusted_help);
   begin_group(*apply, output_group);

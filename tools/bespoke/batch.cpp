@@ -112,13 +112,13 @@ void print_plan(const JobGraph& graph, const std::vector<JobForecast>& forecasts
     if (reasons[i].empty()) continue;
     const BatchJob& job = graph.jobs[i];
     const std::string output = job.outputs.empty() ? "" : " " + job.outputs.front().path.string();
-    std::printf("line %zu: %s%s: %s; some %.3g s, %s\n", job.line, job.command.c_str(), output.c_str(),
+    std::printf("line %zu: %s%s: %s; about %.3g s, %s\n", job.line, job.command.c_str(), output.c_str(),
                 reasons[i].c_str(), forecasts[i].seconds,
                 megabytes(forecasts[i].memory + forecasts[i].shared).c_str());
     ++count;
     seconds += forecasts[i].seconds;
   }
-  std::printf("%zu of %zu jobs would run, some %.3g s on one thread\n", count, graph.jobs.size(), seconds);
+  std::printf("%zu of %zu jobs would run, about %.3g s on one thread\n", count, graph.jobs.size(), seconds);
 }
 
 std::string log_of(const BatchArguments& arguments) { return output_target(arguments.log).string(); }

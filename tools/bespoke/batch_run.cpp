@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "bespoke/batch/machine_memory.h"
 #include "bespoke/error.h"
+#include "bespoke/machine_memory.h"
 #include "interruption.h"
 
 namespace bespoke::command {

@@ -4,6 +4,7 @@
 
 #include "bespoke/asset/asset_io.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/pipeline/certify_map.h"
 #include "bespoke/pipeline/summary_json.h"
 #include "commands.h"
@@ -62,7 +63,7 @@ void run(const CheckArguments& arguments, const RunContext& context) {
                               {"undecided", certificate.undecided}};
   if (!certificate.is_bijection())
     throw SolverError(
-        with_entry(arguments.map + ": not proved to be one-to-one at t = " + std::to_string(arguments.t) +
+        with_entry(arguments.map + ": not proved to be one-to-one at t = " + format_number(arguments.t, 6) +
                        "; fit again with more anchors at these places or a larger --contact-offset",
                    Entry::not_proved));
 }

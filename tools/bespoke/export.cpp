@@ -121,8 +121,8 @@ double export_faces(const ExportArguments& arguments, const OpenedMap& map, cons
 double export_file(const ExportArguments& arguments, const OpenedMap& map,
                    const std::filesystem::path& output, const RunContext& context) {
   const MorphSummary summary =
-      morph_file_along(arguments.product, output, *map.elastic, map.target_from_source, *arguments.morph,
-                       {map.path}, context.progress);
+      morph_file_along(arguments.product, output, *map.elastic, map.target_from_source,
+                       {*arguments.morph, {map.path}, context.progress});
   for (const std::string& warning : summary.warnings)
     context.warn(arguments.product + ": " + warning, Entry::content_left_as_it_is);
   return summary.off_path;

@@ -15,7 +15,6 @@
 #include "bespoke/output_stream.h"
 #include "bespoke/page/view_scene.h"
 #include "bespoke/pipeline/fit_mapping.h"
-#include "bespoke/pipeline/fit_patches.h"
 #include "bespoke/pipeline/map_request.h"
 #include "bespoke/pipeline/model_units.h"
 #include "bespoke/product/format_unit.h"
@@ -23,6 +22,7 @@
 #include "bespoke/product/posed_product.h"
 #include "bespoke/product/product_io.h"
 #include "bespoke/product/vertex_groups.h"
+#include "bespoke/registration/fit_patches.h"
 #include "bespoke/report/fit_text.h"
 #include "bespoke/report/report.h"
 #include "commands.h"
@@ -249,6 +249,8 @@ void run(const FitArguments& arguments, const RunContext& context) {
 
   context.findings.figures = figures(made);
   warn_of_misses(context, input, options, made);
+  if (arguments.tolerance && options.fit.elastic == ElasticMethod::finite_elements)
+    warn_of_idle_tolerance(context);
   if (arguments.verbose) print_stages(made, anchors);
   if (arguments.verbose) std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
   if (!arguments.run.quiet && !arguments.verbose)

@@ -99,7 +99,10 @@ void add_quality_options(CLI::App& fit, FitArguments& arguments) {
   begin_group(fit, quality_group);
   add_length_option(
       fit, "--tolerance", arguments.tolerance,
-      target_length("Largest difference between the stored and the exact map", default_tolerance));
+      target_length(
+          "Largest difference between the stored and the exact map, of methods that are baked; finite "
+          "elements are stored as they are fitted",
+          default_tolerance));
   add_length_option(fit, "--lambda", arguments.lambda,
                     source_length("Effective distance: the elastic part reaches as far from the source "
                                   "(1.4 times with --guides and --elastic diffeomorphic or multiscale)",

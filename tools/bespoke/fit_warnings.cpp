@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/anchor_checks/contradicting_anchors.h"
 #include "bespoke/anchors/anchor_placement.h"
-#include "bespoke/anchors/contradicting_anchors.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pipeline/fit_mapping.h"
 
@@ -136,6 +136,13 @@ void warn_of_misses(const RunContext& context, const Problem& input, const MakeM
   if (summary.uncovered) warn_of_uncovered_target(context, *summary.uncovered);
   warn_of_missed_vertices(context, size, summary.elastic.unmet);
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
+}
+
+void warn_of_idle_tolerance(const RunContext& context) {
+  context.warn(
+      "--tolerance changes nothing: it is of maps that are baked (--strict, other --elastic), and finite "
+      "elements are stored as they are fitted, to --fit-tolerance",
+      Entry::tolerance_missed);
 }
 
 }  // namespace bespoke::command

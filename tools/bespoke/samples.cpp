@@ -42,7 +42,8 @@ void add_samples_command(CLI::App& app) {
       ->check(CLI::IsMember(sample_names()));
   add_run_options(*samples, arguments->run);
   samples->footer(
-      "Each NAME becomes a directory with source.obj, target.obj (cm), anchors.json and the products.\n\n"
+      "Each NAME becomes a directory with source.obj, one target or several (cm), their anchors and the "
+      "products.\n\n"
       "Examples:\n"
       "  bespoke samples build/samples\n"
       "  bespoke samples build/samples dress glove");

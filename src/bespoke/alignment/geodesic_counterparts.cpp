@@ -10,10 +10,10 @@
 #include "bespoke/error.h"
 #include "bespoke/median.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/mesh/spread_points.h"
 #include "bespoke/mesh/surface_paths.h"
 #include "bespoke/parallel.h"
+#include "bespoke/topology/edge_refinement.h"
 
 namespace bespoke {
 namespace {

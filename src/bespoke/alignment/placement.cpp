@@ -9,8 +9,8 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/cavities.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
+#include "bespoke/topology/edge_refinement.h"
 
 namespace bespoke {
 namespace {

@@ -55,7 +55,7 @@ std::string to_string(const std::vector<SwappedAnchors>& swapped, const Anchors&
   for (const SwappedAnchors& pair : swapped)
     text += (text.empty() ? "anchors " : ", ") + label(anchors, pair.first) + " and " +
             label(anchors, pair.second);
-  return text.empty() ? text : text + " look swapped and are left out";
+  return text.empty() ? text : text + " look swapped";
 }
 
 }  // namespace bespoke

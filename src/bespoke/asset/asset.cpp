@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/grids/preview.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/atlas_map.h"
 #include "bespoke/lattice/baked_map.h"

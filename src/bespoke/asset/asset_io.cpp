@@ -4,12 +4,12 @@
 #include <string>
 #include <utility>
 
-#include "bespoke/asset/detail/grid_conversion.h"
-#include "bespoke/asset/detail/preview.h"
 #include "bespoke/asset/detail/record_json.h"
 #include "bespoke/asset/detail/stored_asset.h"
 #include "bespoke/asset/detail/trailer.h"
 #include "bespoke/asset/detail/untrusted.h"
+#include "bespoke/asset/grids/grid_conversion.h"
+#include "bespoke/asset/grids/preview.h"
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
 

@@ -7,7 +7,7 @@
 #include "bespoke/asset/detail/block_file.h"
 #include "bespoke/asset/detail/record_json.h"
 #include "bespoke/asset/detail/stored_asset.h"
-#include "bespoke/asset/detail/vdb_part.h"
+#include "bespoke/asset/grids/vdb_part.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/part_map.h"
 

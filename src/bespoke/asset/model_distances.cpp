@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "bespoke/asset/detail/distance_band.h"
-#include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/grids/distance_band.h"
+#include "bespoke/asset/grids/preview.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "bespoke/asset/detail/preview.h"
+#include "bespoke/asset/grids/preview.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bespoke/asset/detail/grid_conversion.h"
+#include "bespoke/asset/grids/grid_conversion.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 

@@ -48,6 +48,13 @@ std::string to_string(const BakeSummary& summary) {
     voxels += level.voxels;
   }
   char text[400];
+  if (summary.error.count == 0) {
+    std::snprintf(text, sizeof text,
+                  "%zu levels, finest voxel %.4g, %zu leaves, %zu voxels, stored as fitted; %.2f s",
+                  summary.levels.size(), summary.levels.empty() ? 0.0 : summary.levels.back().voxel_size,
+                  leaves, voxels, summary.seconds);
+    return text;
+  }
   std::snprintf(
       text, sizeof text,
       "%zu levels, finest voxel %.4g, %zu leaves, %zu voxels; error p99 %.4g max %.4g (n = %zu), tolerance "

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bespoke/clearance/detail/corrected_map.h"
+#include "bespoke/clearance/corrected_map.h"
 #include "bespoke/error.h"
 
 namespace bespoke {

@@ -40,17 +40,17 @@ MorphingMesh morph_along(Product product, const ElasticMap& elastic, const Rigid
 
 MorphSummary morph_file_along(const std::filesystem::path& input, const std::filesystem::path& output,
                               const ElasticMap& elastic, const RigidTransform& target_from_source,
-                              int targets, const MotionOptions& motion, const Progress& progress) {
-  const std::vector<double> times = times_and_halves(targets);
+                              const MorphOptions& options) {
+  const std::vector<double> times = times_and_halves(options.targets);
   PointMotion points;
   points.frames = times.size();
   points.images = [&](const Points& x) {
-    return apply_mapping(elastic, target_from_source, x, times, motion).frames;
+    return apply_mapping(elastic, target_from_source, x, times, options.motion).frames;
   };
   points.jacobians = [&](const Points& x) {
-    return motion_jacobian(elastic, target_from_source, x, times, motion);
+    return motion_jacobian(elastic, target_from_source, x, times, options.motion);
   };
-  return morph_product(input, output, points, seconds_of_morphing, progress);
+  return morph_product(input, output, points, seconds_of_morphing, options.progress);
 }
 
 }  // namespace bespoke

@@ -21,11 +21,17 @@ struct MorphingMesh {
 MorphingMesh morph_along(Product product, const ElasticMap& elastic, const RigidTransform& target_from_source,
                          int targets, const MotionOptions& motion = {});
 
+struct MorphOptions {
+  int targets = 1;  ///< > 0
+  MotionOptions motion = {};
+  Progress progress = {};
+};
+
 /// The same of a .glb, which keeps all that it has (morph_product): writes `output`. Its scene's lengths are
 /// taken as mesh units. Throws as morph_product and apply_mapping.
 MorphSummary morph_file_along(const std::filesystem::path& input, const std::filesystem::path& output,
                               const ElasticMap& elastic, const RigidTransform& target_from_source,
-                              int targets, const MotionOptions& motion = {}, const Progress& progress = {});
+                              const MorphOptions& options);
 
 /// Seconds that an animation takes from t = 0 to 1.
 inline constexpr double seconds_of_morphing = 2;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bespoke/lattice/pyramid_lookup.h"
+#include "bespoke/lattice/pyramid_index.h"
 
 namespace bespoke {
 

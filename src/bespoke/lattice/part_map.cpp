@@ -6,7 +6,7 @@
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/lattice/detail/brick_lookup.h"
 #include "bespoke/lattice/detail/looked_up_points.h"
-#include "bespoke/lattice/pyramid_lookup.h"
+#include "bespoke/lattice/pyramid_index.h"
 
 namespace bespoke {
 namespace {

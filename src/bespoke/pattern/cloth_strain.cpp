@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/pattern/detail/flat_faces.h"
+#include "bespoke/pattern/flattening/flat_faces.h"
 
 namespace bespoke {
 namespace {

@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/half_edge_mesh.h"
-#include "bespoke/mesh/mesh_components.h"
 #include "bespoke/mesh/mesh_edges.h"
-#include "bespoke/mesh/seams.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pattern/detail/auto_cut.h"
 #include "bespoke/statistics.h"
+#include "bespoke/topology/half_edge_mesh.h"
+#include "bespoke/topology/mesh_components.h"
+#include "bespoke/topology/seams.h"
 
 namespace bespoke {
 namespace {

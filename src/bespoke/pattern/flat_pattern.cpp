@@ -8,10 +8,10 @@
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
 #include "bespoke/pattern/detail/dart.h"
-#include "bespoke/pattern/detail/grain.h"
-#include "bespoke/pattern/detail/paired_seams.h"
 #include "bespoke/pattern/detail/seam_lines.h"
 #include "bespoke/pattern/detail/seam_places.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
+#include "bespoke/pattern/sheet/grain.h"
 
 namespace bespoke {
 namespace {

@@ -7,11 +7,11 @@
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
-#include "bespoke/pattern/detail/anderson.h"
-#include "bespoke/pattern/detail/barrier_descent.h"
-#include "bespoke/pattern/detail/flat_start.h"
-#include "bespoke/pattern/detail/local_global.h"
-#include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/flattening/anderson.h"
+#include "bespoke/pattern/flattening/barrier_descent.h"
+#include "bespoke/pattern/flattening/flat_start.h"
+#include "bespoke/pattern/flattening/local_global.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
 
 namespace bespoke {
 namespace {

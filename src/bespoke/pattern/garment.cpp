@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/flat_faces.h"
+#include "bespoke/pattern/flattening/flat_faces.h"
 #include "bespoke/product/face_groups.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"

@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/piece_marks.h"
-#include "bespoke/pattern/detail/seam_allowance.h"
+#include "bespoke/pattern/sheet/piece_marks.h"
+#include "bespoke/pattern/sheet/seam_allowance.h"
 
 namespace bespoke {
 namespace {

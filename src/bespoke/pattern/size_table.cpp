@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "bespoke/number_format.h"
-#include "bespoke/pattern/detail/piece_marks.h"
+#include "bespoke/pattern/sheet/piece_marks.h"
 
 namespace bespoke {
 namespace {

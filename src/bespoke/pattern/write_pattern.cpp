@@ -9,7 +9,7 @@
 
 #include "bespoke/atomic_file.h"
 #include "bespoke/error.h"
-#include "bespoke/pattern/detail/sheet_formats.h"
+#include "bespoke/pattern/sheet/sheet_formats.h"
 #include "bespoke/strings.h"
 #include "bespoke/unknown_ending.h"
 

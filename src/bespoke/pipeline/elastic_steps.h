@@ -7,8 +7,8 @@
 #include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/flow/surface_path.h"
 #include "bespoke/mapping/elastic_chain.h"
-#include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/progress.h"
+#include "bespoke/registration/elastic_pairs.h"
 
 namespace bespoke {
 

@@ -6,7 +6,7 @@
 
 #include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/pipeline/elastic_steps.h"
-#include "bespoke/pipeline/registration.h"
+#include "bespoke/registration/registration.h"
 
 namespace bespoke {
 

@@ -6,9 +6,9 @@
 
 #include "bespoke/asset/asset.h"
 #include "bespoke/bake/bake_options.h"
-#include "bespoke/pipeline/fit_options.h"
-#include "bespoke/pipeline/problem.h"
 #include "bespoke/progress.h"
+#include "bespoke/registration/fit_options.h"
+#include "bespoke/registration/problem.h"
 
 namespace bespoke {
 

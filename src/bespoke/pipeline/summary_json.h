@@ -6,7 +6,7 @@
 #include "bespoke/bake/bake.h"
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/pipeline/fit_summary.h"
+#include "bespoke/registration/fit_summary.h"
 #include "bespoke/statistics.h"
 #include "bespoke/types.h"
 

@@ -73,13 +73,29 @@ std::string vertices_of(const TriangleMesh& mesh) {
   return " (" + std::to_string(mesh.vertices.cols()) + " vertices)";
 }
 
+/// Of the pairs given, those that were not left out.
+std::vector<std::size_t> used_pairs(const AnchorAccuracy& accuracy, std::size_t count) {
+  std::vector<char> is_used(count, 1);
+  for (const SwappedAnchors& swapped : accuracy.swapped) is_used[swapped.first] = is_used[swapped.second] = 0;
+  for (const RejectedAnchor& rejected : accuracy.left_out) is_used[rejected.index] = 0;
+  std::vector<std::size_t> used;
+  for (std::size_t i = 0; i < count; ++i)
+    if (is_used[i]) used.push_back(i);
+  return used;
+}
+
 std::string registration(const FitOutcome& outcome) {
   const Anchors& anchors = outcome.input.anchors;
+  const FittedMapping& fit = *outcome.made.fit;
   std::string text = outcome.source + vertices_of(outcome.input.source) + " to " + outcome.target +
                      vertices_of(outcome.input.target);
+  if (fit.summary.surface && fit.summary.surface->target_flipped)
+    text += ", whose faces are flipped to match the source's";
   if (!outcome.fitted.empty()) return text + ", as given by " + outcome.fitted;
   if (anchors.pairs.empty() && anchors.curves.empty()) return text + ", by their surfaces, without anchors";
-  text += ", by " + counted(anchors.pairs.size(), "anchor");
+  const std::size_t used = used_pairs(fit.summary.accuracy, anchors.pairs.size()).size();
+  text += ", by " + counted(used, "anchor");
+  if (used < anchors.pairs.size()) text += " of " + std::to_string(anchors.pairs.size());
   if (!anchors.curves.empty()) text += ", " + counted(anchors.curves.size(), "curve");
   if (!anchors.patches.empty())
     text += ", " + (anchors.patches.size() == 1 ? std::string("1 patch")
@@ -95,8 +111,11 @@ std::string distances(const Statistics& found, const Lengths& lengths) {
 std::string counterparts(const TriangleMesh& source, const std::vector<double>& confidence,
                          const Lengths& lengths) {
   std::vector<char> lacks(confidence.size());
-  std::transform(confidence.begin(), confidence.end(), lacks.begin(),
-                 [](double value) { return !(value > 0); });
+  if (confidence.empty()) return "every vertex has one on the target";
+  for (const int vertex : source.faces.reshaped()) {  // what is in no face has none to have
+    const auto i = static_cast<std::size_t>(vertex);
+    lacks[i] = !(confidence[i] > 0);
+  }
   const std::vector<VertexCluster> clusters = vertex_clusters(source, lacks);
   if (clusters.empty()) return "every vertex has one on the target";
   const auto count = static_cast<std::size_t>(std::count(lacks.begin(), lacks.end(), 1));
@@ -112,16 +131,19 @@ std::string counterparts(const TriangleMesh& source, const std::vector<double>& 
 
 std::string anchor_text(const FitOutcome& outcome, const Lengths& lengths) {
   const FittedMapping& fit = *outcome.made.fit;
-  const Statistics& found = fit.summary.elastic.anchor_residuals;
-  std::string text = "half are met within " + lengths(found.median) + ", all within " + lengths(found.max);
-  const auto worst = std::max_element(fit.anchor_residual.begin(), fit.anchor_residual.end());
-  if (worst != fit.anchor_residual.end()) {
-    const auto index = static_cast<std::size_t>(worst - fit.anchor_residual.begin());
-    const Anchors& anchors = outcome.input.anchors;
-    if (index < anchors.pairs.size() && !anchors.pairs[index].name.empty())
-      text += " (\"" + anchors.pairs[index].name + "\")";
+  const Anchors& anchors = outcome.input.anchors;
+  const std::vector<std::size_t> used = used_pairs(fit.summary.accuracy, anchors.pairs.size());
+  std::string text = "none is used";
+  if (!used.empty()) {
+    std::vector<double> residuals;
+    for (const std::size_t index : used) residuals.push_back(fit.anchor_residual[index]);
+    const Statistics found = summarize(residuals);
+    text = "half are met within " + lengths(found.median) + ", all within " + lengths(found.max);
+    const std::size_t worst = used[static_cast<std::size_t>(
+        std::max_element(residuals.begin(), residuals.end()) - residuals.begin())];
+    if (!anchors.pairs[worst].name.empty()) text += " (\"" + anchors.pairs[worst].name + "\")";
   }
-  const std::string accuracy = to_string(fit.summary.accuracy, outcome.input.anchors);
+  const std::string accuracy = to_string(fit.summary.accuracy, anchors);
   return text + (accuracy.empty() ? "" : "; " + accuracy);
 }
 

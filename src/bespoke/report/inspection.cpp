@@ -123,6 +123,12 @@ Json steps_json(const Asset& asset) {
   return steps;
 }
 
+std::string bake_line(const AssetRecord& record) {
+  if (record.bake_error.count == 0) return "stored       as fitted, without an error of its own";
+  return "bake error   " + bespoke::to_string(record.bake_error) + ", tolerance " + number(record.tolerance) +
+         (record.bake_error.max <= record.tolerance ? "" : ", MISSED");
+}
+
 }  // namespace
 
 std::string inspection_text(const Asset& asset) {
@@ -133,8 +139,7 @@ std::string inspection_text(const Asset& asset) {
   if (!certificate.is_bijection()) text << proof;  // what matters most comes first
   text << "map          maps points a to b: of the source's space to the target's, unit " << record.unit
        << '\n'
-       << "bake error   " << bespoke::to_string(record.bake_error) << ", tolerance "
-       << number(record.tolerance) << (record.bake_error.max <= record.tolerance ? "" : ", MISSED") << '\n';
+       << bake_line(record) << '\n';
   if (certificate.is_bijection()) text << proof;
   text << "method       registration " << record.surface_fit_method << ", elastic " << record.elastic_method
        << ", effective distance " << number(record.lambda) << '\n'

@@ -5,7 +5,7 @@
 #include "bespoke/error.h"
 #include "bespoke/mesh/facing_outward.h"
 #include "bespoke/mesh/require_surface.h"
-#include "bespoke/surface_fit/detail/facing.h"
+#include "bespoke/surface_fit/matching/facing.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke {

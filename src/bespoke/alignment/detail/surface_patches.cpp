@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/topology/edge_refinement.h"
 
 namespace bespoke {
 namespace {

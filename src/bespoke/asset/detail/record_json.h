@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "bespoke/asset/asset.h"
-#include "bespoke/asset/detail/stored_grid.h"
+#include "bespoke/asset/grids/stored_grid.h"
 
 namespace bespoke {
 

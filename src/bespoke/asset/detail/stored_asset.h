@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bespoke/asset/detail/record_json.h"
-#include "bespoke/asset/detail/stored_grid.h"
+#include "bespoke/asset/grids/stored_grid.h"
 
 namespace bespoke {
 

@@ -18,7 +18,7 @@
 #include <new>
 #include <string>
 
-#include "bespoke/asset/detail/grid_conversion.h"
+#include "bespoke/asset/grids/grid_conversion.h"
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
 

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "bespoke/asset/detail/stored_grid.h"
+#include "bespoke/asset/grids/stored_grid.h"
 
 namespace bespoke {
 

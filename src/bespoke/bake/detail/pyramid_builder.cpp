@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "bespoke/bake/band.h"
-#include "bespoke/bake/detail/leaf_samples.h"
-#include "bespoke/bake/detail/level_boundaries.h"
-#include "bespoke/bake/detail/stored_pyramid.h"
+#include "bespoke/bake/pyramid/leaf_samples.h"
+#include "bespoke/bake/pyramid/level_boundaries.h"
+#include "bespoke/bake/pyramid/stored_pyramid.h"
 #include "bespoke/mapping/affine_map.h"
 
 namespace bespoke {

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "bespoke/bake/detail/memory_budget.h"
-#include "bespoke/bake/detail/nearness.h"
-#include "bespoke/bake/detail/octant_refinement.h"
-#include "bespoke/bake/detail/refinement_options.h"
-#include "bespoke/bake/detail/relaxed_regions.h"
-#include "bespoke/bake/detail/sampled_levels.h"
+#include "bespoke/bake/pyramid/memory_budget.h"
+#include "bespoke/bake/pyramid/nearness.h"
+#include "bespoke/bake/pyramid/octant_refinement.h"
+#include "bespoke/bake/pyramid/refinement_options.h"
+#include "bespoke/bake/pyramid/relaxed_regions.h"
+#include "bespoke/bake/pyramid/sampled_levels.h"
 #include "bespoke/mapping/elastic_map.h"
 #include "bespoke/progress.h"
 

@@ -10,7 +10,7 @@
 
 #include "bespoke/certificate/fold_list.h"
 #include "bespoke/lattice/leaf_table.h"
-#include "bespoke/lattice/pyramid_lookup.h"
+#include "bespoke/lattice/pyramid_index.h"
 
 namespace bespoke {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "bespoke/bake/band.h"
 #include "bespoke/bake/detail/face_turns.h"
-#include "bespoke/bake/detail/leaf_samples.h"
 #include "bespoke/bake/detail/measurement.h"
 #include "bespoke/bake/error_points.h"
+#include "bespoke/bake/pyramid/leaf_samples.h"
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/error.h"
 #include "bespoke/mapping/affine_map.h"

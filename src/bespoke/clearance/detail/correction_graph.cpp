@@ -9,8 +9,8 @@
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/equal_positions.h"
-#include "bespoke/mesh/mesh_components.h"
 #include "bespoke/mesh/mesh_edges.h"
+#include "bespoke/topology/mesh_components.h"
 
 namespace bespoke {
 namespace {

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/decimation.h"
+#include "bespoke/topology/decimation.h"
 
 namespace bespoke {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/mesh_edges.h"
-#include "bespoke/mesh/seams.h"
 #include "bespoke/pattern/detail/convex_parts.h"
+#include "bespoke/topology/seams.h"
 
 namespace bespoke {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bespoke/error.h"
-#include "bespoke/mesh/seams.h"
-#include "bespoke/pattern/detail/paired_seams.h"
+#include "bespoke/pattern/flattening/paired_seams.h"
+#include "bespoke/topology/seams.h"
 
 namespace bespoke {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "bespoke/mapping/elastic_chain.h"
-#include "bespoke/pipeline/elastic_pairs.h"
 #include "bespoke/pipeline/elastic_steps.h"
-#include "bespoke/pipeline/fit_options.h"
-#include "bespoke/pipeline/registration.h"
+#include "bespoke/registration/elastic_pairs.h"
+#include "bespoke/registration/fit_options.h"
+#include "bespoke/registration/registration.h"
 
 namespace bespoke {
 

@@ -7,7 +7,7 @@
 #include "bespoke/mapping/elastic_chain.h"
 #include "bespoke/mesh/triangle_mesh.h"
 #include "bespoke/pipeline/elastic_steps.h"
-#include "bespoke/pipeline/fit_options.h"
+#include "bespoke/registration/fit_options.h"
 
 namespace bespoke {
 

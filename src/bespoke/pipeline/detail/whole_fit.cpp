@@ -8,7 +8,7 @@
 #include "bespoke/anchors/patch_borders.h"
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/length.h"
-#include "bespoke/pipeline/detail/renumbered.h"
+#include "bespoke/registration/renumbered.h"
 
 namespace bespoke {
 namespace {

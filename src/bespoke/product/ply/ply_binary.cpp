@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "bespoke/error.h"
 #include "bespoke/product/ply/ply_scalar.h"
@@ -31,18 +32,14 @@ void for_face_lists(const PlyHeader& header, const PlyBlock& block, const Visit&
     }
 }
 
-/// Throws for the first vertex of a face that there is not.
+/// The first value of a list that is no number of `count` ones, or nothing.
 template <class Value>
-void require_vertices(const char* list, std::uint64_t values, bool is_big, const PlyHeader& header,
-                      const PlyBlock& block, std::uint64_t face, const std::filesystem::path& path) {
-  const auto vertices = static_cast<double>(header.elements[header.vertex].count);
+std::optional<double> value_beyond(const char* list, std::uint64_t values, bool is_big, std::uint64_t count) {
   for (std::uint64_t k = 0; k < values; ++k) {
     const auto index = static_cast<double>(load_scalar<Value>(list + k * sizeof(Value), is_big));
-    if (index >= 0 && index < vertices) continue;
-    throw FormatError(path.string() + ": face " + std::to_string(block.first + face) + " of " +
-                      std::to_string(header.elements[block.element].count) + ": " +
-                      ply_index_fault(index, header.elements[header.vertex].count));
+    if (!(index >= 0 && index < static_cast<double>(count))) return index;
   }
+  return std::nullopt;
 }
 
 bool is_padding(char c) { return c == '\n' || c == '\r' || c == ' ' || c == '\t' || c == '\0'; }
@@ -167,11 +164,15 @@ std::vector<std::uint32_t> face_corners(const PlyHeader& header, const PlyBlock&
 }
 
 void require_vertices(const PlyHeader& header, const PlyBlock& block, const std::filesystem::path& path) {
+  const std::uint64_t vertices = header.elements[header.vertex].count;
   for_face_lists(
       header, block,
       [&](std::uint64_t face, const PlyProperty& property, const char* list, std::uint64_t values) {
         with_type(property.type, [&](auto zero) {
-          require_vertices<decltype(zero)>(list, values, is_big(header), header, block, face, path);
+          if (const auto index = value_beyond<decltype(zero)>(list, values, is_big(header), vertices))
+            throw FormatError(path.string() + ": face " + std::to_string(block.first + face) + " of " +
+                              std::to_string(header.elements[block.element].count) + ": " +
+                              ply_index_fault(*index, vertices));
         });
       });
 }

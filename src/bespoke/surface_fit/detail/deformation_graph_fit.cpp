@@ -10,17 +10,17 @@
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/mesh/edge_refinement.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 #include "bespoke/surface_fit/detail/anchor_meeting.h"
-#include "bespoke/surface_fit/detail/anchor_pose.h"
-#include "bespoke/surface_fit/detail/deformation_nodes.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
 #include "bespoke/surface_fit/detail/misoriented_faces.h"
-#include "bespoke/surface_fit/detail/node_fit.h"
-#include "bespoke/surface_fit/detail/similarity_fit.h"
-#include "bespoke/surface_fit/detail/unmatched_cavities.h"
+#include "bespoke/surface_fit/graph/anchor_pose.h"
+#include "bespoke/surface_fit/graph/deformation_nodes.h"
+#include "bespoke/surface_fit/graph/node_fit.h"
+#include "bespoke/surface_fit/graph/similarity_fit.h"
+#include "bespoke/surface_fit/matching/unmatched_cavities.h"
+#include "bespoke/topology/edge_refinement.h"
 
 namespace bespoke {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke {

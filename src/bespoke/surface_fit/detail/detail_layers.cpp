@@ -10,7 +10,7 @@
 #include "bespoke/rbf/kernels.h"
 #include "bespoke/rbf/layer_solver.h"
 #include "bespoke/rbf/point_grid.h"
-#include "bespoke/surface_fit/detail/reciprocity.h"
+#include "bespoke/surface_fit/matching/reciprocity.h"
 
 namespace bespoke {
 namespace {

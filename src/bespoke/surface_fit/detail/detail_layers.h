@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "bespoke/progress.h"
-#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
-#include "bespoke/surface_fit/detail/target_surface.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/matching/target_surface.h"
 
 namespace bespoke {
 

@@ -9,7 +9,7 @@
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 #include "bespoke/surface_fit/detail/displacement_smoother.h"
-#include "bespoke/surface_fit/detail/target_surface.h"
+#include "bespoke/surface_fit/matching/target_surface.h"
 
 namespace bespoke {
 namespace {

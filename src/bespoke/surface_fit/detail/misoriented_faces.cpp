@@ -11,7 +11,7 @@
 #include "bespoke/mesh/disjoint_sets.h"
 #include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/surface_fit/detail/bends.h"
-#include "bespoke/surface_fit/detail/harmonic_extension.h"
+#include "bespoke/surface_fit/matching/harmonic_extension.h"
 
 namespace bespoke {
 namespace {

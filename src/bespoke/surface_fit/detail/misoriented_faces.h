@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
-#include "bespoke/surface_fit/detail/deformation_graph_settings.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 
 namespace bespoke {
 

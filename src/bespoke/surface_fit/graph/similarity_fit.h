@@ -1,0 +1,21 @@
+#pragma once
+
+#include "bespoke/rigid/similarity_alignment.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/surface_fit/matching/target_surface.h"
+
+namespace bespoke {
+
+struct SimilarityFit {
+  Similarity target_from_source;
+  double residual =
+      0;  ///< a high quantile (settings) of the distances to the target's tangent planes, mesh units
+  bool suffices = false;
+};
+
+/// Iterated closest compatible points, point to plane, robust weights, from `start` on. The similarity
+/// suffices when `residual` is within the tolerance of the settings. Gives up early when no similarity can.
+SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& target, const Similarity& start,
+                             const SimilaritySettings& settings = {});
+
+}  // namespace bespoke
