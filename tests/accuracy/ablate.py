@@ -82,8 +82,6 @@ RULES = [
     by_value("inaccurate anchors reinforced", "anchors", AnchorSettings__max_reinforced=1),
     Rule("exact anchors weigh more with every iteration", "anchors", file="surface_fit/graph/node_fit.cpp",
          old="settings_.anchor_growth * (iteration + 1)", new="settings_.anchor_growth"),
-    Rule("anchors alone in the first iteration", "anchors", file="surface_fit/graph/node_fit.cpp",
-         old="fit_.iterations > 0 || anchors_.empty()", new="true"),
     Rule("targets of inaccurate anchors brought to the surface", "anchors",
          file="surface_fit/detail/deformation_graph_fit.cpp",
          old="if (!(anchors.sigmas.array() > 0).any()) return;", new="if (anchors.sigmas.size() >= 0) return;"),

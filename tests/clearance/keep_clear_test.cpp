@@ -164,6 +164,29 @@ TEST(KeepClear, TheTwoSheetsOfAThickOneStayApart) {
     ASSERT_GT(cleared.vertices.col(v).norm() - cleared.vertices.col(v + n).norm(), 0.005) << v;
 }
 
+// A stiff cup that is too narrow for its ball has no place on it. Off the ball it would miss nothing.
+TEST(KeepClear, PartsAreNotPushedOffWhatTheyAreWornOn) {
+  const TriangleMesh whole = test::shell(1.02, 3);
+  TriangleMesh cup{whole.vertices, Faces(3, 0)};
+  for (const auto& face : whole.faces.colwise())
+    if ((whole.vertices(2, face[0]) + whole.vertices(2, face[1]) + whole.vertices(2, face[2])) < 0) {
+      cup.faces.conservativeResize(3, cup.faces.cols() + 1);
+      cup.faces.rightCols<1>() = face;
+    }
+  const std::vector<int> parts(static_cast<std::size_t>(cup.vertices.cols()), 0);
+  Obstacle ball = test::unit_ball();
+  const auto distance_of_unit_ball = ball.distance;
+  ball.distance = [=](const Points& x) {
+    std::vector<double> values = distance_of_unit_ball(x);
+    for (double& value : values) value -= 0.1;
+    return values;
+  };
+  const ClearedProduct cleared = keep_clear(PreparedProduct(cup, parts), cup.vertices, {ball});
+  EXPECT_LT((cleared.vertices - cup.vertices).colwise().norm().maxCoeff(), 0.21);
+  EXPECT_GT(cleared.summary.after.samples, 0u);
+  EXPECT_FALSE(cleared.summary.places.empty());
+}
+
 TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   // A sheet between two plates that leave less than it had to each side.
   TriangleMesh product = shapes::square_grid(20);

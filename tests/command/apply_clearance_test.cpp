@@ -115,6 +115,7 @@ TEST_F(ApplyClearance, WhatCannotBeClearedIsReportedAndExitsWithThree) {
   const ProgramResult result = apply({"rigid.obj"}, {"--clearance", "keep", "--rigid", "shell", "-o", out()});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("no space at ("));
+  EXPECT_THAT(result.err, HasSubstr("rigid.obj: not clear, although it was corrected: "));
   EXPECT_FALSE(clearance()["clear"]);
   EXPECT_FALSE(clearance()["places"].empty());
   const ProgramResult required =
@@ -122,6 +123,20 @@ TEST_F(ApplyClearance, WhatCannotBeClearedIsReportedAndExitsWithThree) {
   EXPECT_EQ(required.exit_code, 3);
   EXPECT_THAT(required.err, HasSubstr("not clear: rigid.obj"));
   EXPECT_TRUE(pair_.has("out.obj"));
+}
+
+// A stiff sole and a soft upper are layers of one call.
+TEST_F(ApplyClearance, PartsAreOfTheProductsThatHaveThem) {
+  const ProgramResult both =
+      apply({"shirt.obj", "rigid.obj"}, {"--rigid", "shell", "--out-dir", pair_.file("out")});
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.out, HasSubstr("rigid.obj: shell: "));
+  EXPECT_EQ(both.out.find("shirt.obj: shell"), std::string::npos);
+  const ProgramResult none =
+      apply({"shirt.obj", "rigid.obj"}, {"--rigid", "heel", "--out-dir", pair_.file("none")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("none of the products has a part 'heel'"));
+  EXPECT_THAT(apply({"shirt.obj"}, {"--rigid", "shell", "-o", out()}).err, HasSubstr("has no part 'shell'"));
 }
 
 TEST_F(ApplyClearance, RefusesWhatHasNoMeaning) {

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "apply_plan.h"
@@ -32,10 +33,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<RigidPart> parts(const ApplyArguments& arguments) {
+std::vector<RigidPart> named_parts(const ApplyArguments& arguments) {
   std::vector<RigidPart> parts;
   for (const std::string& name : arguments.rigid) parts.push_back({name, PartMotion::rigid});
   for (const std::string& name : arguments.similar) parts.push_back({name, PartMotion::similar});
+  return parts;
+}
+
+/// One product has all parts that are named; of several, each has those that its file knows. Throws
+/// InvalidInput for a part that none of several has.
+PartsOfProducts parts_of_products(const ApplyArguments& arguments) {
+  const std::vector<RigidPart> named = named_parts(arguments);
+  if (arguments.products.size() == 1) return {{arguments.products.front(), named}};
+  PartsOfProducts parts;
+  std::set<std::string> known;
+  if (named.empty()) return parts;
+  for (const std::string& product : arguments.products) {
+    parts[product] = parts_present(product, named, arguments.pose.value_or(ModelPose::shown));
+    for (const RigidPart& part : parts[product]) known.insert(part.name);
+  }
+  for (const RigidPart& part : named)
+    if (!known.contains(part.name)) throw InvalidInput("none of the products has a part '" + part.name + "'");
   return parts;
 }
 
@@ -84,10 +102,16 @@ std::string conversion(const std::string& name, const std::string& map_unit, dou
          ": carried times " + format_number(scale, 6) + " and written in its own unit";
 }
 
+struct PlannedProduct {
+  const std::string& name;
+  const std::vector<fs::path>& outputs;
+  std::vector<RigidPart> parts;
+};
+
 /// Carries the file as it is or, to become another kind of file, its faces.
-ProductSummary apply_one(const ApplyArguments& arguments, const std::string& name,
-                         const std::vector<fs::path>& outputs, const OpenedMap& map,
+ProductSummary apply_one(const ApplyArguments& arguments, const PlannedProduct& product, const OpenedMap& map,
                          const Progress& progress) {
+  const std::string& name = product.name;
   const double scale = product_scale(name, map.unit, arguments.unit);
   const OpenedMap own = in_other_unit(map, scale);
   const MotionOptions motion = motion_options(arguments, map);
@@ -97,14 +121,14 @@ ProductSummary apply_one(const ApplyArguments& arguments, const std::string& nam
   std::optional<Box> model_box;
   if (arguments.unit.empty()) model_box = own.model_box;
   std::vector<fs::path> targets;
-  for (const fs::path& output : outputs) targets.push_back(output_target(output));
+  for (const fs::path& output : product.outputs) targets.push_back(output_target(output));
   ProductSummary summary;
-  if (!is_carried(arguments, name, outputs.front())) {
+  if (!is_carried(arguments, name, product.outputs.front())) {
     ConvertOptions options{motion, refine, measure_chords, {}, model_box};
     options.unit = product_unit(name, map.unit, arguments.unit);
     summary = convert_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
   } else {
-    ApplyToProductOptions options{motion, parts(arguments), refine, measure_chords, model_box, progress};
+    ApplyToProductOptions options{motion, product.parts, refine, measure_chords, model_box, progress};
     options.pose = arguments.pose.value_or(ModelPose::shown);
     if (!arguments.skeleton.empty()) options.skeleton = arguments.skeleton;
     summary =
@@ -163,7 +187,8 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
 
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
   PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "", arguments.catalog.target);
-  ClearanceKeeper keeper(arguments.clearance, parts(arguments), arguments.unit, pose);
+  const PartsOfProducts parts = parts_of_products(arguments);
+  ClearanceKeeper keeper(arguments.clearance, parts, arguments.unit, pose);
   OutputFiles files;
   std::vector<AppliedProduct> applied(arguments.products.size());
   std::vector<std::string> penetrations(arguments.products.size());
@@ -176,7 +201,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
     map.use(name, [&](const OpenedMap& opened) {
       const OpenedMap cleared = keeper.corrected(name, opened);
       penetrations[i] = new_penetration(name, cleared, arguments.unit, pose);
-      summary = apply_one(arguments, name, plan[i], cleared, progress);
+      summary = apply_one(arguments, {name, plan[i], parts_of(parts, name)}, cleared, progress);
       if (!penetrations[i].empty()) summary.warnings.push_back(penetrations[i]);
     });
     files.add(plan[i]);
@@ -201,6 +226,9 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
   for (std::size_t i = 0; i < applied.size(); ++i) {
     if (!arguments.run.quiet) print_summary(plan[i].back(), applied[i].summary, arguments.skeleton);
     if (!arguments.run.quiet && applied[i].clearance) print_clearance(plan[i].back(), *applied[i].clearance);
+    if (applied[i].clearance && !applied[i].clearance->is_clear())
+      context.warn(arguments.products[i] + ": " + what_is_not_clear(applied[i].clearance->summary),
+                   Entry::product_inside_the_target);
     for (const std::string& warning : applied[i].summary.warnings)
       context.warn(arguments.products[i] + ": " + warning, warning == penetrations[i]
                                                                ? Entry::product_inside_the_target

@@ -10,6 +10,7 @@
 
 #include "bespoke/clearance/nesting.h"
 #include "bespoke/error.h"
+#include "bespoke/number_format.h"
 #include "bespoke/product/format_unit.h"
 #include "bespoke/product/product_io.h"
 
@@ -97,15 +98,18 @@ std::vector<std::size_t> ClearanceKeeper::order(const std::vector<std::string>& 
   for (const std::string& name : products) layer_order_->names.push_back(file_name(name));
   if (option_.layers) return order;
   std::vector<TriangleMesh> meshes;
-  for (const std::string& name : products)
-    meshes.push_back(
-        prepared_products().get(name, parts_, product_scale(name, map.unit, unit_), pose_).prepared->mesh());
+  for (const std::string& name : products) meshes.push_back(worn(name, map.unit).prepared->mesh());
   const Nesting nesting = nesting_of(meshes, sizes_of(map).source_diagonal);
   const std::vector<std::string> names = layer_order_->names;
   layer_order_ = LayerOrder{{}, true, {}, nesting.is_circular};
   for (const std::size_t i : nesting.order) layer_order_->names.push_back(names[i]);
   for (const auto& [a, b] : nesting.interleaved) layer_order_->interleaved.emplace_back(names[a], names[b]);
   return nesting.order;
+}
+
+WornProduct ClearanceKeeper::worn(const std::string& product, const std::string& map_unit) const {
+  return prepared_products().get(product, parts_of(parts_, product), product_scale(product, map_unit, unit_),
+                                 pose_);
 }
 
 OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap& map) {
@@ -120,9 +124,8 @@ OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap
     clearer_.emplace(parse_clearance(option_.distance, sizes).value(),
                      are_layers_ ? ProductClearer::Products::layers : ProductClearer::Products::alone);
   OpenedMap own = map;
-  own.elastic = clearer_->corrected(
-      prepared_products().get(product, parts_, product_scale(product, map.unit, unit_), pose_),
-      {map.elastic, map.target_from_source, map.distances, sizes});
+  own.elastic = clearer_->corrected(worn(product, map.unit),
+                                    {map.elastic, map.target_from_source, map.distances, sizes});
   return own;
 }
 
@@ -140,6 +143,25 @@ void ClearanceKeeper::require_clear() const {
     throw SolverError("not clear: " + names +
                       "; the lines above and the report say where. More anchors there, a smaller --clearance "
                       "or a looser product may help");
+}
+
+std::vector<RigidPart> parts_of(const PartsOfProducts& parts, const std::string& product) {
+  const auto found = parts.find(product);
+  return found == parts.end() ? std::vector<RigidPart>() : found->second;
+}
+
+std::string what_is_not_clear(const ClearanceSummary& summary) {
+  std::string text = "not clear, although it was corrected: ";
+  if (summary.after.breaches > 0)
+    text += std::to_string(summary.after.breaches) + " samples are inside or short of their distance";
+  if (!summary.passed_through.empty() || summary.new_self_intersections > 0)
+    text += std::string(summary.after.breaches > 0 ? ", " : "") +
+            "faces pass through each other that did not before";
+  if (!summary.places.empty()) {
+    const Vector3& worst = summary.places.front().place;
+    text += ", the worst around " + format_number(worst, 3);
+  }
+  return text;
 }
 
 std::string to_string(const LayerOrder& order) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,11 +38,17 @@ void add_require_clear(CLI::App& app, ClearanceOption& option);
 /// Throws CLI::ValidationError for a distance that is none, and for what needs one.
 void require_valid(const ClearanceOption& option);
 
+/// Parts that keep their shape, by the name of the product that has them.
+using PartsOfProducts = std::map<std::string, std::vector<RigidPart>>;
+
+/// Those of the product, or none.
+std::vector<RigidPart> parts_of(const PartsOfProducts& parts, const std::string& product);
+
 /// Keeps the products of a run clear, in the order of the calls.
 class ClearanceKeeper {
  public:
   /// `unit`: of the products' coordinates, as product_scale takes it; `pose`: of skinned products.
-  ClearanceKeeper(ClearanceOption option, std::vector<RigidPart> parts, std::string unit,
+  ClearanceKeeper(ClearanceOption option, PartsOfProducts parts, std::string unit,
                   ModelPose pose = ModelPose::shown)
       : option_(std::move(option)), parts_(std::move(parts)), unit_(std::move(unit)), pose_(pose) {}
 
@@ -64,7 +71,9 @@ class ClearanceKeeper {
 
  private:
   ClearanceOption option_;
-  std::vector<RigidPart> parts_;
+  WornProduct worn(const std::string& product, const std::string& map_unit) const;
+
+  PartsOfProducts parts_;
   std::string unit_;
   ModelPose pose_;
   bool are_layers_ = false;
@@ -77,6 +86,9 @@ std::string to_string(const LayerOrder& order);
 
 /// Warns where no order is right.
 void warn_of_layers(const RunContext& context, const LayerOrder& order);
+
+/// "12 samples are inside that were outside, or short of a required ease, …, the worst around (…)".
+std::string what_is_not_clear(const ClearanceSummary& summary);
 
 /// Every line after "OUT: ".
 void print_clearance(const std::string& output, const ProductClearance& clearance);

@@ -142,4 +142,20 @@ std::vector<int> parts_of_places(const fs::path& input, const Points& places, co
   return parts_at(places, find_parts(format, file, options.parts, options.progress), input);
 }
 
+std::vector<RigidPart> parts_present(const fs::path& input, const std::vector<RigidPart>& parts,
+                                     ModelPose pose) {
+  const InputFile file(input);
+  const Format format = known_format(input, pose);
+  std::vector<RigidPart> present;
+  if (!format.find_parts) return present;
+  for (const RigidPart& part : parts) {
+    try {
+      format.find_parts(file, {part}, {});
+      present.push_back(part);
+    } catch (const UnknownPart&) {
+    }
+  }
+  return present;
+}
+
 }  // namespace bespoke

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "bespoke/error.h"
 #include "bespoke/statistics.h"
 
 namespace bespoke {
@@ -20,6 +21,11 @@ struct RigidPart {
   /// of a PLY file: "1", "2", … in the order of their first vertices.
   std::string name;
   PartMotion motion = PartMotion::rigid;
+};
+
+/// A file has no part of that name.
+class UnknownPart : public InvalidInput {
+  using InvalidInput::InvalidInput;
 };
 
 struct PartSummary {

@@ -26,6 +26,9 @@ constexpr double min_gradient = 0.2;
 constexpr double min_gain = 0.3;
 constexpr int max_vain_rounds = 2;
 
+// Of what a part missed: one side pushes it so far, three perpendicular ones √3 times.
+constexpr double max_shift = 2;
+
 // Of the tolerance: how exactly a round meets its linear constraints, and what is aimed for beyond what is
 // required: together within the tolerance, so that the next round finds them met.
 constexpr double solved_share = 1, aimed_share = 0.5;
@@ -41,6 +44,7 @@ Correction::Correction(const PreparedProduct::Data& product, const Points& carri
       u_(NodeVectors::Zero(product.graph.nodes(), 3)),
       is_missing_node_(static_cast<std::size_t>(product.graph.nodes()), 0),
       is_bound_node_(is_missing_node_),
+      missing_at_first_(is_missing_node_.size(), 0),
       moved_(static_cast<std::size_t>(carried.cols()), 0) {
   for (const Obstacle& obstacle : obstacles)
     size_ = std::max(size_, obstacle.tolerance / clearance_tolerance);
@@ -57,6 +61,7 @@ void Correction::solve(SampleDistances& distances, int rounds) {
   for (int round = 0; round < rounds && (choose_active(distances) || let_go); ++round) {
     move_to_least_energy(distances);
     let_go = count_vain_rounds(distances);
+    let_go = let_go_of_parts() || let_go;
   }
 }
 
@@ -178,6 +183,21 @@ bool Correction::count_vain_rounds(const SampleDistances& distances) {
   return let_go;
 }
 
+/// Lets go of parts that have moved much farther than they missed: what presses them from two sides pushes a
+/// stiff counter off its heel, where it misses nothing and fits nobody.
+bool Correction::let_go_of_parts() {
+  bool let_go = false;
+  for (std::size_t node = 0; node < missing_at_first_.size(); ++node) {
+    const auto row = static_cast<Eigen::Index>(node);
+    if (!product_.graph.is_part[node] || !(u_.row(row).norm() > max_shift * missing_at_first_[node]))
+      continue;
+    for (std::size_t o = 0; o < obstacles_.size(); ++o)
+      vain_rounds_[{o, static_cast<int>(node)}] = max_vain_rounds;
+    let_go = true;
+  }
+  return let_go;
+}
+
 bool Correction::is_blocked(std::size_t obstacle, int node) const {
   const auto found = vain_rounds_.find({obstacle, node});
   return found != vain_rounds_.end() && found->second >= max_vain_rounds;
@@ -208,6 +228,10 @@ bool Correction::choose_active(const SampleDistances& distances) {
       if (is_blocked(o, node)) continue;
       any = true;
       note_missing(distances, i);
+      if (u_.row(node).isZero(0)) {
+        double& most = missing_at_first_[static_cast<std::size_t>(node)];
+        most = std::max(most, distances.missing(o, i));
+      }
       int& at = worst[static_cast<std::size_t>(node)];
       if (at < 0 || distances.missing(o, i) > distances.missing(o, at)) at = i;
     }

@@ -73,6 +73,7 @@ class Correction {
   bool choose_active(const SampleDistances& distances);
   int nearest_node(const ProductSamples& samples, int sample) const;
   bool count_vain_rounds(const SampleDistances& distances);
+  bool let_go_of_parts();
   bool is_blocked(std::size_t obstacle, int node) const;
   void note_missing(const SampleDistances& distances, int sample);
   void note_missing_vertex(int vertex);
@@ -97,6 +98,7 @@ class Correction {
   std::map<std::pair<std::size_t, int>, int> vain_rounds_;  // of an obstacle and a node
   std::map<std::array<int, 3>, double> multiplier_of_push_;
   std::vector<char> is_missing_node_, is_bound_node_;
+  std::vector<double> missing_at_first_;  // of parts: the most that they missed where nothing had moved them
   Eigen::VectorXd multipliers_;
   std::vector<char> moved_;
 };

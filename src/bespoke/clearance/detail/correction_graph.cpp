@@ -203,8 +203,12 @@ class GraphBuilder {
     graph.weights.resize(count, count);
     graph.weights.setFromTriplets(weights.begin(), weights.end());
     graph.is_tied.assign(static_cast<std::size_t>(count), 0);
-    for (std::size_t i = 0; i < number.size(); ++i)
-      if (number[i] >= 0) graph.is_tied[static_cast<std::size_t>(number[i])] = is_tied_[i];
+    graph.is_part = graph.is_tied;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      if (number[i] < 0) continue;
+      graph.is_tied[static_cast<std::size_t>(number[i])] = is_tied_[i];
+      graph.is_part[static_cast<std::size_t>(number[i])] = is_part_node_[i];
+    }
     return graph;
   }
 

@@ -21,6 +21,8 @@ struct CorrectionGraph {
   Eigen::SparseMatrix<double> weights;
   /// m: 1 where ties join the node to others.
   std::vector<char> is_tied;
+  /// m: 1 for parts that keep their shape.
+  std::vector<char> is_part;
 
   int nodes() const { return static_cast<int>(weights.cols()); }
 };

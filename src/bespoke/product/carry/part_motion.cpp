@@ -112,7 +112,7 @@ FittedPart fit_part(const PartPoints& part, const PointMotion& motion, const std
 }
 
 void refuse_part(const std::string& name, const std::string& known, const std::filesystem::path& file) {
-  throw InvalidInput(file.string() + ": has no part '" + name + "'; " + known);
+  throw UnknownPart(file.string() + ": has no part '" + name + "'; " + known);
 }
 
 std::string listed(const std::vector<std::string>& names) {

@@ -31,7 +31,7 @@ struct FittedPart {
 /// which none of them moves. Throws InvalidInput, naming the file, for points from which no turn can be told.
 FittedPart fit_part(const PartPoints& part, const PointMotion& motion, const std::filesystem::path& file);
 
-/// Throws InvalidInput: the file has no such part, but those that `known` lists.
+/// Throws UnknownPart: the file has no such part, but those that `known` lists.
 [[noreturn]] void refuse_part(const std::string& name, const std::string& known,
                               const std::filesystem::path& file);
 

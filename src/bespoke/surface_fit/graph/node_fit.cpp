@@ -149,13 +149,10 @@ void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
   for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit_.iterations) {
     progress_.step("surface-fit", static_cast<std::size_t>(fit_.iterations),
                    static_cast<std::size_t>(total_iterations(settings_)));
-    std::vector<PlanePair> planes;
-    // Before the anchors are met, closest points mislead.
-    if (fit_.iterations > 0 || anchors_.empty())
-      planes =
-          find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
-                            input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
-                           level, settings_);
+    const std::vector<PlanePair> planes =
+        find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
+                          input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
+                         level, settings_);
     if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
     const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);
     NodeGoals goals{fit_.vertices,
