@@ -54,7 +54,7 @@ CarrySummary carry_product(const std::filesystem::path& input,
 std::vector<int> parts_of_places(const std::filesystem::path& input, const Points& places,
                                  const CarryOptions& options);
 
-/// Of these parts those that the product has. Throws as parts_of_places, but for unknown parts.
+/// Of these parts those that the product has. Throws as parts_of_places, except for unknown parts.
 std::vector<RigidPart> parts_present(const std::filesystem::path& input, const std::vector<RigidPart>& parts,
                                      ModelPose pose = ModelPose::shown);
 
