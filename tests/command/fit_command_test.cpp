@@ -353,6 +353,13 @@ TEST_F(FitCommand, SaysNothingWhenQuiet) {
   EXPECT_THAT(fit.err, IsEmpty());
 }
 
+// The fixture names one.
+TEST_F(FitCommand, SaysThatFiniteElementsHaveNoUseForATolerance) {
+  EXPECT_THAT(pair_.fit("map.vdb").out, HasSubstr("the fitted one, so that --tolerance changes nothing"));
+  EXPECT_THAT(pair_.fit("map.vdb", {"--max-memory", "2GiB"}).out,
+              Not(HasSubstr("--tolerance changes nothing")));
+}
+
 TEST_F(FitCommand, PrintsWhatEveryStageFoundWhenVerbose) {
   const ProgramResult fit = pair_.fit("map.vdb", {"--verbose"});
   for (const char* line : {"source", "target", "rigid", "coarse", "surface-fit", "elastic", "bake",

@@ -249,13 +249,12 @@ void run(const FitArguments& arguments, const RunContext& context) {
 
   context.findings.figures = figures(made);
   warn_of_misses(context, input, options, made);
-  if (arguments.tolerance && options.fit.elastic == ElasticMethod::finite_elements)
-    warn_of_idle_tolerance(context);
   if (arguments.verbose) print_stages(made, anchors);
   if (arguments.verbose) std::printf("%-12s %s, %.1f s\n", "written", arguments.output.c_str(), seconds);
   if (!arguments.run.quiet && !arguments.verbose)
     std::fputs(fit_text({input, made, arguments.source, arguments.target, arguments.output, arguments.fitted,
-                         size_of_file(arguments.output), seconds, next_command(arguments, made)})
+                         size_of_file(arguments.output), seconds, next_command(arguments, made),
+                         arguments.tolerance.has_value()})
                    .c_str(),
                stdout);
 }

@@ -138,11 +138,4 @@ void warn_of_misses(const RunContext& context, const Problem& input, const MakeM
   warn_of_missed_tolerance(context, options.bake, *summary.bake);
 }
 
-void warn_of_idle_tolerance(const RunContext& context) {
-  context.warn(
-      "--tolerance changes nothing: it is of maps that are baked (--strict, other --elastic), and finite "
-      "elements are stored as they are fitted, to --fit-tolerance",
-      Entry::tolerance_missed);
-}
-
 }  // namespace bespoke::command

@@ -20,7 +20,4 @@ void warn_of_missing_certificate(const RunContext& context, const Certificate& c
 void warn_of_misses(const RunContext& context, const Problem& input, const MakeMapOptions& options,
                     const MadeMap& made);
 
-/// Where a tolerance is named for a method that has none.
-void warn_of_idle_tolerance(const RunContext& context);
-
 }  // namespace bespoke::command

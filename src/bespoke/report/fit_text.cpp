@@ -163,7 +163,8 @@ std::string bake_text(const FitOutcome& outcome, const Lengths& lengths) {
       bake.error.max > 0
           ? "the stored map is within " + lengths(bake.error.max) + " of the exact one; tolerance " +
                 lengths(outcome.made.asset.record.tolerance) + (bake.tolerance_met ? "" : " MISSED")
-          : "the stored map is the fitted one";
+          : std::string("the stored map is the fitted one") +
+                (outcome.names_tolerance ? ", so that --tolerance changes nothing" : "");
   const Statistics& vertices = outcome.made.fit->summary.elastic.vertex_residuals;
   return stored + "; 99 % of the vertices are taken to their places within " + lengths(vertices.p99) +
          ", all within " + lengths(vertices.max);

@@ -16,7 +16,8 @@ struct FitOutcome {
   std::string fitted;                   ///< of a source that was registered already; else empty
   std::optional<std::uintmax_t> bytes;  ///< of the map's file; empty where that is no regular one
   double seconds = 0;
-  std::string next;  ///< the command to type next
+  std::string next;              ///< the command to type next
+  bool names_tolerance = false;  ///< whether the user named one, which stored finite elements have no use for
 };
 
 /// At most ten lines for a person: that the map is not proved, if so, then what was registered, how near the
