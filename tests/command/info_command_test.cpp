@@ -15,7 +15,8 @@ TEST(InfoCommand, SaysWhatTheAssetHolds) {
   ASSERT_EQ(pair.fit("map.vdb").exit_code, 0);
   const ProgramResult text = bespoke({"info", pair.file("map.vdb")});
   EXPECT_EQ(text.exit_code, 0) << text.err;
-  for (const char* part : {"unit cm", "stored       as fitted", "certificate", "voxel size", "anchors      14"})
+  for (const char* part :
+       {"unit cm", "stored       as fitted", "certificate", "voxel size", "anchors      14"})
     EXPECT_THAT(text.out, HasSubstr(part));
 
   const ProgramResult result = bespoke({"info", pair.file("map.vdb"), "--json", "--untrusted"});

@@ -147,7 +147,8 @@ std::string to_string(const AnchorAccuracy& accuracy, const Anchors& anchors) {
                   anchor.sigma);
     text += (text.empty() ? "anchor " : "; anchor ") + label(anchors, anchor.index) + number;
   }
-  if (!accuracy.swapped.empty()) text += (text.empty() ? "" : "; ") + to_string(accuracy.swapped, anchors) + " and are left out";
+  if (!accuracy.swapped.empty())
+    text += (text.empty() ? "" : "; ") + to_string(accuracy.swapped, anchors) + " and are left out";
   return text;
 }
 

@@ -25,8 +25,7 @@ void require_pairs(const Points& sources, const Points& targets, const Eigen::Ve
                        std::to_string(targets.cols()) + " target points and " +
                        std::to_string(weights.size()) + " weights; the three numbers must be equal");
   if (sources.cols() < 4)
-    throw InvalidInput("the coarse warp needs 4 anchor pairs; there are " +
-                       std::to_string(sources.cols()));
+    throw InvalidInput("the coarse warp needs 4 anchor pairs; there are " + std::to_string(sources.cols()));
   for (Eigen::Index i = 0; i < sources.cols(); ++i) {
     if (!sources.col(i).allFinite() || !targets.col(i).allFinite())
       throw InvalidInput("coarse warp: anchor pair " + std::to_string(i) +

@@ -18,9 +18,9 @@ struct DisplayMesh {
 };
 
 /// At most `max_faces` triangles (> 0), or points where the mesh has no faces. A larger mesh is decimated
-/// (see topology/decimation.h). Points, and soups whose triangles share too few edges for that, are thinned by a
-/// grid of cubes: of the vertices in a cube the one nearest to their mean stays, and triangles whose corners
-/// share a cube go. Throws InvalidInput for indices out of range.
+/// (see topology/decimation.h). Points, and soups whose triangles share too few edges for that, are thinned
+/// by a grid of cubes: of the vertices in a cube the one nearest to their mean stays, and triangles whose
+/// corners share a cube go. Throws InvalidInput for indices out of range.
 DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t max_faces);
 
 }  // namespace bespoke
