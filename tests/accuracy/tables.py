@@ -14,9 +14,9 @@ ROOT = Path(__file__).resolve().parents[2]
 RECORDED = ROOT / "tests" / "accuracy" / "recorded.json"
 PAGES = ("README.md", "tests/accuracy/README.md")
 MARKED = re.compile(r"(?<=<!-- table: )([\w-]+)( -->\n).*?(?=<!-- end -->)", re.DOTALL)
-FRONT_PAGE = {"faust-persons 056 086": "two persons in one pose (FAUST)",
+FRONT_PAGE = {"faust-persons 088 098": "two persons in one pose (FAUST)",
               "faust-poses 058 052": "a person in two poses (FAUST)",
-              "tosca david0 david11": "a person in two poses (TOSCA)",
+              "tosca horse14 horse6": "a horse in two poses (TOSCA)",
               "mouse C3H_HEOUJ C3HeB": "two skulls, 90,000 vertices (mice)"}
 IN_ONE_POSE = ("d00", "d01", "d02", "d03", "d04", "d05", "d06", "d07")
 
