@@ -57,14 +57,18 @@ ProductsAsWorn worn_by(const ManifestJob& line) {
   if (const std::string distance = value_of(line, "clearance"); !distance.empty())
     worn.clearance.distance = distance;
   worn.clearance.layers = !values_of(line, "layers").empty();
+  worn.files = values_of(line, "product");
   return worn;
 }
 
-/// What of it the options of a job say; the same for jobs that one page can show.
-std::string options_text(const ProductsAsWorn& worn) {
+/// The same for jobs that one page can show: their options and, where products are kept clear, which these
+/// are, since they are kept from each other.
+std::string wearing(const ProductsAsWorn& worn) {
   std::string text = "unit " + worn.unit + ", clearance " + worn.clearance.distance;
   if (worn.pose) text += ", pose " + std::string(name_of(model_poses, *worn.pose));
   if (worn.clearance.layers) text += ", layers";
+  if (worn.clearance.is_used())
+    for (const std::string& file : worn.files) text += "\n" + file;
   return text;
 }
 
@@ -86,6 +90,26 @@ void add_worn(const ProductsAsWorn& worn, ManifestJob& line) {
   if (worn.pose) line.entries.push_back({"pose", {std::string(name_of(model_poses, *worn.pose))}});
   if (worn.clearance.is_used()) line.entries.push_back({"clearance", {worn.clearance.distance}});
   if (worn.clearance.layers) line.entries.push_back({"layers", {"true"}, true});
+}
+
+/// Adds what a job carries to one of the rows of its map, or as a row more.
+void add_products(ProductsAsWorn worn, std::vector<std::size_t>& rows, std::vector<ShownMap>& shown) {
+  const auto is_free = [&](std::size_t row) {
+    return shown[row].worn.files.empty() || wearing(shown[row].worn) == wearing(worn);
+  };
+  const auto row = std::find_if(rows.begin(), rows.end(), is_free);
+  if (row == rows.end()) {
+    ShownMap further = shown[rows.front()];
+    further.worn = std::move(worn);
+    rows.push_back(shown.size());
+    shown.push_back(std::move(further));
+    return;
+  }
+  std::vector<std::string> files = std::move(shown[*row].worn.files);
+  for (std::string& file : worn.files)
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(std::move(file));
+  worn.files = std::move(files);
+  shown[*row].worn = std::move(worn);
 }
 
 }  // namespace
@@ -110,23 +134,7 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
   for (const ManifestJob& line : manifest.jobs) {
     const auto rows = rows_of.find(fs::path(value_of(line, "map")).lexically_normal());
     const bool goes_there = line.command == "apply" && values_of(line, "inverse").empty();
-    if (!goes_there || rows == rows_of.end()) continue;
-    const ProductsAsWorn worn = worn_by(line);
-    const auto is_alike = [&](std::size_t row) {
-      return shown[row].worn.files.empty() || options_text(shown[row].worn) == options_text(worn);
-    };
-    auto row = std::find_if(rows->second.begin(), rows->second.end(), is_alike);
-    if (row == rows->second.end()) {
-      ShownMap other = shown[rows->second.front()];
-      other.worn = {};
-      row = rows->second.insert(row, shown.size());
-      shown.push_back(std::move(other));
-    }
-    ProductsAsWorn& there = shown[*row].worn;
-    if (there.files.empty()) there = worn;
-    for (std::string& product : values_of(line, "product"))
-      if (std::find(there.files.begin(), there.files.end(), product) == there.files.end())
-        there.files.push_back(std::move(product));
+    if (goes_there && rows != rows_of.end()) add_products(worn_by(line), rows->second, shown);
   }
   return shown;
 }
@@ -141,7 +149,7 @@ HtmlPages::HtmlPages(fs::path directory, const std::vector<ShownMap>& maps)
   for (const ShownMap& shown : maps) {
     const std::string name = free_name(shown.name, taken);
     const fs::path& page =
-        page_of.try_emplace(shown.map + "\n" + options_text(shown.worn), directory_ / (name + ".html"))
+        page_of.try_emplace(shown.map + "\n" + wearing(shown.worn), directory_ / (name + ".html"))
             .first->second;
     rows_.push_back({shown, page, directory_ / (name + ".png")});
   }
@@ -172,7 +180,7 @@ std::vector<BatchJob> HtmlPages::picture_jobs(OpenedMaps& maps) const {
     BatchJob job;
     job.line = row.shown.line;
     job.command = "picture";
-    job.options = {{"t", format_number(row.shown.t, 17)}, {"worn", options_text(row.shown.worn)}};
+    job.options = {{"t", format_number(row.shown.t, 17)}, {"worn", wearing(row.shown.worn)}};
     job.inputs = inputs_of(row.shown);
     job.outputs = {{"output", row.picture}};
     job.shared_map = row.shown.map;
