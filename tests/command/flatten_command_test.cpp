@@ -84,7 +84,7 @@ TEST_F(FlattenCommand, RefusesInOneSentence) {
       "face 2 has no area");
   expect_refusal(flatten("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nf 1 2 3\nf 2 1 4\nf 1 2 5\n",
                          {"--unit", "cm", "-o", output}),
-                 2, "three pieces or more meet along the edge between vertices 1 and 2");
+                 2, ".obj: three pieces or more meet along the edge between vertices 1 and 2");
   expect_refusal(flatten(tube_obj(), {"--unit", "cm", "-o", file("pieces.png")}), 1, ".svg, .dxf, .pdf");
   expect_refusal(flatten(tube_obj(), {"--unit", "cm", "--stretch-limit", "3", "-o", output}), 1, "warp,weft");
   write_text(file("seams.json"), "{\"seams\":[{\"path\":[1,999]}]}");

@@ -35,7 +35,7 @@ Attempt attempt(const Garment& garment, const Garment* source, const PatternOpti
   Attempt result;
   result.cut = cut_pieces(source ? *source : garment, cut);
   result.cut.pieces = pieces_at(std::move(result.cut.pieces), garment.mesh.vertices);
-  result.seams = paired_seams(result.cut.pieces);
+  result.seams = paired_seams(result.cut.pieces, garment.path);
   set_eases(garment, result.cut.pieces, options, result.seams);
   result.flat = flatten_pieces(result.cut.pieces, result.seams, options.flatten);
   for (std::size_t p = 0; p < result.cut.pieces.size(); ++p) {

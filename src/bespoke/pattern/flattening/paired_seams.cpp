@@ -32,7 +32,8 @@ std::pair<int, int> ends(const Piece& piece, int at) {
 
 class SeamWalk {
  public:
-  explicit SeamWalk(const std::vector<Piece>& pieces) : pieces_(pieces), other_(pieces.size()) {
+  SeamWalk(const std::vector<Piece>& pieces, const std::string& product)
+      : pieces_(pieces), other_(pieces.size()) {
     std::map<std::pair<int, int>, std::vector<OutlineEdge>> sides;
     for (std::size_t p = 0; p < pieces.size(); ++p) {
       other_[p].assign(pieces[p].outline.size(), {none, none});
@@ -41,7 +42,7 @@ class SeamWalk {
     }
     for (const auto& [edge, of_edge] : sides) {
       if (of_edge.size() > 2)
-        throw InvalidInput("three pieces or more meet along the edge between vertices " +
+        throw InvalidInput(product + ": three pieces or more meet along the edge between vertices " +
                            std::to_string(edge.first + 1) + " and " + std::to_string(edge.second + 1) +
                            ": a seam joins two; separate the layers, or give them vertices of their own");
       if (of_edge.size() < 2) continue;
@@ -109,7 +110,9 @@ class SeamWalk {
 
 }  // namespace
 
-std::vector<Seam> paired_seams(const std::vector<Piece>& pieces) { return SeamWalk(pieces).run(); }
+std::vector<Seam> paired_seams(const std::vector<Piece>& pieces, const std::string& product) {
+  return SeamWalk(pieces, product).run();
+}
 
 double side_length(const SeamSide& side, const Eigen::MatrixXd& places) {
   double length = 0;
