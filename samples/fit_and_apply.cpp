@@ -17,8 +17,8 @@ int main(int argc, char** argv) try {
   const bespoke::MakeMapOptions options = bespoke::default_options(bespoke::diagonal(source.vertices));
   const bespoke::MadeMap made = bespoke::make_map({source, target, anchors}, options);
   bespoke::write_asset(argv[5], made.asset);
-  const bespoke::ProductSummary moved = bespoke::apply_to_product(
-      argv[4], {argv[6]}, *made.exact, made.asset.target_from_source, /*times=*/{1.0});
+  const bespoke::ProductSummary moved =
+      bespoke::apply_to_product(argv[4], {argv[6]}, *made.exact, made.asset.target_from_source);
   std::printf("%s\n", to_string(moved.points).c_str());
 } catch (const bespoke::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -58,15 +58,15 @@ void expect_rolled(const GeodesicCounterparts& found, double scale) {
 
 TEST(GeodesicCounterparts, FollowASheetThatIsRolledUp) {
   const TriangleMesh flat = sheet();
-  expect_rolled(
-      geodesic_counterparts(flat, {rolled(flat.vertices), flat.faces}, sheet_pairs(), rolled(sheet_pairs())),
-      1);
+  expect_rolled(geodesic_counterparts(flat, {rolled(flat.vertices), flat.faces},
+                                      {sheet_pairs(), rolled(sheet_pairs())}),
+                1);
 }
 
 TEST(GeodesicCounterparts, FollowATargetOfAnotherSize) {
   const TriangleMesh flat = sheet();
   const GeodesicCounterparts found = geodesic_counterparts(flat, {30 * rolled(flat.vertices), flat.faces},
-                                                           sheet_pairs(), 30 * rolled(sheet_pairs()));
+                                                           {sheet_pairs(), 30 * rolled(sheet_pairs())});
   expect_rolled(found, 30);
 }
 
@@ -76,7 +76,7 @@ TEST(GeodesicCounterparts, LeaveOutWhatTheTargetLacks) {
   half.vertices.row(0) /= 4;  // ends at the pairs
   Points on_half = sheet_pairs();
   on_half(0, 2) = 0.7;
-  const GeodesicCounterparts found = geodesic_counterparts(flat, half, sheet_pairs(), on_half);
+  const GeodesicCounterparts found = geodesic_counterparts(flat, half, {sheet_pairs(), on_half});
   for (Eigen::Index k = 0; k < found.sources.cols(); ++k) EXPECT_LT(found.sources(0, k), 1.6);
 }
 
@@ -84,7 +84,7 @@ TEST(GeodesicCounterparts, AreNotLookedForNearPairs) {
   const TriangleMesh flat = sheet();
   Points everywhere(3, 16);
   for (int k = 0; k < 16; ++k) everywhere.col(k) << 0.5 * (k / 2) + 0.2, k % 2, 0;
-  EXPECT_EQ(geodesic_counterparts(flat, flat, everywhere, everywhere).sources.cols(), 0);
+  EXPECT_EQ(geodesic_counterparts(flat, flat, {everywhere, everywhere}).sources.cols(), 0);
 }
 
 TEST(GeodesicCounterparts, DoNotLeaveTheComponentOfThePairs) {
@@ -92,7 +92,7 @@ TEST(GeodesicCounterparts, DoNotLeaveTheComponentOfThePairs) {
   TriangleMesh beside = flat;
   beside.vertices.row(2).array() += 0.01;
   const TriangleMesh both = shapes::joined(flat, beside);
-  const GeodesicCounterparts found = geodesic_counterparts(both, both, sheet_pairs(), sheet_pairs());
+  const GeodesicCounterparts found = geodesic_counterparts(both, both, {sheet_pairs(), sheet_pairs()});
   ASSERT_GT(found.sources.cols(), 0);
   EXPECT_EQ(found.sources.row(2).cwiseAbs().maxCoeff(), 0);
   EXPECT_EQ(found.targets.row(2).cwiseAbs().maxCoeff(), 0);
@@ -117,15 +117,16 @@ TEST(GeodesicCounterparts, DoNotTouchPairsAcrossASlit) {
   }
   Points pairs = sheet_pairs();
   pairs.col(3) << 3.7, 0.5, 0;
-  const GeodesicCounterparts found = geodesic_counterparts(slit, slit, pairs, pairs);
+  const GeodesicCounterparts found = geodesic_counterparts(slit, slit, {pairs, pairs});
   ASSERT_GT(found.sources.cols(), 0);
   for (const auto& x : found.sources.colwise())
     EXPECT_GT((pairs.colwise() - x).colwise().norm().minCoeff(), 0.01 * diagonal(slit.vertices));
 }
 
 TEST(GeodesicCounterparts, AreNoneWithoutPairs) {
-  EXPECT_EQ(geodesic_counterparts(sheet(), sheet(), Points(3, 0), Points(3, 0)).sources.cols(), 0);
-  EXPECT_THROW(geodesic_counterparts(sheet(), sheet(), Points::Zero(3, 2), Points::Zero(3, 3)), InvalidInput);
+  EXPECT_EQ(geodesic_counterparts(sheet(), sheet(), {Points(3, 0), Points(3, 0)}).sources.cols(), 0);
+  EXPECT_THROW(geodesic_counterparts(sheet(), sheet(), {Points::Zero(3, 2), Points::Zero(3, 3)}),
+               InvalidInput);
 }
 
 }  // namespace

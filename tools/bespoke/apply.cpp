@@ -126,13 +126,14 @@ ProductSummary apply_one(const ApplyArguments& arguments, const PlannedProduct& 
   if (!is_carried(arguments, name, product.outputs.front())) {
     ConvertOptions options{motion, refine, measure_chords, {}, model_box};
     options.unit = product_unit(name, map.unit, arguments.unit);
-    summary = convert_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
+    options.times = times(arguments);
+    summary = convert_product(name, targets, *own.elastic, own.target_from_source, options);
   } else {
     ApplyToProductOptions options{motion, product.parts, refine, measure_chords, model_box, progress};
     options.pose = arguments.pose.value_or(ModelPose::shown);
+    options.times = times(arguments);
     if (!arguments.skeleton.empty()) options.skeleton = arguments.skeleton;
-    summary =
-        apply_to_product(name, targets, *own.elastic, own.target_from_source, times(arguments), options);
+    summary = apply_to_product(name, targets, *own.elastic, own.target_from_source, options);
   }
   if (scale != 1) summary.warnings.push_back(conversion(name, map.unit, scale, arguments));
   return summary;

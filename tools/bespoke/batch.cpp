@@ -158,8 +158,8 @@ void run(const BatchArguments& arguments) {
   if (arguments.dry_run)
     print_plan(graph, forecasts, pack.get());
   else
-    run_jobs({arguments.manifest, style_of(arguments), log_of(arguments)}, graph, forecasts, options, maps,
-             pages ? &*pages : nullptr);
+    run_jobs({arguments.manifest, style_of(arguments), log_of(arguments), pages ? &*pages : nullptr}, graph,
+             forecasts, options, maps);
 }
 
 void add_limits(CLI::App& batch, BatchArguments& arguments) {

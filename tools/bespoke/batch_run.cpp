@@ -39,12 +39,12 @@ void require_no_faults(const std::string& name, std::vector<ManifestFault> fault
 }
 
 void run_jobs(const BatchShow& show, const JobGraph& graph, const std::vector<JobForecast>& forecasts,
-              const BatchOptions& options, OpenedMaps& maps, const HtmlPages* pages) {
+              const BatchOptions& options, OpenedMaps& maps) {
   // Jobs bring threads of their own; this bounds what their loops take besides.
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(options.threads));
   BatchDisplay display(show.name, graph, forecasts, show.style, show.log);
-  if (pages) pages->make_directory();
+  if (show.pages) show.pages->make_directory();
   const std::vector<JobResult> results =
       run_batch(graph, forecasts, options,
                 {[&](std::size_t job) { display.started(job); },
@@ -52,7 +52,8 @@ void run_jobs(const BatchShow& show, const JobGraph& graph, const std::vector<Jo
                  [&](const std::filesystem::path& map) { maps.close(map); }});
   display.close(results);
   const BatchProgress& progress = display.progress();
-  if (pages && (progress.count(JobState::done) > 0 || !pages->has_index())) pages->write_index();
+  if (show.pages && (progress.count(JobState::done) > 0 || !show.pages->has_index()))
+    show.pages->write_index();
   const std::string left = progress.left() > 0 ? ", " + std::to_string(progress.left()) + " did not run" : "";
   if (progress.count(JobState::failed) > 0)
     throw SolverError(std::to_string(progress.count(JobState::failed)) + " of " +

@@ -89,8 +89,9 @@ void run(const GradeArguments& arguments) {
   require_no_faults(arguments.name(), graph.faults);
   BatchOptions options = batch_options(arguments.run.threads);
   options.keep_going = arguments.keep_going;
-  run_jobs({arguments.name(), arguments.run.quiet ? BatchStyle::quiet : BatchStyle::line, arguments.log},
-           graph, forecast_jobs(graph), options, maps, pages ? &*pages : nullptr);
+  run_jobs({arguments.name(), arguments.run.quiet ? BatchStyle::quiet : BatchStyle::line, arguments.log,
+            pages ? &*pages : nullptr},
+           graph, forecast_jobs(graph), options, maps);
   if (arguments.run.quiet || arguments.measures.empty()) return;
   std::ifstream table(out_dir / "measures.md");
   std::cout << table.rdbuf();

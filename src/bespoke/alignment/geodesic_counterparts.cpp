@@ -187,8 +187,9 @@ class CounterpartSearch {
 }  // namespace
 
 GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const TriangleMesh& target,
-                                           const Points& sources, const Points& targets,
-                                           const CounterpartOptions& options, const Progress& progress) {
+                                           const CounterpartPairs& given, const CounterpartOptions& options,
+                                           const Progress& progress) {
+  const auto& [sources, targets] = given;
   if (sources.cols() != targets.cols())
     throw InvalidInput(std::to_string(sources.cols()) + " points of the source and " +
                        std::to_string(targets.cols()) + " of the target are no pairs");

@@ -30,13 +30,19 @@ struct GeodesicCounterparts {
   Points targets;  ///< 3×k, on the target, target frame, mesh units
 };
 
+/// 3×k each, on or near the surfaces.
+struct CounterpartPairs {
+  const Points& sources;
+  const Points& targets;
+};
+
 /// Not in the paper: distances along a surface change little with the pose (Elad, Kimmel 2003), so they
 /// locate places taken by farthest point sampling. The counterpart of p is the target vertex q with the least
 ///   Σ wᵢ (d_b(q, qᵢ) − ρ d_a(p, pᵢ))²,  wᵢ = 1 / (ρ d_a(p, pᵢ) + ε)²
-/// over the pairs (pᵢ, qᵢ) so far; ρ: the median ratio of their distances. sources, targets: 3×k, on or near
-/// the surfaces. Empty where no place is remote. Throws InvalidInput for unusable meshes and other sizes.
+/// over the pairs (pᵢ, qᵢ) so far; ρ: the median ratio of their distances. Empty where no place is remote.
+/// Throws InvalidInput for unusable meshes and other sizes.
 GeodesicCounterparts geodesic_counterparts(const TriangleMesh& source, const TriangleMesh& target,
-                                           const Points& sources, const Points& targets,
+                                           const CounterpartPairs& pairs,
                                            const CounterpartOptions& options = {},
                                            const Progress& progress = {});
 

@@ -71,8 +71,9 @@ void measure_chords(const std::filesystem::path& input, const ImageOfPoints& ima
 
 ProductSummary apply_to_product(const std::filesystem::path& input,
                                 const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
-                                const RigidTransform& target_from_source, const std::vector<double>& times,
+                                const RigidTransform& target_from_source,
                                 const ApplyToProductOptions& options) {
+  const std::vector<double>& times = options.times;
   if (outputs.size() != times.size() || times.empty())
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
                        " times; the numbers must be equal, and not zero");

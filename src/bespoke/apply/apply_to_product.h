@@ -38,7 +38,8 @@ struct ApplyToProductOptions {
   Progress progress;
   ModelPose pose = ModelPose::shown;  ///< of skinned meshes
   std::optional<std::filesystem::path> skeleton =
-      std::nullopt;  ///< that the product is bound to (CarryOptions)
+      std::nullopt;                 ///< that the product is bound to (CarryOptions)
+  std::vector<double> times = {1};  ///< of the outputs, one each
 };
 
 /// Carries the product `input` across a mapping: one file for every time, of the kind of the input, in which
@@ -47,7 +48,7 @@ struct ApplyToProductOptions {
 /// carry_product and apply_mapping.
 ProductSummary apply_to_product(const std::filesystem::path& input,
                                 const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
-                                const RigidTransform& target_from_source, const std::vector<double>& times,
+                                const RigidTransform& target_from_source,
                                 const ApplyToProductOptions& options = {});
 
 }  // namespace bespoke

@@ -13,8 +13,8 @@ namespace bespoke {
 
 ProductSummary convert_product(const std::filesystem::path& input,
                                const std::vector<std::filesystem::path>& outputs, const ElasticMap& elastic,
-                               const RigidTransform& target_from_source, const std::vector<double>& times,
-                               const ConvertOptions& options) {
+                               const RigidTransform& target_from_source, const ConvertOptions& options) {
+  const std::vector<double>& times = options.times;
   if (outputs.size() != times.size() || times.empty())
     throw InvalidInput(std::to_string(outputs.size()) + " outputs for " + std::to_string(times.size()) +
                        " times; the numbers must be equal, and not zero");

@@ -14,15 +14,21 @@
 namespace bespoke {
 namespace {
 
-/// `outline` knows origin and precision. `first` is the grid of level 0.
-PyramidPart read_pyramid(VdbPart& vdb, std::size_t first, std::size_t step, Pyramid outline,
+struct GridsOfStep {
+  std::size_t first;  ///< the grid of level 0
+  std::size_t step;
+};
+
+/// `outline` knows origin and precision.
+PyramidPart read_pyramid(VdbPart& vdb, const GridsOfStep& grids, Pyramid outline,
                          const std::vector<LevelRecord>& records, const Box& box) {
   PyramidPart part{std::move(outline), {}};
   for (std::size_t level = 0; level < records.size(); ++level) {
     const LevelRecord& record = records[level];
-    const std::string name = level_name(step, level);
+    const std::string name = level_name(grids.step, level);
     require_storable(record.voxel_size, "grid " + name);
-    StoredGridPart stored = vdb.read(first + level, leaves_near({part.read.origin, record.voxel_size}, box));
+    StoredGridPart stored =
+        vdb.read(grids.first + level, leaves_near({part.read.origin, record.voxel_size}, box));
     require_level(stored.grid, name, part.read, record.voxel_size);
     require_leaf_count(stored.all_leaves.size(), name, record);
     part.read.levels.push_back(
@@ -45,7 +51,7 @@ AssetPart part_from(BlockFile& file, const Box& box) {
     MapStep& known = parsed.asset.steps[step];
     const std::vector<LevelRecord>& levels = parsed.levels[step];
     part.steps.push_back(
-        {known.affine, read_pyramid(vdb, grid, step, std::move(known.pyramid), levels, asked)});
+        {known.affine, read_pyramid(vdb, {grid, step}, std::move(known.pyramid), levels, asked)});
     require_valid(part.steps.back().pyramid);
     grid += levels.size();
     asked = image_box(asked, known.affine, part.steps.back().pyramid);

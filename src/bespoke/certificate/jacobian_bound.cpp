@@ -21,11 +21,15 @@ using RowVector = std::array<Row, 3>;
 // Columns of the Jacobian along one axis at the four edges of each cell of a row, divided by the voxel size.
 using Edges = std::array<RowVector, 4>;
 
-inline void subtract_nodes(const NodeBlock& sum, int from, int to, const Vector3& column, double scale,
+struct EdgeNodes {
+  int lower, upper;  // of the first cell of the row
+};
+
+inline void subtract_nodes(const NodeBlock& sum, EdgeNodes nodes, const Vector3& column, double scale,
                            RowVector& edge) {
   for (int c = 0; c < 3; ++c) {
-    const double* lower = sum[c].data() + from;
-    const double* upper = sum[c].data() + to;
+    const double* lower = sum[c].data() + nodes.lower;
+    const double* upper = sum[c].data() + nodes.upper;
     for (int n = 0; n < lanes; ++n) edge[c][n] = column[c] + scale * (upper[n] - lower[n]);
   }
 }
@@ -63,11 +67,11 @@ struct RowCoefficients {
       for (int second = 0; second < 2; ++second) {
         const int e = 2 * first + second;
         const int of_x = node + first * block_edge + second;
-        subtract_nodes(sum, of_x, of_x + plane, linear.col(0), scale, x[e]);
+        subtract_nodes(sum, {of_x, of_x + plane}, linear.col(0), scale, x[e]);
         const int of_y = node + first * plane + second;
-        subtract_nodes(sum, of_y, of_y + block_edge, linear.col(1), scale, y[e]);
+        subtract_nodes(sum, {of_y, of_y + block_edge}, linear.col(1), scale, y[e]);
         const int of_z = node + first * plane + second * block_edge;
-        subtract_nodes(sum, of_z, of_z + 1, linear.col(2), scale, z[e]);
+        subtract_nodes(sum, {of_z, of_z + 1}, linear.col(2), scale, z[e]);
       }
     for (int i = 0; i < 3; ++i) {
       std::array<RowVector, 4> normal;  // Y × Z of index i along x; [2 b' + c']

@@ -155,6 +155,7 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
   ApplyToProductOptions options;
   options.motion = motion(map, path, order);
   options.pose = required(model_poses, pose, "pose");
+  options.times = times;
   for (const std::string& name : rigid) options.parts.push_back({name, PartMotion::rigid});
   for (const std::string& name : similar) options.parts.push_back({name, PartMotion::similar});
   if (const auto length = to_length(refine, "refine"))
@@ -174,7 +175,7 @@ std::string apply_file(LoadedAsset& map, const fs::path& product, const std::vec
                             {product, layers, options.parts, unit, options.pose, clearance, times},
                             applied.clearance);
     return apply_to_product(product, outputs, *in_other_unit(elastic, scale),
-                            in_other_unit(map.asset().target_from_source, scale), times, options);
+                            in_other_unit(map.asset().target_from_source, scale), options);
   });
   const double seconds = applied.summary.points.seconds;
   return apply_report({std::move(applied)}, times, seconds);

@@ -168,7 +168,7 @@ CarrySummary carry_obj(const InputFile& file, std::vector<OutputFile>& outputs, 
   const ObjCarrier carrier(file, motion, progress);
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return carrier.carry(block); },
       [&](const TextBlock&, std::vector<std::string>&& texts) {
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(texts[frame]);

@@ -179,7 +179,7 @@ ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
   limits.fill(ObjContent::unused - 1);
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return BlockCheck(block, file.path(), limits).run(); },
       [&](const TextBlock&, BlockFindings&& found) {
         content.box.extend(found.box);
@@ -203,7 +203,7 @@ ObjContent check_obj_product(const InputFile& file, const Progress& progress) {
     // Once more, to name the first line that requires too much.
     TextCutter again(file.path(), 1, count_obj);
     walk_blocks(
-        file, 0, [&](const Window& window) { return again(window); },
+        {file, 0}, [&](const Window& window) { return again(window); },
         [&](const TextBlock& block) { return BlockCheck(block, file.path(), limits).run(); },
         [](const TextBlock&, BlockFindings&&) {}, progress);
   }

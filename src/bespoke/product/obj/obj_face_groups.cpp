@@ -45,7 +45,7 @@ std::vector<std::string> find_obj_face_groups(const InputFile& file, FaceGroupKi
   std::string current;
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return named_faces(block, file.path(), keyword); },
       [&](const TextBlock&, std::vector<NamedFaces>&& runs) {
         for (NamedFaces& run : runs) {

@@ -117,7 +117,7 @@ Product read_obj_faces(const InputFile& file) {
   Eigen::Index at = 0;
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return FaceReader(block, file.path()).run(); },
       [&](const TextBlock&, BlockFaces&& block) {
         const auto count = static_cast<Eigen::Index>(block.positions.size());

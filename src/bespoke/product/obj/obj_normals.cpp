@@ -34,7 +34,7 @@ PositionsAndNormals read_all(const InputFile& file, const ObjContent& content, c
     return true;
   };
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); }, read, [](const TextBlock&, bool) {},
+      {file, 0}, [&](const Window& window) { return cutter(window); }, read, [](const TextBlock&, bool) {},
       progress);
   return all;
 }

@@ -124,7 +124,7 @@ std::vector<PartPoints> find_obj_parts(const InputFile& file, const std::vector<
   PartMarks marks(parts, static_cast<std::size_t>(content.counts[0]));
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return read_runs(block, file.path()); },
       [&](const TextBlock&, std::vector<Run>&& runs) {
         for (Run& run : runs) marks.add(std::move(run), file.path());
@@ -135,7 +135,7 @@ std::vector<PartPoints> find_obj_parts(const InputFile& file, const std::vector<
   std::vector<std::vector<double>> coordinates(parts.size());
   TextCutter again(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return again(window); },
+      {file, 0}, [&](const Window& window) { return again(window); },
       [&](const TextBlock& block) {
         std::vector<NumberTriple> positions;
         TextWords words(block, file.path(), obj_syntax);
@@ -160,7 +160,7 @@ std::vector<std::string> find_obj_groups(const InputFile& file) {
   std::string group, object;
   TextCutter cutter(file.path(), 1, count_obj);
   walk_blocks(
-      file, 0, [&](const Window& window) { return cutter(window); },
+      {file, 0}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return read_runs(block, file.path()); },
       [&](const TextBlock&, std::vector<Run>&& runs) {
         const auto whole = [](const std::vector<std::string>& names) {

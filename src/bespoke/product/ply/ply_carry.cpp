@@ -79,7 +79,7 @@ FaceFaults carry_binary(const InputFile& file, std::vector<OutputFile>& outputs,
   const PlyBinaryCarrier carrier(file, header, motion);
   PlyCutter cutter(file, header);
   walk_blocks(
-      file, header.size, [&](const Window& window) { return cutter(window); },
+      {file, header.size}, [&](const Window& window) { return cutter(window); },
       [&](const PlyBlock& block) { return carrier.carry(block); },
       [&](const PlyBlock& block, PlyBinaryCarrier::Carried&& carried) {
         faults.add(carried.faults);

@@ -58,7 +58,7 @@ GatheredFaces gather_binary_ply(const InputFile& file, const PlyHeader& header) 
   GatheredFaces gathered(file.path());
   PlyCutter cutter(file, header);
   walk_blocks(
-      file, header.size, [&](const Window& window) { return cutter(window); },
+      {file, header.size}, [&](const Window& window) { return cutter(window); },
       [&](const PlyBlock& block) { return read_block(header, block, file.path()); },
       [&](const PlyBlock&, PlyContent&& content) {
         if (content.points.cols() > 0) gathered.add_points(content.points);

@@ -87,7 +87,7 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
     const PlyText format(file.path(), header);
     TextCutter cutter = format.cutter();
     walk_blocks(
-        file, format.begin(), [&](const Window& window) { return cutter(window); },
+        {file, format.begin()}, [&](const Window& window) { return cutter(window); },
         [&](const TextBlock& block) {
           TextRecords records = format.records(block);
           ConnectedBlock content{{}, std::move(records.faces)};
@@ -100,7 +100,7 @@ std::vector<PartPoints> find_ply_parts(const InputFile& file, const std::vector<
   } else {
     PlyCutter cutter(file, header);
     walk_blocks(
-        file, header.size, [&](const Window& window) { return cutter(window); },
+        {file, header.size}, [&](const Window& window) { return cutter(window); },
         [&](const PlyBlock& block) { return read_binary(block, header, file.path()); },
         [&](const PlyBlock&, ConnectedBlock&& content) { components.add(std::move(content)); }, progress);
   }

@@ -62,7 +62,7 @@ CarrySummary carry_binary(const InputFile& file, std::vector<OutputFile>& output
   const StlBinary stl(file, facets, motion);
   FacetCutter cutter;
   walk_blocks(
-      file, stl_header_size, [&](const Window& window) { return cutter(window); },
+      {file, stl_header_size}, [&](const Window& window) { return cutter(window); },
       [&](const FacetBlock& block) { return stl.carry(block); },
       [&](const FacetBlock&, std::vector<std::string>&& frames) {
         for (std::size_t frame = 0; frame < outputs.size(); ++frame) outputs[frame].write(frames[frame]);

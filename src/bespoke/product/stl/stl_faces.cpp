@@ -12,7 +12,7 @@ Points binary_stl_corners(const InputFile& file, std::size_t facets) {
   GatheredFaces gathered(file.path());
   FacetCutter cutter;
   walk_blocks(
-      file, stl_header_size, [&](const Window& window) { return cutter(window); },
+      {file, stl_header_size}, [&](const Window& window) { return cutter(window); },
       [&](const FacetBlock& block) { return facet_points(block, file, facets); },
       [&](const FacetBlock&, Points&& stored) {
         Points corners(3, stored.cols() / 4 * 3);

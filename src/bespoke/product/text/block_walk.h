@@ -129,15 +129,21 @@ class BlockWalk {
   const Merge& merge_;
 };
 
-/// Reads a file from `begin` in waves of blocks: reading one, working on the one before and merging the one
+/// A file from a byte on.
+struct FileFrom {
+  const InputFile& file;
+  std::uint64_t begin = 0;
+};
+
+/// Reads a file in waves of blocks: reading one, working on the one before and merging the one
 /// before that overlap. cut(window) returns the whole blocks that the window begins with, each with its
 /// `bytes` (what is left is shown again with more behind it; nothing may be left of the last). work(block)
 /// runs on all threads; cut and merge(block, result) in the order of the file. The exception of the first
 /// failing block is thrown, at any number of threads.
 template <class Cut, class Work, class Merge>
-void walk_blocks(const InputFile& file, std::uint64_t begin, const Cut& cut, const Work& work,
-                 const Merge& merge, const Progress& progress) {
-  BlockWalk<Cut, Work, Merge>(file, cut, work, merge).run(begin, progress);
+void walk_blocks(const FileFrom& from, const Cut& cut, const Work& work, const Merge& merge,
+                 const Progress& progress) {
+  BlockWalk<Cut, Work, Merge>(from.file, cut, work, merge).run(from.begin, progress);
 }
 
 }  // namespace bespoke

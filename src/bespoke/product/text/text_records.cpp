@@ -82,7 +82,7 @@ GatheredFaces gather_text(const InputFile& file, const TextFormat& format, Gathe
   GatheredFaces gathered(file.path());
   TextCutter cutter = format.cutter();
   walk_blocks(
-      file, format.begin(), [&](const Window& window) { return cutter(window); },
+      {file, format.begin()}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) { return format.records(block); },
       [&](const TextBlock&, TextRecords&& records) {
         if (!records.points.empty()) gathered.add_points(values(records.points));
@@ -138,7 +138,7 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
   Findings all;
   TextCutter check_cutter = format.cutter();
   walk_blocks(
-      file, format.begin(), [&](const Window& window) { return check_cutter(window); },
+      {file, format.begin()}, [&](const Window& window) { return check_cutter(window); },
       [&](const TextBlock& block) { return inspect(format.records(block)); },
       [&](const TextBlock&, Findings&& found) { merge(found, all); }, progress);
   format.require_complete(check_cutter.sums());
@@ -151,7 +151,7 @@ CarrySummary carry_text(const InputFile& file, std::vector<OutputFile>& outputs,
   for (OutputFile& output : outputs) output.write(head);
   TextCutter cutter = format.cutter();
   walk_blocks(
-      file, format.begin(), [&](const Window& window) { return cutter(window); },
+      {file, format.begin()}, [&](const Window& window) { return cutter(window); },
       [&](const TextBlock& block) {
         return carry_block(block, format.records(block), decimals, motion, file.path());
       },

@@ -112,7 +112,7 @@ GeodesicCounterparts remote_counterparts(const RegistrationTask& task, const Anc
                                          const Progress& progress) {
   return geodesic_counterparts(without_excluded(task.problem.source, task.patches.source).mesh,
                                without_excluded(task.problem.target, task.patches.target).mesh,
-                               source_points(anchors), target_points(anchors), {}, progress);
+                               {source_points(anchors), target_points(anchors)}, {}, progress);
 }
 
 std::vector<AnchorPair> pairs_of(const GeodesicCounterparts& counterparts, double sigma) {

@@ -205,11 +205,17 @@ bool are_out_of_reach(const Scene& scene, const Points& anchors, const Deformati
   return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).count() > 1;
 }
 
+struct Deforming {
+  const SurfaceFitOptions& options;
+  const DeformationGraphSettings& settings;
+  const Progress& progress;
+};
+
 /// The nodes' fit, from the aligned source or from one that the anchors have bent: that where anchors are
 /// far from their targets, or a part turns some way and the models keep their shape.
-NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOptions& options,
-                  const DeformationGraphSettings& settings, SurfaceFitSummary& summary,
-                  const Progress& progress) {
+NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& how,
+                  SurfaceFitSummary& summary) {
+  const DeformationGraphSettings& settings = how.settings;
   const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
   std::optional<PosingByAnchors> posing;
   const auto degrees_by_anchors = [&] {
@@ -220,9 +226,9 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
   };
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
-                        scene.anchors.weights, scene.diagonal, options.boundaries, scene.anchors.sigmas,
+                        scene.anchors.weights, scene.diagonal, how.options.boundaries, scene.anchors.sigmas,
                         scene.patches, is_posed},
-                       settings.nodes, progress);
+                       settings.nodes, how.progress);
   };
   if (are_out_of_reach(scene, anchors, settings)) {
     degrees_by_anchors();
@@ -240,10 +246,10 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const SurfaceFitOpt
 }
 
 /// Pose, nodes, layers of space, repair. Returns what the summary says of them.
-SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const SurfaceFitOptions& options,
-                         const DeformationGraphSettings& settings, const Progress& progress) {
+SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Deforming& how) {
+  const auto& [options, settings, progress] = how;
   SurfaceFitSummary summary;
-  const NodeFit nodes = fit_nodes(scene, aligned_anchors, options, settings, summary, progress);
+  const NodeFit nodes = fit_nodes(scene, aligned_anchors, how, summary);
   const Points shape = std::exchange(scene.surface.vertices, nodes.vertices);
   scene.hidden = nodes.hidden;
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
@@ -316,7 +322,7 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   if (suffices)
     fit.summary.stop_reason = StopReason::converged;
   else
-    fit.summary = deform(scene, aligned * anchors.sources, options, settings, progress);
+    fit.summary = deform(scene, aligned * anchors.sources, {options, settings, progress});
   const AnchorMeeting meeting =
       meet_anchors_within(scene.details(), scene.coarse_vertices, options.max_stretch, settings.details);
   fit.vertices = meeting.vertices.leftCols(input.source.vertices.cols());

@@ -12,21 +12,29 @@ namespace {
 // What is read, changed and written before the next: it fits into a core's cache.
 constexpr std::size_t window_size = std::size_t{1} << 20;  // bytes
 
-/// Copies what [from, from + size) of a buffer has in common with bytes [offset, …) that were read to `to`.
-void copy_common(const char* bytes, std::size_t from, std::size_t size, std::size_t offset, char* to,
-                 std::size_t length) {
-  const std::size_t begin = std::max(from, offset), end = std::min(from + size, offset + length);
-  if (begin < end) std::memcpy(to + (begin - offset), bytes + (begin - from), end - begin);
+/// Bytes of a buffer, from `offset` on.
+template <class Byte>
+struct BufferPart {
+  Byte* bytes;
+  std::size_t offset, size;
+};
+
+/// Copies what the parts have in common.
+void copy_common(const BufferPart<const char>& from, const BufferPart<char>& to) {
+  const std::size_t begin = std::max(from.offset, to.offset),
+                    end = std::min(from.offset + from.size, to.offset + to.size);
+  if (begin < end)
+    std::memcpy(to.bytes + (begin - to.offset), from.bytes + (begin - from.offset), end - begin);
 }
 
 void replace_bytes(const GltfRows& rows, std::size_t offset, char* to, std::size_t length) {
   if (rows.stride == rows.size)
-    return copy_common(rows.bytes.get(), rows.offset, rows.count * rows.size, offset, to, length);
+    return copy_common({rows.bytes.get(), rows.offset, rows.count * rows.size}, {to, offset, length});
   const std::size_t end_of_first = rows.offset + rows.size;
   std::size_t row = offset < end_of_first ? 0 : (offset - end_of_first) / rows.stride + 1;
   for (; row < rows.count && rows.offset + row * rows.stride < offset + length; ++row)
-    copy_common(rows.bytes.get() + row * rows.size, rows.offset + row * rows.stride, rows.size, offset, to,
-                length);
+    copy_common({rows.bytes.get() + row * rows.size, rows.offset + row * rows.stride, rows.size},
+                {to, offset, length});
 }
 
 }  // namespace
