@@ -14,7 +14,7 @@ namespace bespoke {
 
 /// The flat pieces of one of the products.
 struct ProductPattern {
-  std::size_t product = 0;  ///< its number in `ViewInput::products`
+  std::size_t product = 0;  ///< its number among the products of the ViewInput
   WrittenPattern pattern;
 };
 
