@@ -93,7 +93,7 @@ void counterparts(benchmark::State& state) {
   const Points from = source.vertices.leftCols(pairs), to = target.vertices.leftCols(pairs);
   CounterpartOptions options;
   if (pairs == 36) options.remote = 2;
-  for (auto _ : state) benchmark::DoNotOptimize(geodesic_counterparts(source, target, from, to, options));
+  for (auto _ : state) benchmark::DoNotOptimize(geodesic_counterparts(source, target, {from, to}, options));
 }
 BENCHMARK(counterparts)
     ->ArgsProduct({{5, 6}, {5, 36}})
