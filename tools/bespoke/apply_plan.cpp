@@ -78,8 +78,11 @@ void require_known_endings(const ApplyArguments& arguments, const fs::path& prod
   if (is_known && has_product_ending(output) && !can_write_product(output))
     refuse_conversion(product, output);
   if (has_parts)
-    throw CLI::ValidationError("apply",
-                               "parts that keep their shape are known only in a file that keeps its kind");
+    throw CLI::ValidationError(
+        "apply",
+        product.string() +
+            ": parts keep their shape only in OBJ, PLY and glTF files that stay of their kind; carry "
+            "it in a call without --rigid and --similar");
   require_mesh_ending("apply", output);
   if (!can_read_product(product))
     throw UnknownEnding("apply: " + product.string() + " must end in " + read_product_endings() +

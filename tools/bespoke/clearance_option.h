@@ -87,7 +87,8 @@ std::string to_string(const LayerOrder& order);
 /// Warns where no order is right.
 void warn_of_layers(const RunContext& context, const LayerOrder& order);
 
-/// "12 samples are inside that were outside, or short of a required ease, …, the worst around (…)".
+/// "not clear, although it was corrected: 12 samples are inside or short of their distance, the worst around
+/// (…)".
 std::string what_is_not_clear(const ClearanceSummary& summary);
 
 /// Every line after "OUT: ".

@@ -100,8 +100,8 @@ void add_quality_options(CLI::App& fit, FitArguments& arguments) {
   add_length_option(
       fit, "--tolerance", arguments.tolerance,
       target_length(
-          "Largest difference between the stored and the exact map, of methods that are baked; finite "
-          "elements are stored as they are fitted",
+          "Largest difference between the stored and the exact map, of methods that are baked (finite "
+          "elements are stored as they are fitted)",
           default_tolerance));
   add_length_option(fit, "--lambda", arguments.lambda,
                     source_length("Effective distance: the elastic part reaches as far from the source "
