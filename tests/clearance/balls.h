@@ -19,8 +19,8 @@ inline Obstacle unit_ball(ClearanceRule rule = {}) {
   Obstacle ball;
   ball.name = "the ball";
   ball.distance = distance;
-  ball.required = [=](const Points& x) {
-    std::vector<double> values = distance(x);
+  ball.required = [=](const SourcePlaces& places) {
+    std::vector<double> values = distance(places.points());
     for (double& value : values)
       if (rule.ease) value = *rule.ease;
     return values;

@@ -20,13 +20,17 @@ RigidTransform quarter_turn() {
   return turn;
 }
 
+std::shared_ptr<const PreparedProduct> prepared(const TriangleMesh& product) {
+  return std::make_shared<const PreparedProduct>(product);
+}
+
 TEST(CorrectedMap, TakesTheProductToWhereItWasCorrected) {
   const TriangleMesh product = test::shell(1, 2);
   const RigidTransform turn = quarter_turn();
   const Points carried = turn * product.vertices;
   Points corrected = carried;
   corrected.col(7) += Vector3(0.1, 0.2, 0.3);
-  const auto map = corrected_map(identity_map(), turn, product, carried, corrected);
+  const auto map = corrected_map(identity_map(), turn, prepared(product), carried, corrected);
   EXPECT_LT((turn * (*map)(product.vertices) - corrected).norm(), 1e-12);
   // To the bit where nothing was corrected.
   EXPECT_EQ((*map)(product.vertices).col(3), product.vertices.col(3));
@@ -42,7 +46,8 @@ TEST(CorrectedMap, NormalsTurnWithTheFaces) {
   TriangleMesh sheet = shapes::square_grid(6);
   Points corrected = sheet.vertices;
   for (auto vertex : corrected.colwise()) vertex.z() += 0.3 * vertex.x();
-  const auto map = corrected_map(identity_map(), RigidTransform{}, sheet, sheet.vertices, corrected);
+  const auto map =
+      corrected_map(identity_map(), RigidTransform{}, prepared(sheet), sheet.vertices, corrected);
   for (Eigen::Index v = 0; v < sheet.vertices.cols(); ++v) {
     const Matrix3 gradient = map->displacement_gradient(sheet.vertices.col(v));
     EXPECT_NEAR(gradient(2, 0), 0.3, 1e-4) << v;
@@ -52,7 +57,8 @@ TEST(CorrectedMap, NormalsTurnWithTheFaces) {
 
 TEST(CorrectedMap, RefusesSizesThatDiffer) {
   const TriangleMesh product = test::shell(1, 1);
-  EXPECT_THROW(corrected_map(identity_map(), {}, product, product.vertices, Points(3, 1)), InvalidInput);
+  EXPECT_THROW(corrected_map(identity_map(), {}, prepared(product), product.vertices, Points(3, 1)),
+               InvalidInput);
 }
 
 }  // namespace

@@ -194,8 +194,8 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   plates.name = "the plates";
   plates.step = 1e-3;
   plates.tolerance = 1e-4;
-  plates.required = [](const Points& x) {
-    return std::vector<double>(static_cast<std::size_t>(x.cols()), 0.05);
+  plates.required = [](const SourcePlaces& places) {
+    return std::vector<double>(static_cast<std::size_t>(places.points().cols()), 0.05);
   };
   plates.distance = [](const Points& x) {
     std::vector<double> values;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "bespoke/asset/grids/distance_band.h"
@@ -16,6 +17,7 @@ namespace bespoke {
 namespace {
 
 constexpr std::size_t points_per_range = 512;
+constexpr std::size_t leaves_per_range = 16;
 
 // Voxels from the surface up to which cubic weights count alone, and from which trilinear ones do: beyond,
 // the cubic stencil of two nodes to each side leaves the band of three.
@@ -27,12 +29,26 @@ std::array<double, 4> cubic_weights(double f) {
           f * f * (-0.5 + 0.5 * f)};
 }
 
+// A leaf with the nodes that stencils of its cells reach beyond it: one below it, two above.
+constexpr int brick_edge = leaf_edge + 3;
+constexpr int brick_nodes = brick_edge * brick_edge * brick_edge;
+
+/// The nodes around a cell, four along an axis from the one below it; those along y follow each other, so
+/// that the rows along z of four of them are summed at once.
+struct Stencil {
+  const float* first;
+  int x_stride, z_stride;
+
+  const float* row(int i, int k) const { return first + i * x_stride + k * z_stride; }
+};
+
 }  // namespace
 
 struct DistanceGrid::Data {
   explicit Data(const StoredGrid& grid)
       : lattice{grid.origin, grid.voxel_size},
         background(grid.background),
+        leaves(grid.leaves),
         values(grid.values),
         table(grid.leaves),
         error(0),
@@ -40,38 +56,6 @@ struct DistanceGrid::Data {
         inside(inside_leaves) {
     if (const auto found = grid.metadata.find(distance_error_key); found != grid.metadata.end())
       if (const auto* number = std::get_if<double>(&found->second)) error = *number;
-  }
-
-  /// The nodes around a cell, two to each side along every axis.
-  using Stencil = std::array<float, 64>;
-  Stencil stencil(const LatticeCoordinates& cell) const {
-    // Along an axis they lie in two leaves at most, so eight are looked up, not 64.
-    std::array<std::array<int, 4>, 3> leaf_side{}, place{};
-    LeafCoordinates low{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = (cell[axis] - 1) >> 3;
-      for (int n = 0; n < 4; ++n) {
-        const int node = cell[axis] - 1 + n;
-        leaf_side[axis][static_cast<std::size_t>(n)] = (node >> 3) - low[axis];
-        place[axis][static_cast<std::size_t>(n)] = node & 7;
-      }
-    }
-    std::array<Leaf, 8> leaves;
-    for (int corner = 0; corner < 8; ++corner) {
-      const LatticeCoordinates step = corner_step(corner);
-      if (step[0] <= leaf_side[0][3] && step[1] <= leaf_side[1][3] && step[2] <= leaf_side[2][3])
-        leaves[static_cast<std::size_t>(corner)] = leaf(moved(low, step));
-    }
-    Stencil nodes;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j)
-        for (std::size_t k = 0; k < 4; ++k) {
-          const Leaf& in =
-              leaves[static_cast<std::size_t>(4 * leaf_side[0][i] + 2 * leaf_side[1][j] + leaf_side[2][k])];
-          nodes[16 * i + 4 * j + k] =
-              in.values ? in.values[number_of_place({place[0][i], place[1][j], place[2][k]})] : in.constant;
-        }
-    return nodes;
   }
 
   struct Leaf {
@@ -84,50 +68,119 @@ struct DistanceGrid::Data {
     return {nullptr, inside.find(at) == no_leaf ? background : -background};
   }
 
-  /// Both interpolations of a distance.
-  struct Interpolated {
-    double trilinear = 0, cubic = 0;
+  /// The nodes from `first` on, `edge` along each axis, in the order of a stencil.
+  void gather(const LatticeCoordinates& first, int edge, float* nodes) const {
+    LeafCoordinates at = leaf_of(first);
+    Leaf in = leaf(at);
+    for (int i = 0; i < edge; ++i)
+      for (int k = 0; k < edge; ++k)
+        for (int j = 0; j < edge; ++j) {
+          const LatticeCoordinates node = moved(first, {i, j, k});
+          if (const LeafCoordinates next = leaf_of(node); next != at) in = leaf(at = next);
+          *nodes++ = in.values ? in.values[number_of_place(place_in_leaf(node))] : in.constant;
+        }
+  }
+
+  /// Made by the first look-up, since most maps are opened for other ends.
+  const std::vector<float>& bricks() const {
+    std::call_once(bricks_made, [&] {
+      bricks_.resize(leaves.size() * brick_nodes);
+      parallel_for(leaves.size(), leaves_per_range, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+          gather(moved(first_node(leaves[i]), {-1, -1, -1}), brick_edge, bricks_.data() + i * brick_nodes);
+      });
+    });
+    return bricks_;
+  }
+
+  /// Where a place is: in the cell of a stencil, from its lower node in voxels.
+  struct Place {
+    Stencil nodes;
+    Vector3 f;
   };
-  Interpolated at(const Vector3& x) const {
+  /// `own`: room for nodes of cells whose leaf is not stored. Empty far outside of all lattices.
+  std::optional<Place> place_of(const Vector3& x, const std::vector<float>& of_bricks,
+                                std::array<float, 64>& own) const {
     const Vector3 place = (x - lattice.origin) / lattice.voxel_size;
-    if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return {background, background};
-    const LatticeCoordinates cell = lattice.cell_of(x);
-    const Vector3 f = place - as_vector(cell);
-    const Stencil nodes = stencil(cell);
-    Interpolated found;
-    const std::array<std::array<double, 4>, 3> w = {cubic_weights(f[0]), cubic_weights(f[1]),
-                                                    cubic_weights(f[2])};
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < 4; ++j) {
-        double row = 0;
-        for (std::size_t k = 0; k < 4; ++k) row += w[2][k] * static_cast<double>(nodes[16 * i + 4 * j + k]);
-        found.cubic += w[0][i] * w[1][j] * row;
-      }
+    if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return std::nullopt;
+    const Vector3 low = place.array().floor();
+    const LatticeCoordinates cell{static_cast<int>(low[0]), static_cast<int>(low[1]),
+                                  static_cast<int>(low[2])};
+    if (const int stored = table.find(leaf_of(cell)); stored != no_leaf) {
+      const LatticeCoordinates at = place_in_leaf(cell);
+      return Place{{of_bricks.data() + static_cast<std::size_t>(stored) * brick_nodes +
+                        (at[0] * brick_edge + at[2]) * brick_edge + at[1],
+                    brick_edge * brick_edge, brick_edge},
+                   place - low};
+    }
+    gather(moved(cell, {-1, -1, -1}), 4, own.data());
+    return Place{{own.data(), 16, 4}, place - low};
+  }
+
+  static double trilinear(const Place& at) {
+    double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const LatticeCoordinates step = corner_step(corner);
       double weight = 1;
       for (int axis = 0; axis < 3; ++axis)
-        weight *= step[static_cast<std::size_t>(axis)] ? f[axis] : 1 - f[axis];
-      found.trilinear +=
-          weight * static_cast<double>(
-                       nodes[static_cast<std::size_t>(16 * (step[0] + 1) + 4 * (step[1] + 1) + step[2] + 1)]);
+        weight *= step[static_cast<std::size_t>(axis)] ? at.f[axis] : 1 - at.f[axis];
+      sum += weight * static_cast<double>(at.nodes.row(step[0] + 1, step[2] + 1)[step[1] + 1]);
     }
-    return found;
+    return sum;
   }
 
-  /// How much of the cubic one counts.
-  double cubic_share(const Interpolated& found) const {
-    const double voxels = std::abs(found.trilinear) / lattice.voxel_size;
+  static double cubic(const Place& at) {
+    const std::array<double, 4> x = cubic_weights(at.f[0]), y = cubic_weights(at.f[1]),
+                                z = cubic_weights(at.f[2]);
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<double, 4> rows{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const float* row = at.nodes.row(static_cast<int>(i), static_cast<int>(k));
+        for (std::size_t j = 0; j < 4; ++j) rows[j] += z[k] * static_cast<double>(row[j]);
+      }
+      for (std::size_t j = 0; j < 4; ++j) sum += x[i] * y[j] * rows[j];
+    }
+    return sum;
+  }
+
+  /// How much of the cubic value counts.
+  double cubic_share(double trilinear) const {
+    const double voxels = std::abs(trilinear) / lattice.voxel_size;
     return std::clamp((all_trilinear - voxels) / (all_trilinear - all_cubic), 0.0, 1.0);
+  }
+
+  double distance(const std::optional<Place>& at) const {
+    if (!at) return background;
+    const double linear = trilinear(*at), share = cubic_share(linear);
+    return share > 0 ? share * cubic(*at) + (1 - share) * linear : linear;
+  }
+
+  /// values[i] = body(place) for all columns of x, in parallel.
+  template <class Body>
+  std::vector<double> at_places(const Points& x, const Body& body) const {
+    std::vector<double> found(static_cast<std::size_t>(x.cols()));
+    const std::vector<float>& of_bricks = bricks();
+    parallel_for(found.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
+      std::array<float, 64> own;
+      for (std::size_t i = begin; i < end; ++i)
+        found[i] = body(place_of(x.col(static_cast<Eigen::Index>(i)), of_bricks, own));
+    });
+    return found;
   }
 
   Lattice lattice;
   float background;
+  std::vector<LeafCoordinates> leaves;
   std::vector<float> values;
   LeafTable table;
   double error;
   std::vector<LeafCoordinates> inside_leaves;
   LeafTable inside;
+
+ private:
+  mutable std::once_flag bricks_made;
+  mutable std::vector<float> bricks_;  // brick_nodes a leaf
 };
 
 double DistanceGrid::band() const { return data_->background; }
@@ -135,26 +188,19 @@ double DistanceGrid::voxel_size() const { return data_->lattice.voxel_size; }
 double DistanceGrid::error() const { return data_->error; }
 
 std::vector<double> DistanceGrid::operator()(const Points& x) const {
-  std::vector<double> distances(static_cast<std::size_t>(x.cols()));
-  parallel_for(distances.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Data::Interpolated found = data_->at(x.col(static_cast<Eigen::Index>(i)));
-      const double share = data_->cubic_share(found);
-      distances[i] = share * found.cubic + (1 - share) * found.trilinear;
-    }
-  });
-  return distances;
+  return data_->at_places(x, [&](const auto& at) { return data_->distance(at); });
 }
 
 std::vector<double> DistanceGrid::uncertainty(const Points& x) const {
-  std::vector<double> amounts(static_cast<std::size_t>(x.cols()));
-  parallel_for(amounts.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Data::Interpolated found = data_->at(x.col(static_cast<Eigen::Index>(i)));
-      amounts[i] = std::abs(found.cubic - found.trilinear);
-    }
-  });
-  return amounts;
+  return data_->at_places(
+      x, [](const auto& at) { return at ? std::abs(Data::cubic(*at) - Data::trilinear(*at)) : 0; });
+}
+
+bool operator==(const DistanceGrid& a, const DistanceGrid& b) {
+  const DistanceGrid::Data &one = *a.data_, &other = *b.data_;
+  return &one == &other ||
+         (one.lattice.origin == other.lattice.origin && one.lattice.voxel_size == other.lattice.voxel_size &&
+          one.background == other.background && one.leaves == other.leaves && one.values == other.values);
 }
 
 /// Makes look-ups of stored grids.

@@ -25,6 +25,9 @@ class DistanceGrid {
   /// has features as small as a voxel. Parallel inside.
   std::vector<double> uncertainty(const Points& x) const;
 
+  /// Whether both tell the same everywhere.
+  friend bool operator==(const DistanceGrid& a, const DistanceGrid& b);
+
  private:
   friend class StoredDistances;
   struct Data;

@@ -7,7 +7,6 @@
 #include "bespoke/clearance/detail/draw_near.h"
 #include "bespoke/clearance/detail/prepared_data.h"
 #include "bespoke/error.h"
-#include "bespoke/mesh/mesh_edges.h"
 #include "bespoke/number_format.h"
 #include "bespoke/stopwatch.h"
 
@@ -33,10 +32,12 @@ void require_sizes(const PreparedProduct& product, const Points& carried) {
   if (!carried.allFinite()) throw InvalidInput("a carried vertex is not finite");
 }
 
-Statistics edge_strain(const TriangleMesh& before, const Points& after) {
+Statistics edge_strain(const PreparedProduct::Data& product, const Points& after) {
+  const TriangleMesh& before = product.mesh;
   const double size = growth(before, after);
   std::vector<double> strains;
-  for (const MeshEdge& edge : mesh_edges(before).edges) {
+  strains.reserve(product.edges.size());
+  for (const MeshEdge& edge : product.edges) {
     const double was = (before.vertices.col(edge.a) - before.vertices.col(edge.b)).norm();
     const double is = (after.col(edge.a) - after.col(edge.b)).norm();
     if (was > 0 && is > 0) strains.push_back(std::abs(std::log(is / (size * was))));
@@ -57,23 +58,30 @@ void describe_moves(const PreparedProduct& product, const Points& carried, const
   }
   summary.moved = moves.size();
   summary.moves = summarize(std::move(moves));
-  const TriangleMesh& mesh = product.mesh();
-  if (mesh.faces.cols() == 0) return;
-  summary.strain_before = summary.strain_after = edge_strain(mesh, carried);
+  if (product.mesh().faces.cols() == 0) return;
+  summary.strain_before = summary.strain_after = edge_strain(product.data(), carried);
   if (summary.moved == 0) return;
-  summary.strain_after = edge_strain(mesh, cleared.vertices);
+  summary.strain_after = edge_strain(product.data(), cleared.vertices);
 }
 
 /// Those of the product, and those nearest to its layers.
-ProductSamples checked_samples(const PreparedProduct::Data& data, const std::vector<Obstacle>& obstacles) {
-  ProductSamples samples = data.checks;
+SourceSamples with_nearest_samples(const PreparedProduct::Data& data,
+                                   const std::vector<Obstacle>& obstacles) {
+  ProductSamples samples = *data.checks.samples;
   for (const Obstacle& obstacle : obstacles) {
     if (!obstacle.layer) continue;
     const TriangleMesh& layer = obstacle.layer->before;
     const Points places = places_of(constraint_samples(layer, Eigen::Matrix2Xi(2, 0), 0), layer.vertices);
     append(nearest_samples(data.mesh, places, obstacle.layer_reach), samples);
   }
-  return samples;
+  return {std::move(samples), data.mesh};
+}
+
+SampleDistances checks_of(const PreparedProduct::Data& data, const std::vector<Obstacle>& obstacles) {
+  const bool any_layer = std::any_of(obstacles.begin(), obstacles.end(),
+                                     [](const Obstacle& one) { return one.layer != nullptr; });
+  if (!any_layer) return {data.checks, obstacles};
+  return {with_nearest_samples(data, obstacles), obstacles};
 }
 
 double parting_margin(const std::vector<Obstacle>& obstacles) {
@@ -92,12 +100,12 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   ClearanceSummary& summary = cleared.summary;
   summary.vertices = static_cast<std::size_t>(carried.cols());
   Stopwatch watch;
-  SampleDistances checks(checked_samples(data, obstacles), data.mesh.vertices, obstacles);
-  summary.looked_at = static_cast<std::size_t>(data.samples.count() + checks.samples().count());
+  SampleDistances checks = checks_of(data, obstacles);
+  summary.looked_at = static_cast<std::size_t>(data.samples.samples->count() + checks.samples().count());
   checks.look(carried);
   summary.check_seconds = watch.seconds();
   watch = {};
-  SampleDistances distances(data.samples, data.mesh.vertices, obstacles);
+  SampleDistances distances(data.samples, obstacles);
   distances.look(carried);
   CorrectionSamples samples(distances, checks);
   summary.before = samples.count();
@@ -106,7 +114,7 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   summary.solve_seconds = watch.seconds();
   for (int look = 0; look < max_checks; ++look) {
     watch = {};
-    samples.look_at_checks(correction.vertices(), correction.moved());
+    samples.look_at_checks(correction.vertices());
     summary.check_seconds += watch.seconds();
     watch = {};
     if (!samples.constrain_what_misses()) break;
@@ -124,7 +132,7 @@ ClearedProduct keep_clear(const PreparedProduct& product, const Points& carried,
   summary.layers = passages.of_layers(left);
   summary.passed_through = passages.places(left, place_radius * diagonal(carried));
   cleared.vertices = correction.vertices();
-  samples.look_at_checks(cleared.vertices, correction.moved());
+  samples.look_at_checks(cleared.vertices);
   summary.after = samples.count();
   samples.constrain_what_misses();
   summary.places = worst_places(distances, cleared.vertices, obstacles, place_radius * diagonal(carried));

@@ -38,8 +38,8 @@ Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const Mo
   body.short_is_breach = rule.ease.has_value();
   body.step = step_in_voxels * distances->target.voxel_size();
   body.tolerance = clearance_tolerance * sizes.target_diagonal;
-  body.required = [=](const Points& x) {
-    std::vector<double> required = distances->source(x);
+  body.required = [=](const SourcePlaces& places) {
+    std::vector<double> required = places.distances(distances->source);
     for (double& value : required) {
       const double depth = value > -touching * sizes.source_diagonal ? std::max(value, 0.0) : value;
       value = std::min(rule.ease.value_or(sizes.scale() * depth), most);
@@ -60,8 +60,8 @@ Obstacle body_attraction(std::shared_ptr<const ModelDistances> distances, const 
   body.is_soft = true;
   body.step = step_in_voxels * distances->target.voxel_size();
   body.tolerance = clearance_tolerance * sizes.target_diagonal;
-  body.required = [=](const Points& x) {
-    std::vector<double> required = distances->source(x);
+  body.required = [=](const SourcePlaces& places) {
+    std::vector<double> required = places.distances(distances->source);
     for (double& value : required) {
       const double length = sizes.scale() * value + looseness * sizes.target_diagonal;
       value = value >= 0 && value < farthest && length < most ? -length

@@ -7,6 +7,7 @@
 
 #include "bespoke/asset/model_distances.h"
 #include "bespoke/clearance/clearance_rule.h"
+#include "bespoke/clearance/source_places.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -26,9 +27,9 @@ struct SidePlanes {
 /// What a product must stay clear of: a body, or a layer below it.
 struct Obstacle {
   std::string name;  ///< for messages: "the target", "shirt.obj"
-  /// The distance that points of the product need after the map, by where they were on the source (3×n,
-  /// source frame); minus infinity where nothing is required. Target's mesh units.
-  SignedDistances required;
+  /// The distance that points of the product need after the map, by where they were on the source; minus
+  /// infinity where nothing is required. Target's mesh units.
+  std::function<std::vector<double>(const SourcePlaces&)> required;
   /// Of a layer, instead of `required`, `distance` and `uncertainty`: by where places were on the source
   /// (3×k).
   std::function<SidePlanes(const Points& x)> planes = {};

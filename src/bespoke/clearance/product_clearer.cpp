@@ -51,7 +51,7 @@ std::shared_ptr<const ElasticMap> ProductClearer::corrected(WornProduct product,
     }
   found_.push_back(std::move(found));
   std::shared_ptr<const ElasticMap> corrected =
-      corrected_map(map.elastic, map.target_from_source, product.prepared->mesh(), carried, cleared.vertices);
+      corrected_map(map.elastic, map.target_from_source, product.prepared, carried, cleared.vertices);
   if (products_ == Products::layers) layers_.push_back({std::move(product), std::move(cleared.vertices)});
   return corrected;
 }

@@ -40,52 +40,74 @@ bool edge_passes_through(const Corners& edges, const Corners& t) {
   return false;
 }
 
-class FaceBoxes {
- public:
-  explicit FaceBoxes(const TriangleMesh& mesh)
-      : boxes(static_cast<std::size_t>(mesh.faces.cols())), corners(boxes.size()) {
-    for (std::size_t face = 0; face < boxes.size(); ++face)
-      for (int k = 0; k < 3; ++k) {
-        corners[face][static_cast<std::size_t>(k)] =
-            mesh.vertices.col(mesh.faces(k, static_cast<Eigen::Index>(face)));
-        boxes[face].extend(corners[face][static_cast<std::size_t>(k)]);
-      }
-  }
+Corners corners_of(const TriangleMesh& mesh, Eigen::Index face) {
+  Corners corners;
+  for (int k = 0; k < 3; ++k) corners[static_cast<std::size_t>(k)] = mesh.vertices.col(mesh.faces(k, face));
+  return corners;
+}
 
-  bool intersect(std::size_t i, std::size_t j) const {
-    if (!boxes[i].intersects(boxes[j])) return false;
-    for (const Vector3& a : corners[i])
-      for (const Vector3& b : corners[j])
-        if (a == b) return false;
-    return edge_passes_through(corners[i], corners[j]) || edge_passes_through(corners[j], corners[i]);
-  }
+Box box_of(const Corners& corners) {
+  Box box;
+  for (const Vector3& corner : corners) box.extend(corner);
+  return box;
+}
 
-  std::vector<Box> boxes;
-  std::vector<Corners> corners;
-};
+bool intersect(const Corners& first, const Corners& second) {
+  for (const Vector3& a : first)
+    for (const Vector3& b : second)
+      if (a == b) return false;
+  return edge_passes_through(first, second) || edge_passes_through(second, first);
+}
+
+using Pairs = std::vector<std::pair<int, int>>;
 
 }  // namespace
 
-std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh) {
-  return intersections_of_first(mesh, mesh.faces.cols());
+Pairs self_intersections(const TriangleMesh& mesh) { return intersections_of_first(mesh, mesh.faces.cols()); }
+
+Pairs intersections_of_first(const TriangleMesh& mesh, Eigen::Index count) {
+  std::vector<char> is_looked_at(static_cast<std::size_t>(mesh.faces.cols()), 0);
+  std::fill_n(is_looked_at.begin(), std::min(count, mesh.faces.cols()), 1);
+  return intersections_of(mesh, is_looked_at);
 }
 
-std::vector<std::pair<int, int>> intersections_of_first(const TriangleMesh& mesh, Eigen::Index count) {
+Pairs intersections_of(const TriangleMesh& mesh, const std::vector<char>& is_looked_at) {
   require_valid(mesh, "the mesh to intersect with itself");
-  const FaceBoxes faces(mesh);
-  const BoxTree tree = build_box_tree(faces.boxes);
-  using Pairs = std::vector<std::pair<int, int>>;
-  return parallel_reduce(
-      static_cast<std::size_t>(std::min(count, mesh.faces.cols())), 256, Pairs(),
+  // Faces beyond the box of those that are looked at meet none of them.
+  std::vector<int> looked_at, near;
+  Box around;
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face)
+    if (is_looked_at[static_cast<std::size_t>(face)]) {
+      looked_at.push_back(static_cast<int>(face));
+      around.extend(box_of(corners_of(mesh, face)));
+    }
+  std::vector<Corners> corners;
+  std::vector<Box> boxes;
+  for (Eigen::Index face = 0; face < mesh.faces.cols(); ++face) {
+    const Corners own = corners_of(mesh, face);
+    const Box box = box_of(own);
+    if (!box.intersects(around)) continue;
+    near.push_back(static_cast<int>(face));
+    corners.push_back(own);
+    boxes.push_back(box);
+  }
+  if (looked_at.empty()) return {};
+  const BoxTree tree = build_box_tree(boxes);
+  Pairs all = parallel_reduce(
+      looked_at.size(), 256, Pairs(),
       [&](std::size_t begin, std::size_t end) {
         Pairs pairs;
         for (std::size_t i = begin; i < end; ++i) {
-          const auto first = static_cast<std::ptrdiff_t>(pairs.size());
-          for_each_overlapping(tree, faces.boxes[i], [&](int j) {
-            if (static_cast<std::size_t>(j) > i && faces.intersect(i, static_cast<std::size_t>(j)))
-              pairs.emplace_back(static_cast<int>(i), j);
+          const int face = looked_at[i];
+          const Corners own = corners_of(mesh, face);
+          const Box box = box_of(own);
+          for_each_overlapping(tree, box, [&](int at) {
+            const int other = near[static_cast<std::size_t>(at)];
+            if (other == face || (other < face && is_looked_at[static_cast<std::size_t>(other)])) return;
+            if (box.intersects(boxes[static_cast<std::size_t>(at)]) &&
+                intersect(own, corners[static_cast<std::size_t>(at)]))
+              pairs.emplace_back(std::min(face, other), std::max(face, other));
           });
-          std::sort(pairs.begin() + first, pairs.end());
         }
         return pairs;
       },
@@ -93,6 +115,16 @@ std::vector<std::pair<int, int>> intersections_of_first(const TriangleMesh& mesh
         all.insert(all.end(), more.begin(), more.end());
         return all;
       });
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+Pairs intersecting(const TriangleMesh& mesh, Pairs pairs) {
+  std::erase_if(pairs, [&](const std::pair<int, int>& pair) {
+    const Corners first = corners_of(mesh, pair.first), second = corners_of(mesh, pair.second);
+    return !box_of(first).intersects(box_of(second)) || !intersect(first, second);
+  });
+  return pairs;
 }
 
 }  // namespace bespoke

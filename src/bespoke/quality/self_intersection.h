@@ -17,4 +17,12 @@ std::vector<std::pair<int, int>> self_intersections(const TriangleMesh& mesh);
 /// Of them those with one of the first `count` faces, without looking for the others.
 std::vector<std::pair<int, int>> intersections_of_first(const TriangleMesh& mesh, Eigen::Index count);
 
+/// Of them those with one of the flagged faces (a flag a face), without looking for the others.
+std::vector<std::pair<int, int>> intersections_of(const TriangleMesh& mesh,
+                                                  const std::vector<char>& is_looked_at);
+
+/// Of pairs of faces, the smaller index first, those that are in self_intersections.
+std::vector<std::pair<int, int>> intersecting(const TriangleMesh& mesh,
+                                              std::vector<std::pair<int, int>> pairs);
+
 }  // namespace bespoke

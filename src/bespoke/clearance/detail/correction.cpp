@@ -77,12 +77,9 @@ void Correction::move_to_least_energy(SampleDistances& distances) {
 void Correction::move_to(NodeVectors u, SampleDistances& distances) {
   u_ = std::move(u);
   const NodeVectors moves = product_.graph.vertex_from_node * u_;
-  std::vector<char> changed = moved_;
-  for (std::size_t v = 0; v < moved_.size(); ++v) {
+  for (std::size_t v = 0; v < moved_.size(); ++v)
     moved_[v] = !moves.row(static_cast<Eigen::Index>(v)).isZero(0);
-    changed[v] = changed[v] || moved_[v];
-  }
-  distances.look(vertices(), changed);
+  distances.look(vertices());
 }
 
 Points Correction::vertices() const {

@@ -49,7 +49,7 @@ bool draw(FacePassages& passages, FacePairs& left, Correction& correction, Corre
   const Misses at_constraints(samples.distances()), at_checks(samples.checks());
   const auto look = [&] {
     const Points vertices = correction.vertices();
-    samples.look_at_checks(vertices, correction.moved());
+    samples.look_at_checks(vertices);
     passages.move_to(vertices);
   };
   for (int round = 0; round < draws; ++round) correction.draw(before, samples.distances());

@@ -1,7 +1,6 @@
 #include "bespoke/clearance/detail/face_passages.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "bespoke/clearance/detail/face_parting.h"
 #include "bespoke/quality/self_intersection.h"
@@ -42,24 +41,22 @@ FacePassages::FacePassages(const TriangleMesh& product, const Points& carried,
   carried_ = now_.vertices;
 }
 
-void FacePassages::look_before() {
-  at_carried_ = intersections_of_first({carried_, now_.faces}, product_faces_);
-  if (ends_.size() > 1)
-    for (const auto& pair : intersections_of_first({on_source_, now_.faces}, product_faces_))
-      if (!is_of_product(pair.second)) before_.push_back(pair);
-  for (const auto& pair : *at_carried_)
-    if (is_of_product(pair.second)) before_.push_back(pair);
-  std::sort(before_.begin(), before_.end());
-}
-
 FacePairs FacePassages::found() {
-  FacePairs further;
-  const bool is_carried = now_.vertices == carried_;
-  if (product_faces_ == 0 || (is_carried && ends_.size() == 1)) return further;
-  if (!at_carried_) look_before();
-  const FacePairs after = is_carried ? *at_carried_ : intersections_of_first(now_, product_faces_);
-  std::set_difference(after.begin(), after.end(), before_.begin(), before_.end(),
-                      std::back_inserter(further));
+  if (has_layers() && !through_layers_) {
+    through_layers_ = intersections_of_first({on_source_, now_.faces}, product_faces_);
+    std::erase_if(*through_layers_, [&](const auto& pair) { return is_of_product(pair.second); });
+  }
+  std::vector<char> is_looked_at(static_cast<std::size_t>(now_.faces.cols()), 0);
+  for (Eigen::Index face = 0; face < product_faces_; ++face)
+    for (const int vertex : now_.faces.col(face))
+      if (has_layers() || now_.vertices.col(vertex) != carried_.col(vertex))
+        is_looked_at[static_cast<std::size_t>(face)] = 1;
+  FacePairs further = intersections_of(now_, is_looked_at);
+  FacePairs before = intersecting({carried_, now_.faces}, of_product(further));
+  if (through_layers_) before.insert(before.end(), through_layers_->begin(), through_layers_->end());
+  std::sort(before.begin(), before.end());
+  std::erase_if(further,
+                [&](const auto& pair) { return std::binary_search(before.begin(), before.end(), pair); });
   return further;
 }
 
@@ -77,8 +74,8 @@ std::vector<LayerPairs> FacePassages::of_layers(const FacePairs& pairs) const {
         std::find_if(ends_.begin(), ends_.end(), [&](const auto& one) { return face < one.first; });
     return counts[static_cast<std::size_t>(end - ends_.begin()) - 1];
   };
-  for (const auto& pair : before_)
-    if (!is_of_product(pair.second)) ++layer_of(pair.second).before;
+  if (through_layers_)
+    for (const auto& pair : *through_layers_) ++layer_of(pair.second).before;
   for (const auto& pair : pairs)
     if (!is_of_product(pair.second)) ++layer_of(pair.second).after;
   return counts;

@@ -23,7 +23,7 @@ class FacePassages {
 
   /// The product's vertices are here (3×n).
   void move_to(const Points& vertices) { now_.vertices.leftCols(product_vertices_) = vertices; }
-  /// In increasing order. Intersects nothing where a product without layers is as carried.
+  /// In increasing order. Looks at what is not as carried and, where there are layers, at all faces.
   FacePairs found();
   /// Of them those of the product alone.
   FacePairs of_product(const FacePairs& pairs) const;
@@ -41,7 +41,7 @@ class FacePassages {
 
  private:
   Matrix3 corners(int face, const Points& vertices) const;
-  void look_before();
+  bool has_layers() const { return ends_.size() > 1; }
   void add_pushes(const std::pair<int, int>& pair, double margin, std::vector<Push>& pushes) const;
   bool is_of_product(int face) const { return face < product_faces_; }
   const std::string& name_of(int face) const;
@@ -50,8 +50,7 @@ class FacePassages {
   Eigen::Index product_vertices_;
   TriangleMesh now_;                               // the product, then the layers
   Points on_source_, carried_;                     // the same vertices
-  std::optional<FacePairs> at_carried_;            // all pairs there, once they are needed
-  FacePairs before_;                               // what is left as it is, made with them
+  std::optional<FacePairs> through_layers_;        // on the source, once they are needed: left as they are
   std::vector<std::pair<int, std::string>> ends_;  // after which face the product and each layer end
 };
 

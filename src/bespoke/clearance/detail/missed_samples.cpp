@@ -30,27 +30,31 @@ void append_columns(const Points& from, const std::vector<int>& columns, Points&
 
 }  // namespace
 
-SampleDistances::SampleDistances(ProductSamples samples, const Points& on_source,
-                                 const std::vector<Obstacle>& obstacles)
-    : samples_(std::move(samples)), own_(static_cast<int>(samples_.count())), obstacles_(obstacles) {
-  const Points places = places_of(samples_, on_source);
+SampleDistances::SampleDistances(const SourceSamples& samples, const std::vector<Obstacle>& obstacles)
+    : samples_(samples.samples), own_(static_cast<int>(samples_->count())), obstacles_(obstacles) {
   for (const Obstacle& obstacle : obstacles) {
-    planes_.push_back(obstacle.planes ? obstacle.planes(places) : SidePlanes());
-    required_.push_back(obstacle.planes ? planes_.back().required : obstacle.required(places));
+    planes_.push_back(obstacle.planes ? obstacle.planes(samples.places.points()) : SidePlanes());
+    required_.push_back(obstacle.planes ? planes_.back().required : obstacle.required(samples.places));
     distance_.emplace_back(required_.back().size(), std::numeric_limits<double>::infinity());
     least_.emplace_back(required_.back().size(), nothing_needed);
   }
 }
 
-void SampleDistances::look(const Points& on_target, const std::vector<char>& moved) {
+void SampleDistances::look(const Points& on_target) {
+  std::vector<char> moved(static_cast<std::size_t>(on_target.cols()), 1);
+  if (looked_.cols() == on_target.cols())
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      const auto column = static_cast<Eigen::Index>(v);
+      moved[v] = looked_.col(column) != on_target.col(column);
+    }
+  looked_ = on_target;
   std::vector<int> columns;
-  for (int i = 0; i < static_cast<int>(samples_.count()); ++i) {
-    bool is_moved = moved.empty();
-    for (const int vertex : samples_.vertices.col(i))
-      is_moved = is_moved || moved[static_cast<std::size_t>(vertex)];
-    if (is_moved) columns.push_back(i);
-  }
-  const Points places = columns_of(places_of(samples_, on_target), columns);
+  for (int i = 0; i < static_cast<int>(samples().count()); ++i)
+    if (moved[static_cast<std::size_t>(samples().vertices(0, i))] ||
+        moved[static_cast<std::size_t>(samples().vertices(1, i))] ||
+        moved[static_cast<std::size_t>(samples().vertices(2, i))])
+      columns.push_back(i);
+  const Points places = places_of(samples(), columns, on_target);
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
     const std::vector<double> found = distances(o, columns, places);
     for (std::size_t i = 0; i < columns.size(); ++i)
@@ -88,7 +92,9 @@ void SampleDistances::look_at_uncertainty(std::size_t obstacle, const std::vecto
 }
 
 void SampleDistances::append(const SampleDistances& other, const std::vector<int>& columns) {
-  bespoke::append(other.samples_, columns, samples_);
+  ProductSamples all = samples();
+  bespoke::append(other.samples(), columns, all);
+  samples_ = std::make_shared<const ProductSamples>(std::move(all));
   for (std::size_t o = 0; o < obstacles_.size(); ++o)
     for (const int column : columns) {
       required_[o].push_back(other.required_[o][static_cast<std::size_t>(column)]);
@@ -111,7 +117,7 @@ double SampleDistances::max_missing(Eigen::Index sample) const {
 
 std::vector<int> SampleDistances::missed() const {
   std::vector<int> columns;
-  for (int i = 0; i < static_cast<int>(samples_.count()); ++i)
+  for (int i = 0; i < static_cast<int>(samples().count()); ++i)
     for (std::size_t o = 0; o < obstacles_.size(); ++o)
       if (!obstacles_[o].is_soft && misses(o, i)) {
         columns.push_back(i);
@@ -138,12 +144,6 @@ MissedDistances SampleDistances::count() const {
     if (is_inside || is_breach) ++count.breaches;
   }
   return count;
-}
-
-void CorrectionSamples::look_at_checks(const Points& vertices, const std::vector<char>& moved) {
-  touched_.resize(moved.size(), 0);
-  for (std::size_t v = 0; v < moved.size(); ++v) touched_[v] = touched_[v] || moved[v];
-  checks_.look(vertices, touched_);
 }
 
 bool CorrectionSamples::constrain_what_misses() {

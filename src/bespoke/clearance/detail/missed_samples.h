@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
-#include "bespoke/clearance/detail/product_samples.h"
+#include "bespoke/clearance/detail/prepared_data.h"
 #include "bespoke/clearance/keep_clear.h"
 
 namespace bespoke {
@@ -12,22 +13,21 @@ namespace bespoke {
 /// What the obstacles require of samples, and by how much they miss it.
 class SampleDistances {
  public:
-  /// `on_source`: 3×n, the product's vertices.
-  SampleDistances(ProductSamples samples, const Points& on_source, const std::vector<Obstacle>& obstacles);
+  SampleDistances(const SourceSamples& samples, const std::vector<Obstacle>& obstacles);
 
-  /// Takes the vertices (3×n) as they lie on the target; those of `moved` alone (n flags), unless it is
-  /// empty.
-  void look(const Points& on_target, const std::vector<char>& moved = {});
+  /// Takes the vertices (3×n) as they lie on the target. Looks where they moved since the last time.
+  void look(const Points& on_target);
 
   /// The direction in which the sample's distance grows, where it is known without looking; else zero.
   Vector3 gradient(std::size_t obstacle, Eigen::Index sample) const {
     return obstacles_[obstacle].planes ? Vector3(planes_[obstacle].normals.col(sample)) : Vector3::Zero();
   }
 
-  /// Some of another's after these: they are constrained with them and not counted.
+  /// Some of another's after these, which looked at the same vertices: they are constrained with them and not
+  /// counted.
   void append(const SampleDistances& other, const std::vector<int>& columns);
 
-  const ProductSamples& samples() const { return samples_; }
+  const ProductSamples& samples() const { return *samples_; }
   double required(std::size_t obstacle, Eigen::Index sample) const {
     return required_[obstacle][static_cast<std::size_t>(sample)];
   }
@@ -52,9 +52,10 @@ class SampleDistances {
                                 const Points& places) const;
   void look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns, const Points& places);
 
-  ProductSamples samples_;
+  std::shared_ptr<const ProductSamples> samples_;
   int own_;  // of them, first
   const std::vector<Obstacle>& obstacles_;
+  Points looked_;  // the vertices at the last look
   /// Of each obstacle, of each sample; `least`: what keeps it outside although the distance is uncertain.
   std::vector<std::vector<double>> required_, distance_, least_;
   std::vector<SidePlanes> planes_;  // of layers
@@ -72,9 +73,8 @@ class CorrectionSamples {
   SampleDistances& distances() const { return distances_; }
   const SampleDistances& checks() const { return checks_; }
 
-  /// Looks at the checks where they moved at some time: the vertices (3×n) as they are, n flags of those that
-  /// are not as carried.
-  void look_at_checks(const Points& vertices, const std::vector<char>& moved);
+  /// The vertices (3×n) as they are.
+  void look_at_checks(const Points& vertices) { checks_.look(vertices); }
 
   /// Checks that miss join what is constrained, each once. Whether any misses.
   bool constrain_what_misses();
@@ -86,7 +86,6 @@ class CorrectionSamples {
   SampleDistances& distances_;
   SampleDistances& checks_;
   std::vector<char> is_constrained_;  // of the checks
-  std::vector<char> touched_;         // vertices that moved at some time
 };
 
 /// The worst places of what misses, one in a neighbourhood of `radius` (mesh units), ten at most.

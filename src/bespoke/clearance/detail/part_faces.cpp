@@ -50,7 +50,7 @@ class Best {
   }
   void look_at_checks() {
     const Points vertices = correction_.vertices();
-    samples_.look_at_checks(vertices, correction_.moved());
+    samples_.look_at_checks(vertices);
     passages_.move_to(vertices);
   }
   void keep() {

@@ -51,6 +51,12 @@ void add_parts(const Eigen::Vector3i& face, int n, SampleList& list) {
     }
 }
 
+std::vector<int> all_columns(const ProductSamples& samples) {
+  std::vector<int> columns(static_cast<std::size_t>(samples.count()));
+  std::iota(columns.begin(), columns.end(), 0);
+  return columns;
+}
+
 double longest_edge(const TriangleMesh& product, Eigen::Index face) {
   double longest = 0;
   for (int k = 0; k < 3; ++k)
@@ -103,16 +109,21 @@ ProductSamples nearest_samples(const TriangleMesh& product, const Points& points
 }
 
 Points places_of(const ProductSamples& samples, const Points& vertices) {
-  Points places(3, samples.count());
-  parallel_for(static_cast<std::size_t>(samples.count()), samples_per_range,
-               [&](std::size_t begin, std::size_t end) {
-                 for (auto i = static_cast<Eigen::Index>(begin); i < static_cast<Eigen::Index>(end); ++i) {
-                   places.col(i) = samples.weights(0, i) * vertices.col(samples.vertices(0, i));
-                   for (int k = 1; k < 3; ++k)
-                     if (samples.weights(k, i) != 0)
-                       places.col(i) += samples.weights(k, i) * vertices.col(samples.vertices(k, i));
-                 }
-               });
+  return places_of(samples, all_columns(samples), vertices);
+}
+
+Points places_of(const ProductSamples& samples, const std::vector<int>& columns, const Points& vertices) {
+  Points places(3, static_cast<Eigen::Index>(columns.size()));
+  parallel_for(columns.size(), samples_per_range, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto place = static_cast<Eigen::Index>(i);
+      const int sample = columns[i];
+      places.col(place) = samples.weights(0, sample) * vertices.col(samples.vertices(0, sample));
+      for (int k = 1; k < 3; ++k)
+        if (samples.weights(k, sample) != 0)
+          places.col(place) += samples.weights(k, sample) * vertices.col(samples.vertices(k, sample));
+    }
+  });
   return places;
 }
 
@@ -126,10 +137,6 @@ void append(const ProductSamples& from, const std::vector<int>& columns, Product
   }
 }
 
-void append(const ProductSamples& from, ProductSamples& to) {
-  std::vector<int> columns(static_cast<std::size_t>(from.count()));
-  std::iota(columns.begin(), columns.end(), 0);
-  append(from, columns, to);
-}
+void append(const ProductSamples& from, ProductSamples& to) { append(from, all_columns(from), to); }
 
 }  // namespace bespoke

@@ -26,8 +26,9 @@ ProductSamples check_samples(const TriangleMesh& product, const Eigen::Matrix2Xi
 /// `reach` (mesh units).
 ProductSamples nearest_samples(const TriangleMesh& product, const Points& points, double reach);
 
-/// Where they are (3×k), on the vertices (3×n) at hand.
+/// Where they are (3×k), or some of them, on the vertices (3×n) at hand.
 Points places_of(const ProductSamples& samples, const Points& vertices);
+Points places_of(const ProductSamples& samples, const std::vector<int>& columns, const Points& vertices);
 
 /// Some of them, or all, after others.
 void append(const ProductSamples& from, const std::vector<int>& columns, ProductSamples& to);
