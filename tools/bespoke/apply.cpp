@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "apply_plan.h"
@@ -25,6 +24,7 @@
 #include "penetration_check.h"
 #include "pose_option.h"
 #include "product_map.h"
+#include "rigid_option.h"
 #include "standard_output.h"
 #include "time_option.h"
 
@@ -32,30 +32,6 @@ namespace bespoke::command {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<RigidPart> named_parts(const ApplyArguments& arguments) {
-  std::vector<RigidPart> parts;
-  for (const std::string& name : arguments.rigid) parts.push_back({name, PartMotion::rigid});
-  for (const std::string& name : arguments.similar) parts.push_back({name, PartMotion::similar});
-  return parts;
-}
-
-/// One product has all parts that are named; of several, each has those that its file knows. Throws
-/// InvalidInput for a part that none of several has.
-PartsOfProducts parts_of_products(const ApplyArguments& arguments) {
-  const std::vector<RigidPart> named = named_parts(arguments);
-  if (arguments.products.size() == 1) return {{arguments.products.front(), named}};
-  PartsOfProducts parts;
-  std::set<std::string> known;
-  if (named.empty()) return parts;
-  for (const std::string& product : arguments.products) {
-    parts[product] = parts_present(product, named, arguments.pose.value_or(ModelPose::shown));
-    for (const RigidPart& part : parts[product]) known.insert(part.name);
-  }
-  for (const RigidPart& part : named)
-    if (!known.contains(part.name)) throw InvalidInput("none of the products has a part '" + part.name + "'");
-  return parts;
-}
 
 std::vector<JobFile> inputs(const ApplyArguments& arguments) {
   std::vector<JobFile> files = named_files({{"map", arguments.map}});
@@ -188,7 +164,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
 
   const bool reaches_target = !arguments.inverse && times(arguments).back() == 1;
   PenetrationCheck new_penetration(reaches_target ? arguments.catalog.source : "", arguments.catalog.target);
-  const PartsOfProducts parts = parts_of_products(arguments);
+  const PartsOfProducts parts = parts_of_products(arguments.products, arguments.parts, pose);
   ClearanceKeeper keeper(arguments.clearance, parts, arguments.unit, pose);
   OutputFiles files;
   std::vector<AppliedProduct> applied(arguments.products.size());
@@ -240,18 +216,7 @@ void run(const ApplyArguments& arguments, const RunContext& context) {
 
 /// What keeps its shape, and where edges follow the map's.
 void add_shape_options(CLI::App& apply, ApplyArguments& arguments) {
-  apply
-      .add_option(
-          "--rigid", arguments.rigid,
-          "A part that keeps its shape: it gets the rigid motion that fits its mapped points best. An OBJ "
-          "group, object or material, a glTF node, or a PLY component by its number; repeatable")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
-  apply
-      .add_option("--similar", arguments.similar,
-                  "A part that may also be scaled as a whole (a similarity); repeatable")
-      ->type_name("NAME")
-      ->allow_extra_args(false);
+  add_part_options(apply, arguments.parts);
   apply
       .add_option(
           "--unit", arguments.unit,

@@ -66,7 +66,7 @@ bool keeps_kind(const fs::path& product, const fs::path& output) {
 }
 
 void require_known_endings(const ApplyArguments& arguments, const fs::path& product, const fs::path& output) {
-  const bool has_parts = !arguments.rigid.empty() || !arguments.similar.empty();
+  const bool has_parts = !arguments.parts.rigid.empty() || !arguments.parts.similar.empty();
   if (is_carried(arguments, product, output)) {
     if (!has_product_ending(product))
       throw UnknownEnding("apply: " + product.string() + " must end in " + product_endings() +

@@ -10,6 +10,7 @@
 #include "catalog_option.h"
 #include "clearance_option.h"
 #include "length_option.h"
+#include "rigid_option.h"
 #include "run_options.h"
 
 namespace bespoke::command {
@@ -21,7 +22,7 @@ struct ApplyArguments {
   std::string output;
   std::string out_dir;
   std::string report;
-  std::vector<std::string> rigid, similar;  ///< parts
+  PartNames parts;
   std::optional<Length> refine;
   ClearanceOption clearance;
   std::string unit;

@@ -129,6 +129,10 @@ OpenedMap ClearanceKeeper::corrected(const std::string& product, const OpenedMap
   return own;
 }
 
+Points ClearanceKeeper::carried(const std::string& product, const OpenedMap& map) const {
+  return carried_vertices(worn(product, map.unit), *map.elastic, map.target_from_source);
+}
+
 std::optional<ProductClearance> ClearanceKeeper::last() const {
   if (!clearer_) return std::nullopt;
   return clearer_->found().back();
@@ -169,14 +173,16 @@ std::string to_string(const LayerOrder& order) {
   for (const std::string& name : order.names) text += (&name == &order.names.front() ? "" : ", ") + name;
   if (order.is_found) text += " (found on the source; --layers sets another order)";
   for (const auto& [a, b] : order.interleaved)
-    text += "; neither of " + a + " and " + b + " lies over the other";
+    text += "; neither of " + a + " and " + b + " lies over the other, so they keep the order of the call";
   return text;
 }
 
 void warn_of_layers(const RunContext& context, const LayerOrder& order) {
   if (order.is_circular)
     context.warn("no order of the layers is right: they lie over each other in a circle; " + to_string(order),
-                 Entry::layers_in_a_circle);
+                 Entry::order_of_layers);
+  else if (!order.interleaved.empty())
+    context.warn("the order of the layers is not clear; " + to_string(order), Entry::order_of_layers);
 }
 
 void print_clearance(const std::string& output, const ProductClearance& clearance) {

@@ -60,6 +60,9 @@ class ClearanceKeeper {
   /// InvalidInput for maps without distances and products without places that can be read.
   OpenedMap corrected(const std::string& product, const OpenedMap& map);
 
+  /// Where `apply` takes the vertices of the product by that map (3×n, target frame).
+  Points carried(const std::string& product, const OpenedMap& map) const;
+
   /// Of the last product; nothing where clearance is off.
   std::optional<ProductClearance> last() const;
 
@@ -84,7 +87,7 @@ class ClearanceKeeper {
 /// "layers, from the inside to the outside: shirt.obj, jacket.obj (found on the source; …)".
 std::string to_string(const LayerOrder& order);
 
-/// Warns where no order is right.
+/// Warns where no order is right, and where the one found is that of the call.
 void warn_of_layers(const RunContext& context, const LayerOrder& order);
 
 /// "not clear, although it was corrected: 12 samples are inside or short of their distance, the worst around

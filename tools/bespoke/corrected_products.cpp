@@ -5,14 +5,16 @@ namespace bespoke::command {
 CorrectedProducts corrected_products(const ProductsAsWorn& worn, const std::vector<NamedProduct>& products,
                                      const OpenedMap& map) {
   CorrectedProducts corrected;
-  if (!worn.clearance.is_used()) return corrected;
-  ClearanceKeeper keeper(worn.clearance, {}, worn.unit, worn.pose_or_shown());
+  if (worn.is_as_mapped()) return corrected;
+  ClearanceKeeper keeper(worn.clearance, worn.parts, worn.unit, worn.pose_or_shown());
   corrected.places.resize(products.size());
-  corrected.found.resize(products.size());
+  if (worn.clearance.is_used()) corrected.found.resize(products.size());
   for (const std::size_t i : keeper.order(worn.files, map)) {
     const OpenedMap own = keeper.corrected(worn.files[i], map);
-    corrected.places[i] = own.target_from_source * (*own.elastic)(products[i].mesh.vertices);
-    corrected.found[i] = *keeper.last();
+    corrected.places[i] = worn.parts.empty()
+                              ? own.target_from_source * (*own.elastic)(products[i].mesh.vertices)
+                              : keeper.carried(worn.files[i], own);
+    if (worn.clearance.is_used()) corrected.found[i] = *keeper.last();
   }
   corrected.order = keeper.layer_order();
   return corrected;

@@ -15,14 +15,16 @@ struct ProductsAsWorn {
   std::string unit;               ///< of their coordinates, where it is given
   std::optional<ModelPose> pose;  ///< of skinned products
   ClearanceOption clearance;
+  PartsOfProducts parts = {};  ///< that keep their shape
 
+  bool is_as_mapped() const { return !clearance.is_used() && parts.empty(); }
   ModelPose pose_or_shown() const { return pose.value_or(ModelPose::shown); }
 };
 
-/// Products where --clearance takes them, in their order, and what was found; or empty.
+/// Products where --clearance takes them and parts that keep their shape, in their order; or empty.
 struct CorrectedProducts {
-  std::vector<Points> places;  ///< 3×n, target frame
-  std::vector<ProductClearance> found;
+  std::vector<Points> places;           ///< 3×n, target frame
+  std::vector<ProductClearance> found;  ///< empty without --clearance
   std::optional<LayerOrder> order;
 };
 

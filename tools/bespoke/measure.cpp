@@ -14,10 +14,12 @@
 #include "bespoke/quality/mapping_quality.h"
 #include "bespoke/report/quality_report.h"
 #include "commands.h"
+#include "corrected_products.h"
 #include "help.h"
 #include "map_models.h"
 #include "output_files.h"
 #include "pose_option.h"
+#include "rigid_option.h"
 
 namespace bespoke::command {
 namespace {
@@ -28,6 +30,8 @@ struct MeasureArguments {
   std::string source;
   std::string target;
   std::vector<std::string> products;
+  PartNames parts;
+  ClearanceOption clearance;
   std::string unit;
   std::optional<ModelPose> pose;  ///< of skinned products
   bool json = false;
@@ -52,6 +56,18 @@ std::vector<JobFigure> figures(const MappingQuality& quality) {
           {"target_to_source_p95", quality.surfaces.b_to_a.p95},
           {"hausdorff", quality.surfaces.hausdorff},
           {"flipped_faces", quality.flipped_faces}};
+}
+
+/// Opens the map again, as a carrier, where that is not where Ψ takes them.
+CorrectedProducts as_apply_takes_them(const MeasureArguments& arguments,
+                                      const std::vector<NamedProduct>& products) {
+  const ModelPose pose = arguments.pose.value_or(ModelPose::shown);
+  const ProductsAsWorn worn{arguments.products, arguments.unit, arguments.pose, arguments.clearance,
+                            parts_of_products(arguments.products, arguments.parts, pose)};
+  if (worn.is_as_mapped()) return {};
+  return corrected_products(worn, products,
+                            open_map(arguments.map, arguments.exact ? MapForm::exact : MapForm::grids,
+                                     {.untrusted = arguments.untrusted}));
 }
 
 void run(const MeasureArguments& arguments, const RunContext& context) {
@@ -91,14 +107,20 @@ void run(const MeasureArguments& arguments, const RunContext& context) {
               require_unit_of_map(product.name, product.mesh.vertices, *elastic, record.source.box);
           !found.empty())
         context.warn(product.name + ": " + found, Entry::content_left_as_it_is);
-  const MappingQuality quality = mapping_quality(
-      {source, target.mesh, *elastic, asset.target_from_source, anchor_sources, anchor_targets, products}, {},
-      context.progress);
+  const CorrectedProducts corrected = as_apply_takes_them(arguments, products);
+  const MappingQuality quality = mapping_quality({source, target.mesh, *elastic, asset.target_from_source,
+                                                  anchor_sources, anchor_targets, products, corrected.places},
+                                                 {}, context.progress);
   context.findings.figures = figures(quality);
   write_result(arguments.output,
                arguments.json ? quality_json(quality, names, asset.record.unit)
                               : quality_text(quality, names, asset.record.unit),
                context);
+  if (corrected.order) warn_of_layers(context, *corrected.order);
+  for (std::size_t i = 0; i < corrected.found.size(); ++i)
+    if (!corrected.found[i].is_clear())
+      context.warn(products[i].name + ": " + what_is_not_clear(corrected.found[i].summary),
+                   Entry::product_inside_the_target);
   for (std::size_t i = 0; i < products.size(); ++i)
     if (const NewPenetration& new_penetration = quality.products[i].new_penetration;
         new_penetration.is_notable())
@@ -123,6 +145,8 @@ void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
       ->add_option("--product", arguments->products,
                    "Meshes or point sets around the source: " + read_product_endings())
       ->type_name("MESH");
+  add_part_options(*measure, arguments->parts);
+  add_clearance_options(*measure, arguments->clearance);
   add_unit_option(*measure, arguments->unit);
   add_pose_option(*measure, arguments->pose, "skinned glTF products");
   measure->add_flag("--exact", arguments->exact,
@@ -136,10 +160,16 @@ void add_measure_command(CLI::App& app, const PlanHandler& handle_plan) {
       "Examples:\n"
       "  bespoke measure map.vdb --source woman.obj --target man.obj\n"
       "  bespoke measure map.vdb --source woman.obj --target man.obj --product dress.obj --product "
-      "shoes.obj\n"
+      "shoes.obj --clearance keep\n"
       "  bespoke measure map.vdb --source woman.obj --target man.obj --json | jq .distortion");
   measure->callback([arguments, handle_plan] {
     const MeasureArguments given = std::exchange(*arguments, {});
+    require_valid(given.clearance);
+    for (const auto& [option, is_used] : {std::pair("--clearance", given.clearance.is_used()),
+                                          std::pair("--rigid", !given.parts.rigid.empty()),
+                                          std::pair("--similar", !given.parts.similar.empty())})
+      if (is_used && given.products.empty())
+        throw CLI::ValidationError(option, "needs --product: products are what it is of");
     handle_plan(
         {given.run, inputs(given), outputs(given), {}, [given](const RunContext& c) { run(given, c); }});
   });

@@ -30,12 +30,6 @@ bool is_at_rest(double t, const MotionOptions& motion) {
   return motion.order != MappingOrder::moving_point || t == 0 || t == 1;
 }
 
-std::size_t count_nonzero(const Points& u) {
-  std::size_t count = 0;
-  for (Eigen::Index i = 0; i < u.cols(); ++i) count += (u.col(i).array() != 0).any();
-  return count;
-}
-
 /// Replaces the frames between the ends by those of the chain's own motion.
 void follow(const ElasticChain& chain, const RigidTransform& target_from_source, const Points& x,
             const std::vector<double>& times, AppliedPoints& applied) {
@@ -90,7 +84,7 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
     const Points chunk = x.middleCols(first, size);
     const Points u_chunk = u.middleCols(first, size);
     const Points image = affine * chunk + u_chunk;
-    in_band[begin / points_per_mapping_chunk] = count_nonzero(u_chunk);
+    in_band[begin / points_per_mapping_chunk] = elastic.count_in_reach(chunk, u_chunk);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
       if (is_at_rest(times[frame], motion))
         applied.frames[frame].middleCols(first, size) =

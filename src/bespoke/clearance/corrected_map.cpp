@@ -85,6 +85,9 @@ class CorrectedMap : public ElasticMap {
 
   AffineMap affine() const override { return elastic_->affine(); }
   Support support() const override { return elastic_->support(); }
+  std::size_t count_in_reach(const Points& x, const Points&) const override {
+    return elastic_->count_in_reach(x, elastic_->displacement(x));
+  }
 
   Points displacement(const Points& x) const override {
     Points u = elastic_->displacement(x);

@@ -7,14 +7,19 @@
 namespace bespoke {
 namespace {
 
-// Of the places near each other: fewer on the one side, and the two interleave.
-constexpr double min_share = 0.6;
+// Of the area above each other: less of it, and the order would be a guess. Of garments over each other it is
+// all but hems; a sole and the upper that it is glued to overlap.
+constexpr double min_share = 0.9;
 
-/// Vertices of `product` above `below`, within its reach.
-std::size_t count_above(const TriangleMesh& product, const Obstacle& below) {
+/// Of `product` above `below`, within its reach: mesh units squared, of points their number.
+double area_above(const TriangleMesh& product, const Obstacle& below) {
   const std::vector<double> required = below.planes(product.vertices).required;
-  return static_cast<std::size_t>(
-      std::count_if(required.begin(), required.end(), [](double value) { return value > 0; }));
+  const Eigen::VectorXd areas = product.faces.cols() > 0 ? vertex_areas(product)
+                                                         : Eigen::VectorXd::Ones(product.vertices.cols());
+  double area = 0;
+  for (std::size_t v = 0; v < required.size(); ++v)
+    if (required[v] > 0) area += areas[static_cast<Eigen::Index>(v)];
+  return area;
 }
 
 }  // namespace
@@ -22,16 +27,15 @@ std::size_t count_above(const TriangleMesh& product, const Obstacle& below) {
 Nesting nesting_of(const std::vector<TriangleMesh>& products, double source_diagonal) {
   const std::size_t count = products.size();
   const ModelSizes sizes{source_diagonal, source_diagonal};
-  std::vector<std::vector<std::size_t>> above(count, std::vector<std::size_t>(count, 0));
+  std::vector<std::vector<double>> above(count, std::vector<double>(count, 0));
   for (std::size_t below = 0; below < count; ++below) {
     if (products[below].faces.cols() == 0) continue;
     const Obstacle layer = layer_obstacle("", products[below], products[below].vertices, sizes);
     for (std::size_t over = 0; over < count; ++over)
-      if (over != below) above[over][below] = count_above(products[over], layer);
+      if (over != below) above[over][below] = area_above(products[over], layer);
   }
   const auto lies_over = [&](std::size_t a, std::size_t b) {
-    const auto over = static_cast<double>(above[a][b]), under = static_cast<double>(above[b][a]);
-    return over > min_share * (over + under);
+    return above[a][b] > min_share * (above[a][b] + above[b][a]);
   };
   Nesting nesting;
   for (std::size_t a = 0; a < count; ++a)

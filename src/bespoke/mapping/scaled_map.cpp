@@ -20,6 +20,9 @@ class ScaledMap : public ElasticMap {
   Points displacement_gradient(const Points& x) const override {
     return map_->displacement_gradient(scale_ * x);
   }
+  std::size_t count_in_reach(const Points& x, const Points& u) const override {
+    return map_->count_in_reach(scale_ * x, scale_ * u);
+  }
   Support support() const override {
     Support support = map_->support();
     support.frame.linear *= scale_;

@@ -22,6 +22,9 @@ MappingQuality mapping_quality(const MappingQualityInput& input, const MappingQu
                                const Progress& progress) {
   require_valid(input.source, "the source");
   require_valid(input.target, "the target");
+  if (!input.carried_products.empty() && input.carried_products.size() != input.products.size())
+    throw InvalidInput("places of " + std::to_string(input.carried_products.size()) + " products for " +
+                       std::to_string(input.products.size()));
   MappingQuality quality;
   quality.anchor_residuals = anchor_residuals(input);
   progress.step("surfaces", 0, 1);
@@ -39,7 +42,9 @@ MappingQuality mapping_quality(const MappingQualityInput& input, const MappingQu
   for (const NamedProduct& product : input.products) {
     progress.step("products", quality.products.size(), input.products.size());
     try {
-      const Points moved = input.target_from_source * input.elastic(product.mesh.vertices);
+      const Points moved = input.carried_products.empty()
+                               ? input.target_from_source * input.elastic(product.mesh.vertices)
+                               : input.carried_products[quality.products.size()];
       quality.products.push_back(
           product_quality({product.mesh, product.line_edges}, moved, bodies, options.products));
     } catch (const InvalidInput& error) {

@@ -26,6 +26,8 @@ struct MappingQualityInput {
   const Points& anchor_sources;              ///< 3×k, may be empty
   const Points& anchor_targets;              ///< 3×k
   const std::vector<NamedProduct>& products;
+  /// Where the vertices of each are taken, 3×n, target frame; empty where that is by Ψ(1).
+  const std::vector<Points>& carried_products = {};
 };
 
 struct MappingQualityOptions {
