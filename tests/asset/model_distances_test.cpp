@@ -56,6 +56,15 @@ TEST(ModelDistances, OfASphereAreTheDistanceToIt) {
                 (std::abs(radii[i] - 2) < band / 3 ? 0.01 : 0.1) * target.voxel_size());
 }
 
+TEST(ModelDistances, AreEqualWhereGridsAre) {
+  const Asset asset = with_distances(ball(), ball());
+  const auto once = model_distances(asset), again = model_distances(asset);
+  EXPECT_TRUE(once->target == again->target);
+  TriangleMesh larger = ball();
+  larger.vertices *= 1.01;
+  EXPECT_FALSE(once->source == model_distances(with_distances(larger, ball()))->source);
+}
+
 TEST(ModelDistances, BeyondTheBandTheSideIsKnown) {
   const DistanceGrid target = model_distances(with_distances(ball(), ball()))->target;
   const std::vector<double> values = target(along_ray({0, 0.5, 1.5, 2.5, 4, 1000, 1e300}));

@@ -55,6 +55,13 @@ TEST(CorrectedMap, NormalsTurnWithTheFaces) {
   }
 }
 
+TEST(CorrectedMap, WhatACorrectionMovesIsNotWithinReachForThat) {
+  const TriangleMesh product = test::shell(1, 1);
+  const Points corrected = product.vertices.colwise() + Vector3(0, 0, 0.1);
+  const auto map = corrected_map(identity_map(), {}, prepared(product), product.vertices, corrected);
+  EXPECT_EQ(map->count_in_reach(product.vertices, map->displacement(product.vertices)), 0u);
+}
+
 TEST(CorrectedMap, RefusesSizesThatDiffer) {
   const TriangleMesh product = test::shell(1, 1);
   EXPECT_THROW(corrected_map(identity_map(), {}, prepared(product), product.vertices, Points(3, 1)),

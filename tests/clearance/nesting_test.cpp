@@ -57,6 +57,16 @@ TEST(Nesting, NamesProductsThatInterleave) {
   EXPECT_FALSE(nesting.is_circular);
 }
 
+// A sole and the upper that it is glued to: each has area above the other.
+TEST(Nesting, GuessesNoOrderOfProductsThatOverlap) {
+  TriangleMesh shifted = test::shell(1, 4);
+  shifted.vertices.row(2).array() += 0.05;
+  const TriangleMesh ball = test::shell(1.02, 4);
+  const Nesting nesting = nesting_of({shifted, ball}, diagonal_of_ball);
+  EXPECT_THAT(nesting.interleaved, ElementsAre(Pair(0, 1)));
+  EXPECT_THAT(nesting.order, ElementsAre(0, 1));
+}
+
 TEST(Nesting, TellsThatProductsLieOverEachOtherInACircle) {
   const double third = 2 * std::acos(-1) / 3;
   const std::vector<TriangleMesh> strips = {rising_strip(0, third), rising_strip(third, 2 * third),

@@ -50,6 +50,25 @@ TEST(BodyObstacle, RefusesMoreEaseThanTheBandCanTell) {
   EXPECT_THROW(body_obstacle(ball_distances(), ball_sizes, {.ease = 0.5}), InvalidInput);
 }
 
+TEST(SourcePlaces, AreLookedUpOnceInGridsThatAreTheSame) {
+  int times_made = 0;
+  const Points x = test::shell(1.02, 2).vertices;
+  const SourcePlaces places([&] {
+    ++times_made;
+    return x;
+  });
+  const TriangleMesh ball = test::shell(1, 4), larger = test::shell(1.01, 4);
+  const auto of = [](const TriangleMesh& mesh) {
+    return model_distances(with_model_sides(with_preview(test::small_asset(), mesh), mesh, mesh))->source;
+  };
+  const DistanceGrid grid = of(ball), same = of(ball), other = of(larger);
+  EXPECT_EQ(places.distances(grid), grid(x));
+  EXPECT_EQ(places.distances(same), grid(x));
+  EXPECT_EQ(times_made, 1);
+  EXPECT_EQ(places.distances(other), other(x));
+  EXPECT_EQ(times_made, 2);
+}
+
 TEST(LayerObstacle, KeepsOrderAndDistance) {
   const TriangleMesh lower = test::shell(1.02, 3), upper = test::shell(1.04, 4);
   // The lower layer was corrected outwards, through the upper one.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "bespoke/product/mesh_io.h"
@@ -57,6 +58,36 @@ TEST(MeasureCommand, WarnsOfProductsThatPenetrateTheTargetAlone) {
   EXPECT_THAT(shell.err, HasSubstr("shell.obj: 100 % of it lies inside the target, though not inside"));
   EXPECT_EQ(nlohmann::json::parse(shell.out)["products"][0]["newly_inside"]["share"], 1);
   EXPECT_EQ(measure(pair, {"--product", pair.file("fitted.obj")}).err, "");
+}
+
+TEST(MeasureCommand, MeasuresWhatApplyWrites) {
+  const ExamplePair pair;
+  write_penetrating(pair);
+  write_text(pair.file("rigid.obj"), "g shell\n" + read_text(pair.file("shell.obj")));
+  for (const std::vector<std::string>& options :
+       {std::vector<std::string>{"--clearance", "keep"}, {"--rigid", "shell"}}) {
+    ASSERT_EQ(bespoke([&] {
+                std::vector<std::string> apply{"apply", pair.file("map.vdb"), pair.file("rigid.obj"),
+                                               "-o",    pair.file("out.obj"), "-q"};
+                apply.insert(apply.end(), options.begin(), options.end());
+                return apply;
+              }())
+                  .exit_code,
+              0);
+    std::vector<std::string> further{"--json", "--product", pair.file("rigid.obj")};
+    further.insert(further.end(), options.begin(), options.end());
+    const ProgramResult result = measure(pair, further);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Points written = read_triangle_mesh(pair.file("out.obj")).vertices;
+    std::vector<double> distances;
+    for (const auto& vertex : written.colwise()) distances.push_back(vertex.norm() - 1.001);
+    const auto after = nlohmann::json::parse(result.out)["products"][0]["clearance_after"];
+    EXPECT_NEAR(after["max"].get<double>(), *std::max_element(distances.begin(), distances.end()), 0.01)
+        << options.front();
+  }
+  const ProgramResult alone = measure(pair, {"--clearance", "keep"});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("needs --product"));
 }
 
 TEST(ProductOnPagesAndReports, WarnsOfPenetrationToo) {

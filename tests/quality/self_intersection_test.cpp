@@ -78,6 +78,24 @@ TEST(SelfIntersections, OfACrossingGridsAreCountedExactly) {
   EXPECT_EQ(self_intersections(shapes::joined(shapes::square_grid(10), strip)).size(), 20u);
 }
 
+TEST(SelfIntersections, OfSomeFacesAreThoseWithOneOfThem) {
+  const TriangleMesh spheres =
+      shapes::joined(shapes::icosphere(3), shapes::moved(shapes::icosphere(3), shift(0.81, 0.37, 0.23)));
+  const auto all = self_intersections(spheres);
+  std::vector<char> some(static_cast<std::size_t>(spheres.faces.cols()), 0);
+  for (std::size_t face = 0; face < some.size(); face += 3) some[face] = 1;
+  auto expected = all;
+  std::erase_if(expected, [&](const auto& pair) {
+    return !some[static_cast<std::size_t>(pair.first)] && !some[static_cast<std::size_t>(pair.second)];
+  });
+  EXPECT_GT(expected.size(), 20u);
+  EXPECT_EQ(intersections_of(spheres, some), expected);
+  EXPECT_THAT(intersections_of(spheres, std::vector<char>(some.size(), 0)), IsEmpty());
+  auto with_others = expected;
+  with_others.emplace_back(0, 1);
+  EXPECT_EQ(intersecting(spheres, with_others), expected);
+}
+
 TEST(SelfIntersections, RefuseAnInvalidMesh) { EXPECT_THROW(self_intersections({}), InvalidInput); }
 
 }  // namespace
