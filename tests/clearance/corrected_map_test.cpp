@@ -4,6 +4,7 @@
 
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
+#include "bespoke/mapping/reach.h"
 #include "clearance/balls.h"
 
 namespace bespoke {
@@ -59,7 +60,7 @@ TEST(CorrectedMap, WhatACorrectionMovesIsNotWithinReachForThat) {
   const TriangleMesh product = test::shell(1, 1);
   const Points corrected = product.vertices.colwise() + Vector3(0, 0, 0.1);
   const auto map = corrected_map(identity_map(), {}, prepared(product), product.vertices, corrected);
-  EXPECT_EQ(map->count_in_reach(product.vertices, map->displacement(product.vertices)), 0u);
+  EXPECT_EQ(count_in_reach(*map, product.vertices, map->displacement(product.vertices)), 0u);
 }
 
 TEST(CorrectedMap, RefusesSizesThatDiffer) {

@@ -6,6 +6,7 @@
 
 #include "bespoke/apply/detail/followed_chain.h"
 #include "bespoke/error.h"
+#include "bespoke/mapping/reach.h"
 #include "bespoke/parallel.h"
 #include "bespoke/stopwatch.h"
 
@@ -84,7 +85,7 @@ AppliedPoints apply_mapping(const ElasticMap& elastic, const RigidTransform& tar
     const Points chunk = x.middleCols(first, size);
     const Points u_chunk = u.middleCols(first, size);
     const Points image = affine * chunk + u_chunk;
-    in_band[begin / points_per_mapping_chunk] = elastic.count_in_reach(chunk, u_chunk);
+    in_band[begin / points_per_mapping_chunk] = count_in_reach(elastic, chunk, u_chunk);
     for (std::size_t frame = 0; frame < times.size(); ++frame)
       if (is_at_rest(times[frame], motion))
         applied.frames[frame].middleCols(first, size) =

@@ -5,6 +5,7 @@
 
 #include "bespoke/clearance/detail/prepared_data.h"
 #include "bespoke/error.h"
+#include "bespoke/mapping/reach.h"
 #include "bespoke/parallel.h"
 
 namespace bespoke {
@@ -77,7 +78,7 @@ class PlaceMoves {
   Points moves_, gradients_;
 };
 
-class CorrectedMap : public ElasticMap {
+class CorrectedMap : public ElasticMap, public HasOwnReach {
  public:
   CorrectedMap(std::shared_ptr<const ElasticMap> elastic, std::shared_ptr<const PreparedProduct> product,
                Points moves)
@@ -85,8 +86,8 @@ class CorrectedMap : public ElasticMap {
 
   AffineMap affine() const override { return elastic_->affine(); }
   Support support() const override { return elastic_->support(); }
-  std::size_t count_in_reach(const Points& x, const Points&) const override {
-    return elastic_->count_in_reach(x, elastic_->displacement(x));
+  std::size_t count_in_reach(const Points& x) const override {
+    return bespoke::count_in_reach(*elastic_, x, elastic_->displacement(x));
   }
 
   Points displacement(const Points& x) const override {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "bespoke/types.h"
@@ -37,12 +36,6 @@ class ElasticMap {
   virtual Points displacement_gradient(const Points& x) const = 0;
 
   virtual Support support() const = 0;
-
-  /// How many columns of x are within reach of the source, where `u` is their displacement (both 3×n): all
-  /// that move by more than the affine part, unless something else than the source moves them too.
-  virtual std::size_t count_in_reach(const Points& x, const Points& u) const {
-    return x.cols() == 0 ? 0 : static_cast<std::size_t>((u.array() != 0).colwise().any().count());
-  }
 
   /// E at the columns of x, 3×n.
   Points operator()(const Points& x) const { return affine() * x + displacement(x); }

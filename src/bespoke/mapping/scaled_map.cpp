@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "bespoke/mapping/elastic_chain.h"
+#include "bespoke/mapping/reach.h"
 
 namespace bespoke {
 namespace {
 
-class ScaledMap : public ElasticMap {
+class ScaledMap : public ElasticMap, public HasOwnReach {
  public:
   ScaledMap(std::shared_ptr<const ElasticMap> map, double scale) : map_(std::move(map)), scale_(scale) {}
 
@@ -20,8 +21,9 @@ class ScaledMap : public ElasticMap {
   Points displacement_gradient(const Points& x) const override {
     return map_->displacement_gradient(scale_ * x);
   }
-  std::size_t count_in_reach(const Points& x, const Points& u) const override {
-    return map_->count_in_reach(scale_ * x, scale_ * u);
+  std::size_t count_in_reach(const Points& x) const override {
+    const Points scaled = scale_ * x;
+    return bespoke::count_in_reach(*map_, scaled, map_->displacement(scaled));
   }
   Support support() const override {
     Support support = map_->support();
