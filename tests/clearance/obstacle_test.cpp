@@ -31,7 +31,7 @@ TEST(BodyObstacle, KeepRequiresTheDistanceOnTheSource) {
   EXPECT_NEAR(body.required(on_axis(1.04)).front(), 0.04, exact);
   EXPECT_NEAR(body.required(on_axis(0.97)).front(), -0.03, exact);
   EXPECT_NEAR(body.distance(on_axis(1.02)).front(), 0.02, exact);
-  EXPECT_LT(body.uncertainty(on_axis(1.02)).front(), exact);
+  EXPECT_LT(body.with_uncertainty(on_axis(1.02)).uncertainty.front(), exact);
   // Far away the band is all that is known.
   EXPECT_NEAR(body.required(on_axis(2)).front(), 0.9 * distances->target.band(), exact);
 }

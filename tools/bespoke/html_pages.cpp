@@ -121,15 +121,15 @@ std::vector<ShownMap> fitted_maps(const Manifest& manifest) {
     const std::string map = value_of(line, "output");
     if (line.command != "fit" || map.empty()) continue;
     rows_of.try_emplace(fs::path(map).lexically_normal(), std::vector{shown.size()});
-    shown.push_back({line.line,
-                     name_of(map),
-                     map,
-                     value_of(line, "source"),
-                     value_of(line, "target"),
-                     {},
-                     value_of(line, "confidence-out"),
-                     value_of(line, "report"),
-                     1});
+    ShownMap row;
+    row.line = line.line;
+    row.name = name_of(map);
+    row.map = map;
+    row.source = value_of(line, "source");
+    row.target = value_of(line, "target");
+    row.confidence = value_of(line, "confidence-out");
+    row.fit_report = value_of(line, "report");
+    shown.push_back(std::move(row));
   }
   for (const ManifestJob& line : manifest.jobs) {
     const auto rows = rows_of.find(fs::path(value_of(line, "map")).lexically_normal());

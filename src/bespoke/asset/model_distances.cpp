@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <mutex>
 #include <optional>
 
 #include "bespoke/asset/grids/distance_band.h"
 #include "bespoke/asset/grids/preview.h"
 #include "bespoke/error.h"
+#include "bespoke/instruction_set.h"
 #include "bespoke/lattice/lattice.h"
 #include "bespoke/lattice/leaf_table.h"
 #include "bespoke/parallel.h"
@@ -17,14 +20,13 @@ namespace bespoke {
 namespace {
 
 constexpr std::size_t points_per_range = 512;
-constexpr std::size_t leaves_per_range = 16;
 
 // Voxels from the surface up to which cubic weights count alone, and from which trilinear ones do: beyond,
 // the cubic stencil of two nodes to each side leaves the band of three.
 constexpr double all_cubic = 1, all_trilinear = 2;
 
 // Keys's kernel (a = -1/2) at the four nodes around a place between the second and the third.
-std::array<double, 4> cubic_weights(double f) {
+[[gnu::always_inline]] inline std::array<double, 4> cubic_weights(double f) {
   return {f * (-0.5 + f * (1 - 0.5 * f)), 1 + f * f * (-2.5 + 1.5 * f), f * (0.5 + f * (2 - 1.5 * f)),
           f * f * (-0.5 + 0.5 * f)};
 }
@@ -32,6 +34,9 @@ std::array<double, 4> cubic_weights(double f) {
 // A leaf with the nodes that stencils of its cells reach beyond it: one below it, two above.
 constexpr int brick_edge = leaf_edge + 3;
 constexpr int brick_nodes = brick_edge * brick_edge * brick_edge;
+
+template <class T>
+using Lanes = T __attribute__((vector_size(4 * sizeof(T))));
 
 /// The nodes around a cell, four along an axis from the one below it; those along y follow each other, so
 /// that the rows along z of four of them are summed at once.
@@ -85,10 +90,9 @@ struct DistanceGrid::Data {
   const std::vector<float>& bricks() const {
     std::call_once(bricks_made, [&] {
       bricks_.resize(leaves.size() * brick_nodes);
-      parallel_for(leaves.size(), leaves_per_range, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          gather(moved(first_node(leaves[i]), {-1, -1, -1}), brick_edge, bricks_.data() + i * brick_nodes);
-      });
+      // Not in parallel: a thread that waited for others in here might come to look up the same grid.
+      for (std::size_t i = 0; i < leaves.size(); ++i)
+        gather(moved(first_node(leaves[i]), {-1, -1, -1}), brick_edge, bricks_.data() + i * brick_nodes);
     });
     return bricks_;
   }
@@ -98,26 +102,38 @@ struct DistanceGrid::Data {
     Stencil nodes;
     Vector3 f;
   };
-  /// `own`: room for nodes of cells whose leaf is not stored. Empty far outside of all lattices.
-  std::optional<Place> place_of(const Vector3& x, const std::vector<float>& of_bricks,
-                                std::array<float, 64>& own) const {
+  /// What look-ups of places near each other have in common: the last leaf, and room for nodes of cells whose
+  /// leaf is not stored.
+  struct Last {
+    LeafCoordinates leaf{std::numeric_limits<int>::min(), 0, 0};
+    int stored = no_leaf;
+    std::array<float, 64> own;
+  };
+  /// Empty far outside of all lattices.
+  [[gnu::always_inline]] std::optional<Place> place_of(const Vector3& x, const float* of_bricks,
+                                                       Last& last) const {
     const Vector3 place = (x - lattice.origin) / lattice.voxel_size;
     if (!(place.cwiseAbs().maxCoeff() < 1 << 28)) return std::nullopt;
     const Vector3 low = place.array().floor();
     const LatticeCoordinates cell{static_cast<int>(low[0]), static_cast<int>(low[1]),
                                   static_cast<int>(low[2])};
-    if (const int stored = table.find(leaf_of(cell)); stored != no_leaf) {
+    const LeafCoordinates leaf = leaf_of(cell);
+    if (leaf[0] != last.leaf[0] || leaf[1] != last.leaf[1] || leaf[2] != last.leaf[2]) {
+      last.leaf = leaf;
+      last.stored = table.find(leaf);
+    }
+    if (last.stored != no_leaf) {
       const LatticeCoordinates at = place_in_leaf(cell);
-      return Place{{of_bricks.data() + static_cast<std::size_t>(stored) * brick_nodes +
+      return Place{{of_bricks + static_cast<std::size_t>(last.stored) * brick_nodes +
                         (at[0] * brick_edge + at[2]) * brick_edge + at[1],
                     brick_edge * brick_edge, brick_edge},
                    place - low};
     }
-    gather(moved(cell, {-1, -1, -1}), 4, own.data());
-    return Place{{own.data(), 16, 4}, place - low};
+    gather(moved(cell, {-1, -1, -1}), 4, last.own.data());
+    return Place{{last.own.data(), 16, 4}, place - low};
   }
 
-  static double trilinear(const Place& at) {
+  [[gnu::always_inline]] static double trilinear(const Place& at) {
     double sum = 0;
     for (int corner = 0; corner < 8; ++corner) {
       const LatticeCoordinates step = corner_step(corner);
@@ -129,15 +145,16 @@ struct DistanceGrid::Data {
     return sum;
   }
 
-  static double cubic(const Place& at) {
+  [[gnu::always_inline]] static double cubic_at(const Place& at) {
     const std::array<double, 4> x = cubic_weights(at.f[0]), y = cubic_weights(at.f[1]),
                                 z = cubic_weights(at.f[2]);
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      std::array<double, 4> rows{};
+      Lanes<double> rows{};
       for (std::size_t k = 0; k < 4; ++k) {
-        const float* row = at.nodes.row(static_cast<int>(i), static_cast<int>(k));
-        for (std::size_t j = 0; j < 4; ++j) rows[j] += z[k] * static_cast<double>(row[j]);
+        Lanes<float> row;
+        std::memcpy(&row, at.nodes.row(static_cast<int>(i), static_cast<int>(k)), sizeof row);
+        rows += z[k] * __builtin_convertvector(row, Lanes<double>);
       }
       for (std::size_t j = 0; j < 4; ++j) sum += x[i] * y[j] * rows[j];
     }
@@ -145,29 +162,32 @@ struct DistanceGrid::Data {
   }
 
   /// How much of the cubic value counts.
-  double cubic_share(double trilinear) const {
+  [[gnu::always_inline]] double cubic_share(double trilinear) const {
     const double voxels = std::abs(trilinear) / lattice.voxel_size;
     return std::clamp((all_trilinear - voxels) / (all_trilinear - all_cubic), 0.0, 1.0);
   }
 
-  double distance(const std::optional<Place>& at) const {
-    if (!at) return background;
-    const double linear = trilinear(*at), share = cubic_share(linear);
-    return share > 0 ? share * cubic(*at) + (1 - share) * linear : linear;
-  }
-
-  /// values[i] = body(place) for all columns of x, in parallel.
-  template <class Body>
-  std::vector<double> at_places(const Points& x, const Body& body) const {
-    std::vector<double> found(static_cast<std::size_t>(x.cols()));
-    const std::vector<float>& of_bricks = bricks();
-    parallel_for(found.size(), points_per_range, [&](std::size_t begin, std::size_t end) {
-      std::array<float, 64> own;
-      for (std::size_t i = begin; i < end; ++i)
-        found[i] = body(place_of(x.col(static_cast<Eigen::Index>(i)), of_bricks, own));
-    });
-    return found;
-  }
+  /// Of a range of columns of x, into `found`.
+  struct LookUp {
+    [[gnu::always_inline]] static void run(const Data& data, const Points& x, std::size_t begin,
+                                           std::size_t end, UncertainDistances& found) {
+      Last last;
+      const float* of_bricks = data.bricks().data();
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto at = data.place_of(x.col(static_cast<Eigen::Index>(i)), of_bricks, last);
+        found.distance[i] = data.background;
+        found.uncertainty[i] = 0;
+        if (!at) continue;
+        const double linear = trilinear(*at), share = data.cubic_share(linear);
+        found.distance[i] = linear;
+        // Far outside nobody needs to know it.
+        if (!(share > 0 || linear < 0)) continue;
+        const double cubic = cubic_at(*at);
+        found.uncertainty[i] = std::abs(cubic - linear);
+        if (share > 0) found.distance[i] = share * cubic + (1 - share) * linear;
+      }
+    }
+  };
 
   Lattice lattice;
   float background;
@@ -188,12 +208,16 @@ double DistanceGrid::voxel_size() const { return data_->lattice.voxel_size; }
 double DistanceGrid::error() const { return data_->error; }
 
 std::vector<double> DistanceGrid::operator()(const Points& x) const {
-  return data_->at_places(x, [&](const auto& at) { return data_->distance(at); });
+  return std::move(with_uncertainty(x).distance);
 }
 
-std::vector<double> DistanceGrid::uncertainty(const Points& x) const {
-  return data_->at_places(
-      x, [](const auto& at) { return at ? std::abs(Data::cubic(*at) - Data::trilinear(*at)) : 0; });
+UncertainDistances DistanceGrid::with_uncertainty(const Points& x) const {
+  const auto count = static_cast<std::size_t>(x.cols());
+  UncertainDistances found{std::vector<double>(count), std::vector<double>(count)};
+  parallel_for(count, points_per_range, [&](std::size_t begin, std::size_t end) {
+    run_dispatched<Data::LookUp>(*data_, x, begin, end, found);
+  });
+  return found;
 }
 
 bool operator==(const DistanceGrid& a, const DistanceGrid& b) {

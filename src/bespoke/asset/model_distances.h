@@ -8,6 +8,11 @@
 
 namespace bespoke {
 
+/// Signed distances of n points, and what each may be off by, ≥ 0; mesh units.
+struct UncertainDistances {
+  std::vector<double> distance, uncertainty;
+};
+
 /// Signed distance of a model in a narrow band, as the file holds it: a look-up. Between nodes by cubic
 /// convolution (Keys 1981) near the surface, where trilinear values are off by h²/8 times the curvature,
 /// trilinear towards the edge of the band. Beyond the band it is ± band(). Queries are thread-safe.
@@ -21,9 +26,9 @@ class DistanceGrid {
   /// At the columns of x (3×n, mesh units, the model's own frame), positive outside. Parallel inside.
   std::vector<double> operator()(const Points& x) const;
 
-  /// How far the two interpolations differ there, ≥ 0: what the value may be off by. Large where the model
-  /// has features as small as a voxel. Parallel inside.
-  std::vector<double> uncertainty(const Points& x) const;
+  /// With how far the two interpolations differ there, where the cubic one counts and inside: what the value
+  /// may be off by. Large where the model has features as small as a voxel.
+  UncertainDistances with_uncertainty(const Points& x) const;
 
   /// Whether both tell the same everywhere.
   friend bool operator==(const DistanceGrid& a, const DistanceGrid& b);

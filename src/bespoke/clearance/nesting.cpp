@@ -14,8 +14,8 @@ constexpr double min_share = 0.9;
 /// Of `product` above `below`, within its reach: mesh units squared, of points their number.
 double area_above(const TriangleMesh& product, const Obstacle& below) {
   const std::vector<double> required = below.planes(product.vertices).required;
-  const Eigen::VectorXd areas = product.faces.cols() > 0 ? vertex_areas(product)
-                                                         : Eigen::VectorXd::Ones(product.vertices.cols());
+  const Eigen::VectorXd areas =
+      product.faces.cols() > 0 ? vertex_areas(product) : Eigen::VectorXd::Ones(product.vertices.cols());
   double area = 0;
   for (std::size_t v = 0; v < required.size(); ++v)
     if (required[v] > 0) area += areas[static_cast<Eigen::Index>(v)];

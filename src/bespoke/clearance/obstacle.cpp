@@ -47,7 +47,7 @@ Obstacle body_obstacle(std::shared_ptr<const ModelDistances> distances, const Mo
     return required;
   };
   body.distance = [=](const Points& x) { return distances->target(x); };
-  body.uncertainty = [=](const Points& x) { return distances->target.uncertainty(x); };
+  body.with_uncertainty = [=](const Points& x) { return distances->target.with_uncertainty(x); };
   return body;
 }
 

@@ -35,8 +35,8 @@ struct Obstacle {
   std::function<SidePlanes(const Points& x)> planes = {};
   /// Signed distance at points in the target frame (3×n), positive outside, mesh units.
   SignedDistances distance;
-  /// By what such a distance may be off, ≥ 0; or empty. What was outside keeps at least that distance.
-  SignedDistances uncertainty = {};
+  /// The same with what it may be off by, or empty. What was outside keeps at least that distance.
+  std::function<UncertainDistances(const Points& x)> with_uncertainty = {};
   double step = 0;       ///< over which a difference of distances is a gradient, mesh units, > 0
   double tolerance = 0;  ///< by which a requirement may be missed, mesh units
   /// Of a layer, else null: no face of the product passes through one of it that did not on the source, and

@@ -111,9 +111,9 @@ Pairs intersections_of(const TriangleMesh& mesh, const std::vector<char>& is_loo
         }
         return pairs;
       },
-      [](Pairs all, const Pairs& more) {
-        all.insert(all.end(), more.begin(), more.end());
-        return all;
+      [](Pairs some, const Pairs& more) {
+        some.insert(some.end(), more.begin(), more.end());
+        return some;
       });
   std::sort(all.begin(), all.end());
   return all;

@@ -56,39 +56,28 @@ void SampleDistances::look(const Points& on_target) {
       columns.push_back(i);
   const Points places = places_of(samples(), columns, on_target);
   for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-    const std::vector<double> found = distances(o, columns, places);
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      distance_[o][static_cast<std::size_t>(columns[i])] = found[i];
-    if (obstacles_[o].uncertainty) look_at_uncertainty(o, columns, places);
+    const auto [distance, uncertainty] = distances(o, columns, places);
+    const double near = near_in_steps * obstacles_[o].step;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto column = static_cast<std::size_t>(columns[i]);
+      distance_[o][column] = distance[i];
+      const bool counts = !uncertainty.empty() && required_[o][column] >= 0 && distance[i] <= near;
+      least_[o][column] = counts ? uncertainty[i] : nothing_needed;
+    }
   }
 }
 
-std::vector<double> SampleDistances::distances(std::size_t obstacle, const std::vector<int>& columns,
-                                               const Points& places) const {
-  if (!obstacles_[obstacle].planes) return obstacles_[obstacle].distance(places);
+UncertainDistances SampleDistances::distances(std::size_t obstacle, const std::vector<int>& columns,
+                                              const Points& places) const {
+  const Obstacle& own = obstacles_[obstacle];
+  if (own.with_uncertainty) return own.with_uncertainty(places);
+  if (!own.planes) return {own.distance(places), {}};
   const SidePlanes& planes = planes_[obstacle];
   std::vector<double> found(columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i)
     found[i] = planes.normals.col(columns[i])
                    .dot(places.col(static_cast<Eigen::Index>(i)) - planes.origins.col(columns[i]));
-  return found;
-}
-
-void SampleDistances::look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns,
-                                          const Points& places) {
-  std::vector<int> near, near_columns;
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    const auto column = static_cast<std::size_t>(columns[i]);
-    least_[obstacle][column] = nothing_needed;
-    if (!(required_[obstacle][column] >= 0) ||
-        distance_[obstacle][column] > near_in_steps * obstacles_[obstacle].step)
-      continue;
-    near.push_back(static_cast<int>(i));
-    near_columns.push_back(columns[i]);
-  }
-  const std::vector<double> amounts = obstacles_[obstacle].uncertainty(columns_of(places, near));
-  for (std::size_t i = 0; i < near.size(); ++i)
-    least_[obstacle][static_cast<std::size_t>(near_columns[i])] = amounts[i];
+  return {std::move(found), {}};
 }
 
 void SampleDistances::append(const SampleDistances& other, const std::vector<int>& columns) {

@@ -48,9 +48,8 @@ class SampleDistances {
   MissedDistances count() const;
 
  private:
-  std::vector<double> distances(std::size_t obstacle, const std::vector<int>& columns,
-                                const Points& places) const;
-  void look_at_uncertainty(std::size_t obstacle, const std::vector<int>& columns, const Points& places);
+  UncertainDistances distances(std::size_t obstacle, const std::vector<int>& columns,
+                               const Points& places) const;
 
   std::shared_ptr<const ProductSamples> samples_;
   int own_;  // of them, first

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "bespoke/error.h"
+#include "bespoke/instruction_set.h"
 
 namespace bespoke {
 namespace {
@@ -14,24 +16,60 @@ namespace {
 constexpr double length_in_edges = reach_in_edges / 4.0;
 constexpr double smoothness = 4 * length_in_edges * length_in_edges;
 
-/// H⁻¹ b by the factor, three columns at a time: Eigen would go through it once a column.
-NodeVectors solved(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor, const NodeVectors& b) {
-  using Lower = Eigen::SparseMatrix<double>;
-  const Lower& lower = factor.matrixL().nestedExpression();
-  NodeVectors x = factor.permutationP() * b;
-  for (Eigen::Index j = 0; j < x.rows(); ++j) {
-    const Eigen::RowVector3d at = x.row(j);
-    for (Lower::InnerIterator it(lower, j); it; ++it)
-      if (it.row() > j) x.row(it.row()) -= it.value() * at;
+using Lower = Eigen::SparseMatrix<double>;
+
+// Three numbers and one that fills a vector of the processor.
+using Row = double __attribute__((vector_size(4 * sizeof(double))));
+
+[[gnu::always_inline]] inline void load(const double* x, Row& row) { std::memcpy(&row, x, sizeof row); }
+[[gnu::always_inline]] inline void store(const Row& row, double* x) { std::memcpy(x, &row, sizeof row); }
+
+/// x becomes the solution of L D Lᵀ x = x, all its columns at a time: Eigen would go through L once a column.
+/// `needed`: rows beyond which it is not finished.
+struct Substitution {
+  [[gnu::always_inline]] static void run(const Lower& lower, const Eigen::VectorXd& diagonal,
+                                         const std::vector<char>& needed, double* x) {
+    const int* start = lower.outerIndexPtr();
+    const int* row = lower.innerIndexPtr();
+    const double* value = lower.valuePtr();
+    for (Eigen::Index j = 0; j < lower.cols(); ++j) {
+      Row at, below;
+      load(x + 4 * j, at);
+      // Forces are at few nodes.
+      if (at[0] == 0 && at[1] == 0 && at[2] == 0) continue;
+      for (int i = start[j]; i < start[j + 1]; ++i) {
+        if (row[i] <= j) continue;
+        load(x + 4 * row[i], below);
+        below -= value[i] * at;
+        store(below, x + 4 * row[i]);
+      }
+    }
+    for (Eigen::Index j = lower.cols() - 1; j >= 0; --j) {
+      if (!needed[static_cast<std::size_t>(j)]) continue;
+      Row at, below;
+      load(x + 4 * j, at);
+      at /= diagonal[j];
+      for (int i = start[j]; i < start[j + 1]; ++i) {
+        if (row[i] <= j) continue;
+        load(x + 4 * row[i], below);
+        at -= value[i] * below;
+      }
+      store(at, x + 4 * j);
+    }
   }
-  const auto& diagonal = factor.vectorD();
-  for (Eigen::Index j = x.rows() - 1; j >= 0; --j) {
-    Eigen::RowVector3d at = x.row(j) / diagonal[j];
-    for (Lower::InnerIterator it(lower, j); it; ++it)
-      if (it.row() > j) at -= it.value() * x.row(it.row());
-    x.row(j) = at;
-  }
-  return factor.permutationPinv() * x;
+};
+
+/// H⁻¹ b by the factor.
+NodeVectors solved(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
+                   const std::vector<char>& needed, const NodeVectors& b) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+  Rows x = Rows::Zero(b.rows(), 4);
+  const auto& place = factor.permutationP().indices();
+  for (Eigen::Index i = 0; i < b.rows(); ++i) x.row(place[i]).head<3>() = b.row(i);
+  run_dispatched<Substitution>(factor.matrixL().nestedExpression(), factor.vectorD(), needed, x.data());
+  NodeVectors back(b.rows(), 3);
+  for (Eigen::Index i = 0; i < b.rows(); ++i) back.row(i) = x.row(place[i]).head<3>();
+  return back;
 }
 
 }  // namespace
@@ -56,8 +94,27 @@ SmoothCorrection::SmoothCorrection(const CorrectionGraph& graph) {
     throw SolverError("the product's smoothness could not be factored (" + std::to_string(nodes) + " nodes)");
 }
 
-NodeVectors SmoothCorrection::operator()(const NodeVectors& forces) const {
-  return solved(*factor_, degree_.asDiagonal() * solved(*factor_, forces));
+NodeVectors SmoothCorrection::operator()(const NodeVectors& forces, const SomeNodes& nodes) const {
+  return solved(*factor_, nodes, degree_.asDiagonal() * solved(*factor_, all_nodes(), forces));
+}
+
+SmoothCorrection::SomeNodes SmoothCorrection::all_nodes() const {
+  return SomeNodes(static_cast<std::size_t>(degree_.size()), 1);
+}
+
+/// What a row of the solution needs are the rows of its column of the factor, and so on: its ancestors in the
+/// elimination tree.
+SmoothCorrection::SomeNodes SmoothCorrection::nodes_of(
+    const Eigen::SparseMatrix<double, Eigen::RowMajor>& places) const {
+  const Lower& lower = factor_->matrixL().nestedExpression();
+  SomeNodes needed(static_cast<std::size_t>(degree_.size()), 0);
+  for (Eigen::Index i = 0; i < places.rows(); ++i)
+    for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator it(places, i); it; ++it)
+      needed[static_cast<std::size_t>(factor_->permutationP().indices()[it.col()])] = 1;
+  for (Eigen::Index j = 0; j < lower.cols(); ++j)
+    if (needed[static_cast<std::size_t>(j)])
+      for (Lower::InnerIterator it(lower, j); it; ++it) needed[static_cast<std::size_t>(it.row())] = 1;
+  return needed;
 }
 
 Eigen::VectorXd SmoothCorrection::operator()(const Eigen::VectorXd& forces) const {
@@ -68,9 +125,10 @@ NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstra
                              double tolerance, int iterations, Eigen::VectorXd& multipliers) {
   const auto& [places, gradients, amounts] = constraints;
   const Eigen::SparseMatrix<double, Eigen::RowMajor> to_nodes = places.transpose();
-  const auto displacement = [&](const Eigen::VectorXd& at) {
-    return energy(NodeVectors(to_nodes * (gradients.array().colwise() * at.array()).matrix()));
+  const auto displacement = [&](const Eigen::VectorXd& at, const SmoothCorrection::SomeNodes& nodes) {
+    return energy(NodeVectors(to_nodes * (gradients.array().colwise() * at.array()).matrix()), nodes);
   };
+  const SmoothCorrection::SomeNodes constrained = energy.nodes_of(places);
   const Eigen::VectorXd lengths = gradients.rowwise().norm();
   // H has no positive entry off its diagonal, so that its inverse has no negative one.
   const Eigen::SparseMatrix<double, Eigen::RowMajor> amounts_of_places = places.cwiseAbs();
@@ -83,7 +141,7 @@ NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstra
   Eigen::VectorXd ahead = multipliers;
   double momentum = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    const NodeVectors u = displacement(ahead);
+    const NodeVectors u = displacement(ahead, constrained);
     const Eigen::VectorXd missing = amounts - (places * u).cwiseProduct(gradients).rowwise().sum();
     const Eigen::VectorXd next = (ahead + missing.cwiseQuotient(row_sums)).cwiseMax(0);
     const Eigen::VectorXd change = next - multipliers;
@@ -96,7 +154,7 @@ NodeVectors minimised_energy(const SmoothCorrection& energy, const LinearConstra
     multipliers = next;
     if (missing.maxCoeff() <= tolerance) break;
   }
-  return displacement(multipliers);
+  return displacement(multipliers, energy.all_nodes());
 }
 
 }  // namespace bespoke

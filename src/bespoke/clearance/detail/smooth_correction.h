@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <vector>
 
 #include "bespoke/clearance/detail/correction_graph.h"
 #include "bespoke/types.h"
@@ -25,8 +26,15 @@ class SmoothCorrection {
   /// Throws SolverError where the factorisation fails.
   explicit SmoothCorrection(const CorrectionGraph& graph);
 
-  /// The displacements of least energy under forces at the nodes: (H D⁻¹ H)⁻¹ f.
-  NodeVectors operator()(const NodeVectors& forces) const;
+  /// Nodes, and what the factor needs for them: flags in its order.
+  using SomeNodes = std::vector<char>;
+  SomeNodes all_nodes() const;
+  /// Those with an entry in a row of `places` (k×m).
+  SomeNodes nodes_of(const Eigen::SparseMatrix<double, Eigen::RowMajor>& places) const;
+
+  /// The displacements of least energy under forces at the nodes: (H D⁻¹ H)⁻¹ f. Of other nodes than these
+  /// they mean nothing.
+  NodeVectors operator()(const NodeVectors& forces, const SomeNodes& nodes) const;
   /// The same of one number a node.
   Eigen::VectorXd operator()(const Eigen::VectorXd& forces) const;
 
