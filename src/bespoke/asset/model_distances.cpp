@@ -35,8 +35,8 @@ constexpr double all_cubic = 1, all_trilinear = 2;
 constexpr int brick_edge = leaf_edge + 3;
 constexpr int brick_nodes = brick_edge * brick_edge * brick_edge;
 
-template <class T>
-using Lanes = T __attribute__((vector_size(4 * sizeof(T))));
+using FloatLanes = float __attribute__((vector_size(4 * sizeof(float))));
+using Lanes = double __attribute__((vector_size(4 * sizeof(double))));
 
 /// The nodes around a cell, four along an axis from the one below it; those along y follow each other, so
 /// that the rows along z of four of them are summed at once.
@@ -150,11 +150,11 @@ struct DistanceGrid::Data {
                                 z = cubic_weights(at.f[2]);
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-      Lanes<double> rows{};
+      Lanes rows{};
       for (std::size_t k = 0; k < 4; ++k) {
-        Lanes<float> row;
+        FloatLanes row;
         std::memcpy(&row, at.nodes.row(static_cast<int>(i), static_cast<int>(k)), sizeof row);
-        rows += z[k] * __builtin_convertvector(row, Lanes<double>);
+        rows += z[k] * __builtin_convertvector(row, Lanes);
       }
       for (std::size_t j = 0; j < 4; ++j) sum += x[i] * y[j] * rows[j];
     }
