@@ -216,6 +216,47 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
   EXPECT_EQ(cleared.summary.new_self_intersections, 0u);
 }
 
+// What came into a plate leaves it, although it does not get the distance that it had.
+TEST(KeepClear, WhereThereIsLessSpaceThanRequiredNothingStaysInside) {
+  const TriangleMesh product = shapes::square_grid(20);
+  Obstacle plates;
+  plates.name = "the plates";
+  plates.step = 1e-3;
+  plates.tolerance = 1e-4;
+  plates.required = [](const SourcePlaces& places) {
+    return std::vector<double>(static_cast<std::size_t>(places.points().cols()), 0.05);
+  };
+  plates.distance = [](const Points& x) {
+    std::vector<double> values;
+    for (const auto& point : x.colwise()) values.push_back(0.02 - std::abs(point.z()));
+    return values;
+  };
+  Points carried = product.vertices;
+  for (auto vertex : carried.colwise())
+    vertex.z() = 0.04 * std::exp(-50 * (vertex - Vector3(0.5, 0.5, 0)).squaredNorm());
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {plates});
+  EXPECT_GT(cleared.summary.before.inside, 100u);
+  EXPECT_EQ(cleared.summary.after.inside, 0u) << to_string(cleared.summary);
+  EXPECT_TRUE(cleared.summary.is_clear());
+}
+
+// Distances are stored in a band: deeper they are all the same.
+TEST(KeepClear, WhatLiesDeeperThanTheBandComesOut) {
+  const TriangleMesh product = test::shell(1.02, 4);
+  Obstacle ball = test::unit_ball();
+  const auto distance = ball.distance;
+  ball.step = 0.02;
+  ball.distance = [=](const Points& x) {
+    std::vector<double> values = distance(x);
+    for (double& value : values) value = std::clamp(value, -0.06, 0.06);
+    return values;
+  };
+  const Points carried = test::dented(product.vertices, 0.5, 0.14);
+  const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {ball});
+  EXPECT_GT(cleared.summary.before.most, 0.07);
+  EXPECT_EQ(cleared.summary.after.samples, 0u) << to_string(cleared.summary);
+}
+
 // What lies over a finer layer has its vertices outside of it, and the layer's own pass through its faces.
 TEST(KeepClear, FinerLayersDoNotPassThroughCoarserOnes) {
   const TriangleMesh lower = test::shell(1.0, 5), upper = test::shell(1.06, 2);

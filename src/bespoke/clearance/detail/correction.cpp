@@ -21,8 +21,12 @@ constexpr int iterations_a_round = 30;
 // A gradient shorter than this is that of a place as near to one side as to another.
 constexpr double min_gradient = 0.2;
 
-// A round that brings a sample less than this share of the way that it was pushed was in vain, and after so
-// many there is no space for it.
+// Beyond the band of what is stored distances are all the same. Central differences over a step doubled so
+// often reach it from four voxels deeper.
+constexpr int max_doublings = 3;
+
+// A round that brings a sample less than this share of the way that it was pushed was in vain. After so many
+// there is no space for its distance, and it is only kept outside; after as many again for none at all.
 constexpr double min_gain = 0.3;
 constexpr int max_vain_rounds = 2;
 
@@ -166,17 +170,18 @@ int Correction::nearest_node(const ProductSamples& samples, int sample) const {
   return nearest;
 }
 
-/// Lets go of nodes whose samples rounds did not bring nearer: there is no space, and pushing on would
-/// fold the product.
+/// Asks less of nodes whose samples rounds did not bring nearer, then nothing: there is no space, and pushing
+/// on would fold the product.
 bool Correction::count_vain_rounds(const SampleDistances& distances) {
-  bool let_go = false;
+  std::set<std::pair<std::size_t, int>> vain;
   for (const Active& active : active_) {
     const double expected = std::min(active.missing, push_a_round * size_);
-    const double gained = active.missing - distances.missing(active.obstacle, active.sample);
-    if (!distances.misses(active.obstacle, active.sample) || gained > min_gain * expected) continue;
-    int& rounds = vain_rounds_[{active.obstacle, nearest_node(distances.samples(), active.sample)}];
-    let_go = ++rounds == max_vain_rounds || let_go;
+    const double gained = active.missing - missing(distances, active.obstacle, active.sample);
+    if (!misses(distances, active.obstacle, active.sample) || gained > min_gain * expected) continue;
+    vain.emplace(active.obstacle, nearest_node(distances.samples(), active.sample));
   }
+  bool let_go = false;
+  for (const auto& one : vain) let_go = ++vain_rounds_[one] % max_vain_rounds == 0 || let_go;
   return let_go;
 }
 
@@ -189,15 +194,32 @@ bool Correction::let_go_of_parts() {
     if (!product_.graph.is_part[node] || !(u_.row(row).norm() > max_shift * missing_at_first_[node]))
       continue;
     for (std::size_t o = 0; o < obstacles_.size(); ++o)
-      vain_rounds_[{o, static_cast<int>(node)}] = max_vain_rounds;
+      vain_rounds_[{o, static_cast<int>(node)}] = 2 * max_vain_rounds;
     let_go = true;
   }
   return let_go;
 }
 
-bool Correction::is_blocked(std::size_t obstacle, int node) const {
+int Correction::vain_rounds(std::size_t obstacle, int node) const {
   const auto found = vain_rounds_.find({obstacle, node});
-  return found != vain_rounds_.end() && found->second >= max_vain_rounds;
+  return found == vain_rounds_.end() ? 0 : found->second;
+}
+
+bool Correction::is_blocked(std::size_t obstacle, int node) const {
+  return vain_rounds(obstacle, node) >= 2 * max_vain_rounds;
+}
+
+/// By what is still required of its node.
+double Correction::missing(const SampleDistances& distances, std::size_t obstacle, int sample) const {
+  return vain_rounds_.empty() ||
+                 vain_rounds(obstacle, nearest_node(distances.samples(), sample)) < max_vain_rounds
+             ? distances.missing(obstacle, sample)
+             : distances.missing_outside(obstacle, sample);
+}
+
+bool Correction::misses(const SampleDistances& distances, std::size_t obstacle, int sample) const {
+  return distances.misses(obstacle, sample) &&
+         missing(distances, obstacle, sample) > obstacles_[obstacle].tolerance;
 }
 
 /// Keeps what pushes, and adds of what misses the worst sample around each node: its neighbours follow it.
@@ -220,17 +242,17 @@ bool Correction::choose_active(const SampleDistances& distances) {
     if (obstacles_[o].is_soft) continue;
     std::vector<int> worst(is_missing_node_.size(), -1);
     for (int i = 0; i < static_cast<int>(distances.samples().count()); ++i) {
-      if (!distances.misses(o, i)) continue;
+      if (!misses(distances, o, i)) continue;
       const int node = nearest_node(distances.samples(), i);
       if (is_blocked(o, node)) continue;
       any = true;
       note_missing(distances, i);
       if (u_.row(node).isZero(0)) {
         double& most = missing_at_first_[static_cast<std::size_t>(node)];
-        most = std::max(most, distances.missing(o, i));
+        most = std::max(most, missing(distances, o, i));
       }
       int& at = worst[static_cast<std::size_t>(node)];
-      if (at < 0 || distances.missing(o, i) > distances.missing(o, at)) at = i;
+      if (at < 0 || missing(distances, o, i) > missing(distances, o, at)) at = i;
     }
     for (const int i : worst)
       if (i >= 0 && !is_active.contains({o, i})) {
@@ -238,7 +260,7 @@ bool Correction::choose_active(const SampleDistances& distances) {
         multipliers.push_back(0);
       }
   }
-  for (Active& next : active) next.missing = distances.missing(next.obstacle, next.sample);
+  for (Active& next : active) next.missing = missing(distances, next.obstacle, next.sample);
   active_ = std::move(active);
   multipliers_ =
       Eigen::Map<Eigen::VectorXd>(multipliers.data(), static_cast<Eigen::Index>(multipliers.size()));
@@ -264,21 +286,29 @@ void Correction::set_differences(const SampleDistances& distances, const std::ve
                                  LinearConstraints& constraints) const {
   const Obstacle& obstacle = obstacles_[active_[static_cast<std::size_t>(rows.front())].obstacle];
   const Points places = places_of(distances.samples(), vertices());
-  Points around(3, 6 * static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      for (int side = 0; side < 2; ++side)
-        around.col(6 * static_cast<Eigen::Index>(i) + 2 * axis + side) =
-            places.col(active_[static_cast<std::size_t>(rows[i])].sample) +
-            (side ? -obstacle.step : obstacle.step) * Vector3::Unit(axis);
-  const std::vector<double> values = obstacle.distance(around);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    Vector3 gradient;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      gradient[static_cast<Eigen::Index>(axis)] =
-          (values[6 * i + 2 * axis] - values[6 * i + 2 * axis + 1]) / (2 * obstacle.step);
-    if (!(gradient.norm() > min_gradient)) gradient.setZero();
-    constraints.gradients.row(rows[i]) = gradient.normalized();
+  std::vector<Eigen::Index> left = rows;
+  double step = obstacle.step;
+  for (int doubling = 0; doubling <= max_doublings && !left.empty(); ++doubling, step *= 2) {
+    Points around(3, 6 * static_cast<Eigen::Index>(left.size()));
+    for (std::size_t i = 0; i < left.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        for (int side = 0; side < 2; ++side)
+          around.col(6 * static_cast<Eigen::Index>(i) + 2 * axis + side) =
+              places.col(active_[static_cast<std::size_t>(left[i])].sample) +
+              (side ? -step : step) * Vector3::Unit(axis);
+    const std::vector<double> values = obstacle.distance(around);
+    std::vector<Eigen::Index> beyond;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      Vector3 gradient;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        gradient[static_cast<Eigen::Index>(axis)] =
+            (values[6 * i + 2 * axis] - values[6 * i + 2 * axis + 1]) / (2 * step);
+      if (gradient.isZero(0)) beyond.push_back(left[i]);
+      // What is beyond the band looks at its rim, where differences are partly none.
+      if (doubling == 0 && !(gradient.norm() > min_gradient)) gradient.setZero();
+      constraints.gradients.row(left[i]) = gradient.normalized();
+    }
+    left = std::move(beyond);
   }
 }
 
@@ -300,10 +330,10 @@ LinearConstraints Correction::linearised(const SampleDistances& distances) const
   const NodeVectors now = constraints.places * u_;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Active& active = active_[static_cast<std::size_t>(i)];
-    const double missing = std::min(distances.missing(active.obstacle, active.sample), push_a_round * size_);
+    const double pushed = std::min(missing(distances, active.obstacle, active.sample), push_a_round * size_);
     constraints.amounts[i] = constraints.gradients.row(i).isZero(0)
                                  ? -size_
-                                 : missing + aimed_share * obstacles_[active.obstacle].tolerance +
+                                 : pushed + aimed_share * obstacles_[active.obstacle].tolerance +
                                        constraints.gradients.row(i).dot(now.row(i));
   }
   return constraints;

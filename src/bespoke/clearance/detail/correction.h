@@ -74,7 +74,10 @@ class Correction {
   int nearest_node(const ProductSamples& samples, int sample) const;
   bool count_vain_rounds(const SampleDistances& distances);
   bool let_go_of_parts();
+  int vain_rounds(std::size_t obstacle, int node) const;
   bool is_blocked(std::size_t obstacle, int node) const;
+  double missing(const SampleDistances& distances, std::size_t obstacle, int sample) const;
+  bool misses(const SampleDistances& distances, std::size_t obstacle, int sample) const;
   void note_missing(const SampleDistances& distances, int sample);
   void note_missing_vertex(int vertex);
   std::vector<char> choose_drawn(const SampleDistances& distances);

@@ -60,13 +60,13 @@ std::vector<char> Correction::choose_drawn(const SampleDistances& distances) {
     for (int i = 0; i < static_cast<int>(distances.samples().count()); ++i) {
       const auto node = static_cast<std::size_t>(nearest_node(distances.samples(), i));
       if (is_soft && !distances.misses(o, i)) continue;
-      const double missing = distances.missing(o, i);
-      if (!(missing > -2 * bystander_share * size_) || is_blocked(o, static_cast<int>(node))) continue;
-      if (worst[node] < 0 || missing > distances.missing(o, worst[node])) worst[node] = i;
+      const double now = missing(distances, o, i);
+      if (!(now > -2 * bystander_share * size_) || is_blocked(o, static_cast<int>(node))) continue;
+      if (worst[node] < 0 || now > missing(distances, o, worst[node])) worst[node] = i;
       if (is_soft) is_drawn[node] = 1;
     }
     for (const int i : worst)
-      if (i >= 0) active_.push_back({o, i, distances.missing(o, i)});
+      if (i >= 0) active_.push_back({o, i, missing(distances, o, i)});
   }
   multipliers_.setZero(static_cast<Eigen::Index>(active_.size()));
   return is_drawn;

@@ -36,6 +36,11 @@ class SampleDistances {
     const auto at = static_cast<std::size_t>(sample);
     return std::max(required_[obstacle][at], least_[obstacle][at]) - distance_[obstacle][at];
   }
+  /// The same where the sample needs no more than to stay outside, if it was.
+  double missing_outside(std::size_t obstacle, Eigen::Index sample) const {
+    const auto at = static_cast<std::size_t>(sample);
+    return std::max(std::min(required_[obstacle][at], 0.0), least_[obstacle][at]) - distance_[obstacle][at];
+  }
   bool misses(std::size_t obstacle, Eigen::Index sample) const {
     return missing(obstacle, sample) > obstacles_[obstacle].tolerance;
   }
