@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,17 @@
 
 namespace bespoke {
 
-/// Where a corrected product still misses its distance: there is no space, or its two sides contradict.
+/// Where a corrected product still misses its distance.
 struct MissedPlace {
   std::string obstacle;
   Vector3 place = Vector3::Zero();  ///< on the corrected product, target frame
   double missing = 0;               ///< of the worst sample, mesh units
   std::size_t samples = 0;          ///< that miss nearest to it
+  /// From the obstacle, of the places around it no farther than 1.5 times what is missing: the largest, mesh
+  /// units. Nothing of layers.
+  std::optional<double> room = {};
+  /// Whether that is what it misses: then the product holds itself back, where a move would crumple it.
+  bool has_room = false;
 };
 
 /// Where faces of a corrected product pass through others that they did not pass through before.

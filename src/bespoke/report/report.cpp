@@ -49,11 +49,14 @@ Json missed_json(const MissedDistances& missed) {
 Json clearance_json(const ProductClearance& clearance) {
   const ClearanceSummary& summary = clearance.summary;
   Json places = Json::array(), layers = Json::array();
-  for (const MissedPlace& place : summary.places)
+  for (const MissedPlace& place : summary.places) {
     places.push_back({{"obstacle", place.obstacle},
                       {"place", {place.place[0], place.place[1], place.place[2]}},
                       {"missing", place.missing},
-                      {"samples", place.samples}});
+                      {"samples", place.samples},
+                      {"has_room", place.has_room}});
+    if (place.room) places.back()["room"] = *place.room;
+  }
   Json passed_through = Json::array();
   for (const PassedThrough& passed : summary.passed_through)
     passed_through.push_back({{"other", passed.other},
