@@ -294,8 +294,8 @@ TEST(CorrectionSamples, AreConstrainedAndCountedOnce) {
   std::vector<Obstacle> ball = {test::unit_ball({.ease = 0.1})};
   ball.front().short_is_breach = true;
   const Eigen::Matrix2Xi no_lines(2, 0);
-  SampleDistances distances(constraint_samples(product, no_lines, 0.1), product.vertices, ball),
-      checks(check_samples(product, no_lines, 0.1), product.vertices, ball);
+  SampleDistances distances({constraint_samples(product, no_lines, 0.1), product}, ball),
+      checks({check_samples(product, no_lines, 0.1), product}, ball);
   const Eigen::Index constrained = distances.samples().count(), checked = checks.samples().count();
   CorrectionSamples samples(distances, checks);
   distances.look(product.vertices);

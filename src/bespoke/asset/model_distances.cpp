@@ -102,7 +102,7 @@ struct DistanceGrid::Data {
     Stencil nodes;
     Vector3 f;
   };
-  /// What look-ups of places near each other have in common: the last leaf, and room for nodes of cells whose
+  /// What look-ups of places near each other have in common: the last leaf, and nodes of cells whose
   /// leaf is not stored.
   struct Last {
     LeafCoordinates leaf{std::numeric_limits<int>::min(), 0, 0};

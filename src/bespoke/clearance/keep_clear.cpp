@@ -174,15 +174,15 @@ std::string to_string(const ClearanceSummary& summary) {
     text += "\npasses through " + passed.other + " at " + place_text(passed.place) + ", " +
             std::to_string(passed.pairs) + " pairs of faces, where it did not before";
   for (const MissedPlace& place : summary.places) {
-    text += (place.has_room ? "\nheld back at " : "\nno space at ") + place_text(place.place) + ": " +
+    text += (place.has_space ? "\nheld back at " : "\nno space at ") + place_text(place.place) + ": " +
             number(place.missing) + " short of its distance from " + place.obstacle + ", at " +
             std::to_string(place.samples) + " samples";
-    if (place.has_room)
+    if (place.has_space)
       text += "; there is space beside it, which no push reaches: it was carried too deep, or is too stiff";
-    else if (place.room && *place.room <= 0)
+    else if (place.space && *place.space <= 0)
       text += "; all around is inside";
-    else if (place.room)
-      text += "; between its sides there is " + number(*place.room);
+    else if (place.space)
+      text += "; between its sides there is " + number(*place.space);
   }
   return text;
 }

@@ -19,9 +19,9 @@ struct MissedPlace {
   std::size_t samples = 0;          ///< that miss nearest to it
   /// From the obstacle, of the places around it no farther than 1.5 times what is missing: the largest, mesh
   /// units. Nothing of layers.
-  std::optional<double> room = {};
-  /// Whether that is what it misses: then the product holds itself back, where a move would crumple it.
-  bool has_room = false;
+  std::optional<double> space = {};
+  /// Whether that is as much as it needs: then what it is joined to holds it, or it was carried too deep.
+  bool has_space = false;
 };
 
 /// Where faces of a corrected product pass through others that they did not pass through before.

@@ -54,8 +54,8 @@ Json clearance_json(const ProductClearance& clearance) {
                       {"place", {place.place[0], place.place[1], place.place[2]}},
                       {"missing", place.missing},
                       {"samples", place.samples},
-                      {"has_room", place.has_room}});
-    if (place.room) places.back()["room"] = *place.room;
+                      {"has_space", place.has_space}});
+    if (place.space) places.back()["space"] = *place.space;
   }
   Json passed_through = Json::array();
   for (const PassedThrough& passed : summary.passed_through)

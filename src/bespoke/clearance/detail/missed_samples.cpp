@@ -151,26 +151,26 @@ MissedDistances CorrectionSamples::count() const {
 
 namespace {
 
-// Of what is missing: within so much of it a product with room has it.
-constexpr double room_share = 1.5;
-constexpr int room_rings = 6;
+// Of what is missing: within so much of it a product with space has it.
+constexpr double space_share = 1.5;
+constexpr int space_rings = 6;
 
 /// What the obstacle leaves there, on rings around the place in 26 directions.
 MissedPlace missed_place(const Obstacle& obstacle, const Vector3& place, double missing, double required) {
   MissedPlace missed{obstacle.name, place, missing, 1};
   if (obstacle.planes) return missed;
   std::vector<Vector3> around;
-  for (int ring = 1; ring <= room_rings; ++ring)
+  for (int ring = 1; ring <= space_rings; ++ring)
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
         for (int z = -1; z <= 1; ++z)
           if (x != 0 || y != 0 || z != 0)
             around.push_back(place +
-                             room_share * missing * ring / room_rings * Vector3(x, y, z).normalized());
+                             space_share * missing * ring / space_rings * Vector3(x, y, z).normalized());
   const std::vector<double> distances = obstacle.distance(
       Eigen::Map<const Points>(around.front().data(), 3, static_cast<Eigen::Index>(around.size())));
-  missed.room = *std::max_element(distances.begin(), distances.end());
-  missed.has_room = *missed.room >= required - obstacle.tolerance;
+  missed.space = *std::max_element(distances.begin(), distances.end());
+  missed.has_space = *missed.space >= required - obstacle.tolerance;
   return missed;
 }
 
