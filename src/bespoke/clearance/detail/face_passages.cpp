@@ -42,6 +42,7 @@ FacePassages::FacePassages(const TriangleMesh& product, const Points& carried,
 }
 
 FacePairs FacePassages::found() {
+  if (product_faces_ == 0) return {};
   if (has_layers() && !through_layers_) {
     through_layers_ = intersections_of_first({on_source_, now_.faces}, product_faces_);
     std::erase_if(*through_layers_, [&](const auto& pair) { return is_of_product(pair.second); });
