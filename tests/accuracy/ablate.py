@@ -21,11 +21,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
 
 import public_pairs
 
@@ -106,15 +108,13 @@ RULES = [
          old="accuracy.swapped = swapped_anchors(anchors);", new="accuracy.swapped = {};"),
     Rule("contradicting anchors share their difference", "σ", file="registration/detail/register_by_anchors.cpp",
          old="if (doubts) let_contradicting_share(", new="if (false) let_contradicting_share("),
-    Rule("outliers among anchors", "outliers", file="registration/detail/register_by_anchors.cpp",
-         old="if (!suspects.empty()) best", new="if (false) best"),
-    Rule("rejected anchors reinstated", "outliers", file="registration/detail/register_by_anchors.cpp",
-         old="if (rejected.size() == 1 || rejected.size() > few)", new="if (true)"),
-    Rule("each of a few outliers tested alone", "outliers", file="registration/detail/register_by_anchors.cpp",
-         old="rejected.size() <= few && undoubted > trusting", new="false"),
+    by_value("outliers among anchors", "outliers", OutlierAnchorSettings__min_doubted=1000000),
+    Rule("posed anew without outliers", "outliers", file="registration/detail/register_by_anchors.cpp",
+         old="if (!has_left_out(fit) || !fit.registration.summary.surface->posed_by_anchors) return fit;",
+         new="if (has_left_out(fit) || !has_left_out(fit)) return fit;"),
     Rule("counterparts along the surfaces", "outliers", file="registration/detail/register_by_anchors.cpp",
-         old="if (counterparts.sources.cols() == 0) return registration;",
-         new="if (counterparts.sources.cols() >= 0) return registration;"),
+         old="if (counterparts.sources.cols() == 0) return by_anchors;",
+         new="if (counterparts.sources.cols() >= 0) return by_anchors;"),
     Rule("contacts separated", "contact", file="registration/registration.cpp",
          old="if (apart.summary.touching == 0) return registration;",
          new="if (apart.summary.touching + 1 > 0) return registration;"),
@@ -397,6 +397,9 @@ class Case:
 def write_cases(options):
     cases = []
     for group, pair, anchors, noise in chosen_pairs(options):
+        wrong = 0
+        if isinstance(pair, Mistaken):
+            pair, wrong = pair.pair, pair.count
         folder = options.work / "pairs" / f"{len(cases):02d}"
         folder.mkdir(parents=True, exist_ok=True)
         public_pairs.write_obj(folder / "source.obj", pair.source)
@@ -404,7 +407,8 @@ def write_cases(options):
         chosen = public_pairs.farthest(pair.points, anchors) if anchors else []
         (folder / "anchors.json").unlink(missing_ok=True)
         if anchors:
-            public_pairs.write_anchors(folder / "anchors.json", pair, chosen, noise)
+            named = replace(pair, places=mistaken(pair, chosen, wrong)) if wrong else pair
+            public_pairs.write_anchors(folder / "anchors.json", named, chosen, noise)
         vertices = pair.vertices
         if vertices is None:
             place = {tuple(vertex): index for index, vertex in enumerate(pair.source[0])}
@@ -439,6 +443,87 @@ def chosen_pairs(options):
         yield "generated", pair, 12, 0
     for pair in (persons[0], generated[1], generated[2]):
         yield "scans", as_scan(pair), 20, 0
+    for pair in (persons[0], poses[0]):
+        yield "outliers", with_outliers(pair, 3), 20, 0
+    yield "outliers", with_outliers(persons[1], 6), 40, 0
+    for pair in (generated[1], persons[0]):
+        yield "no anchors", pair, 0, 0
+    for pair in (persons[1], poses[1]):
+        yield "few vertices", with_few_vertices(pair, 1000), 20, 0
+    yield "copies", remeshed_copy(persons[0]), 12, 0
+    for pair in (generated[1], persons[0]):
+        yield "pockets", with_pocket(pair), 12, 0
+
+
+@dataclass
+class Mistaken:
+    """A pair whose anchors with these numbers name another place of the target."""
+    pair: public_pairs.Pair
+    count: int
+
+
+def with_outliers(pair, count):
+    return Mistaken(pair, count)
+
+
+def mistaken(pair, chosen, count):
+    """Places of the target, some of which are another point's, at least 6 % of the diagonal away."""
+    random = np.random.default_rng(public_pairs.SEED)
+    places = pair.places.copy()
+    size = np.linalg.norm(np.ptp(pair.target[0], axis=0))
+    for index in random.choice(chosen, count, replace=False):
+        far = np.flatnonzero(np.linalg.norm(pair.places - pair.places[index], axis=1) > 0.06 * size)
+        places[index] = pair.places[random.choice(far)]
+    return places
+
+
+def with_few_vertices(pair, count):
+    """The source by some of its vertices: corners of the regions nearest to them along the edges that meet in a face."""
+    vertices, faces = pair.source
+    kept = public_pairs.farthest(vertices, count)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+    graph = coo_matrix((lengths, edges.T), shape=(len(vertices), len(vertices))).tocsr()
+    _, _, nearest = dijkstra(graph, directed=False, indices=kept, min_only=True, return_predecessors=True)
+    number = np.full(len(vertices), -1)
+    number[kept] = np.arange(count)
+    corners = number[nearest[faces]]
+    corners = corners[(corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]) & (corners[:, 2] != corners[:, 0])]
+    _, first = np.unique(np.sort(corners, axis=1), axis=0, return_index=True)
+    known = np.flatnonzero(np.isin(kept, pair.vertices))
+    place = {vertex: index for index, vertex in enumerate(pair.vertices)}
+    truth = np.array([place[kept[index]] for index in known])
+    return public_pairs.Pair(f"{pair.name} of {count} vertices", (vertices[kept], corners[np.sort(first)]), pair.target,
+                             pair.points[truth], pair.places[truth], known)
+
+
+def remeshed_copy(pair):
+    vertices, faces = pair.source
+    return public_pairs.Pair(f"{pair.name}, a copy", pair.source, public_pairs.remeshed(vertices, faces), vertices, vertices,
+                             np.arange(len(vertices)))
+
+
+def with_pocket(pair):
+    """The source with a pocket that the target lacks, three times as deep as wide, at the vertex nearest to the viewer."""
+    vertices, faces = pair.source
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
+    width = 0.03 * size
+    middle = vertices[np.argmax(vertices[:, 2] - 0.5 * abs(vertices[:, 1] - np.quantile(vertices[:, 1], 0.8)))]
+    share = np.linalg.norm(vertices - middle, axis=1) / width
+    normal = vertex_normal(vertices, faces, middle)
+    inside = share < 1
+    moved = vertices.copy()
+    moved[inside] -= 3 * width * np.outer(1 - share[inside] ** 2, normal)
+    outside = np.flatnonzero(np.linalg.norm(vertices[pair.vertices] - middle, axis=1) > 1.2 * width)
+    return public_pairs.Pair(f"{pair.name} with a pocket", (moved, faces), pair.target, pair.points[outside],
+                             pair.places[outside], pair.vertices[outside])
+
+
+def vertex_normal(vertices, faces, place):
+    at = np.argmin(np.linalg.norm(vertices - place, axis=1))
+    own = vertices[faces[(faces == at).any(1)]]
+    normal = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0]).sum(0)
+    return normal / np.linalg.norm(normal)
 
 
 def as_scan(pair):

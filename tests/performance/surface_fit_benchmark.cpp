@@ -6,7 +6,6 @@
 #include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/mesh/cavities.h"
 #include "bespoke/mesh/closest_point.h"
-#include "bespoke/quality/surface_strain.h"
 #include "bespoke/quality/uncovered_area.h"
 #include "bespoke/surface_fit/surface_fit.h"
 #include "support/pocketed_ball.h"
@@ -55,19 +54,8 @@ BENCHMARK_CAPTURE(fit, deformation_graph, SurfaceFitMethod::deformation_graph)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// What every fit asks of a registered source of 10,242 vertices, and of four times as many: the strain
-/// around 36 anchors.
-void strain(benchmark::State& state) {
-  const TriangleMesh source = shapes::icosphere(static_cast<int>(state.range(0)));
-  const Points registered = bumpy_sphere(static_cast<int>(state.range(0))).vertices;
-  const ClosestPointTree surface(source);
-  std::vector<SurfacePoint> places;
-  for (Eigen::Index i = 0; i < 36; ++i) places.push_back(*surface.closest(source.vertices.col(i)));
-  for (auto _ : state) benchmark::DoNotOptimize(strain_around(source, registered, places, 0.07));
-}
-BENCHMARK(strain)->Arg(5)->Arg(6)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
-
-/// The same: what of the target it leaves bare.
+/// What every fit asks of a registered source of 10,242 vertices, and of four times as many: what of the
+/// target it leaves bare.
 void uncovered(benchmark::State& state) {
   const TriangleMesh target = shapes::icosphere(static_cast<int>(state.range(0)));
   const TriangleMesh registered = bumpy_sphere(static_cast<int>(state.range(0)));

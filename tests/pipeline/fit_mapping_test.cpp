@@ -137,7 +137,8 @@ TEST(FitMapping, FitsWithoutAnOutlierUnlessItsSigmaIsGiven) {
                 .closest(wrong.b + 0.7 * (outlier.anchors.pairs[9].b - wrong.b).normalized())
                 ->point;
   const FittedMapping fit = outlier.fit();
-  EXPECT_EQ(fit.fitted_vertices, without.fit().fitted_vertices);
+  // Not bit by bit: the first step of the fit had the outlier still.
+  EXPECT_LT((fit.fitted_vertices - without.fit().fitted_vertices).colwise().norm().maxCoeff(), 0.02);
   ASSERT_EQ(fit.summary.accuracy.left_out.size(), 1u);
   EXPECT_EQ(fit.summary.accuracy.left_out[0].index, 4u);
   EXPECT_NEAR(fit.anchor_residual[4], fit.summary.accuracy.left_out[0].distance, 0.05);

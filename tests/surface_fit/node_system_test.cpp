@@ -74,6 +74,29 @@ TEST_F(NodeSystemTest, CountsFarPlanesWithAScaleGain) {
   EXPECT_GT(reached(1), 0.5);
 }
 
+TEST_F(NodeSystemTest, KnowsWhereAnAnchorWouldBeWithoutIt) {
+  std::vector<PlanePair> planes;
+  const Points normals = vertex_normals(sphere_);
+  for (int i = 0; i < sphere_.vertices.cols(); ++i)
+    planes.push_back({i, 1.1 * sphere_.vertices.col(i), normals.col(i), 1e-3});
+  const std::vector<NodeAnchor> anchors{anchor(0, Vector3(0.2, 0, 0)), anchor(40, Vector3(0, 0.3, 0)),
+                                        anchor(90, Vector3::Zero()), anchor(7, Vector3(0, 0, -0.1))};
+  const NodeGoals all{sphere_.vertices, planes, {}, 1, 1};
+  NodeSystem with(system(anchors));
+  with.solve(all);
+  const LeftOutAnchors left_out = with.left_out();
+  for (std::size_t k = 0; k < anchors.size(); ++k) {
+    NodeGoals others = all;
+    others.anchor_inliers.assign(anchors.size(), 1);
+    others.anchor_inliers[k] = 0;
+    const Points moved = system(anchors).solve(others);
+    const Vector3 goal = anchors[k].foot.point + anchors[k].displacement;
+    EXPECT_NEAR(left_out.distances[static_cast<Eigen::Index>(k)],
+                (carried(anchors[k].foot, sphere_.faces, moved) - goal).norm(), 1e-6);
+    EXPECT_GT(left_out.compliances[static_cast<Eigen::Index>(k)], 0);
+  }
+}
+
 TEST_F(NodeSystemTest, BendsLessTheMoreItSmooths) {
   const std::vector<NodeAnchor> anchors{anchor(0, Vector3(0.2, 0, 0)), anchor(1, Vector3::Zero()),
                                         anchor(2, Vector3::Zero()), anchor(3, Vector3::Zero())};

@@ -90,6 +90,13 @@ struct AnchorSettings {
   double max_reinforced = 10;    ///< factor of κ from one iteration to the next
 };
 
+/// Anchors at wrong places (anchor_posterior.h).
+struct OutlierAnchorSettings {
+  double expected = 0.1;        ///< ε, share of the anchors
+  double min_deviation = 0.02;  ///< diagonals: proportions differ that much
+  int min_doubted = 7;          ///< with fewer the others do not tell
+};
+
 /// The source posed by its anchors alone (anchor_pose.h), as in as-rigid-as-possible modelling.
 struct PoseSettings {
   /// Over the whole surface, coarse and fine as in the fit. Coarse nodes alone bend fingers at wrong places.
@@ -110,6 +117,7 @@ struct PoseSettings {
   /// pose.
   double min_rigid_turn = 15;
   NodeSettings node_settings;
+  OutlierAnchorSettings outliers;
 };
 
 /// Cavities of the source that the target lacks (cavities.h).
@@ -187,6 +195,7 @@ struct NodeFitSettings {
   ShapeSettings shape;
   BoundarySettings boundaries;
   AnchorSettings anchors;
+  OutlierAnchorSettings outliers;
   CavitySettings cavities;
   UnmatchedCavitySettings unmatched_cavities;
   ReciprocitySettings reciprocity;

@@ -57,7 +57,9 @@ struct SurfaceFitSummary {
   std::vector<int>
       stretched_vertices;  ///< of those, by index: stretched beyond SurfaceFitOptions::max_stretch
   std::vector<AnchorGivenWay> anchors_given_way;
-  std::size_t off_surface_anchors = 0;  ///< too far from the source's surface to say where it goes
+  bool tested_anchors = false;               ///< whether outliers among them would have been found
+  std::vector<std::size_t> outlier_anchors;  ///< of the fit's anchors, left out of it
+  std::size_t off_surface_anchors = 0;       ///< too far from the source's surface to say where it goes
   double seconds = 0;
 };
 
@@ -87,6 +89,7 @@ struct SurfaceFitInput {
   /// what is excluded attracts nothing. The deformation graph only.
   FacePatches source_patches = {};
   FacePatches target_patches = {};
+  std::vector<char> anchor_doubted = {};  ///< k: whether it may be an outlier; empty: none may
 
   /// How many times as large the target is (power_of_two_scale, length.h), by the warp.
   double size_scale() const;

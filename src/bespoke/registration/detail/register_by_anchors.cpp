@@ -8,23 +8,66 @@
 #include "bespoke/anchor_checks/stretching_anchors.h"
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/registration/detail/align_by_anchors.h"
-#include "bespoke/registration/detail/anchor_outliers.h"
-#include "bespoke/registration/detail/rejected_anchors.h"
 #include "bespoke/stopwatch.h"
+#include "bespoke/surface_fit/deformation_graph_settings.h"
 
 namespace bespoke {
 namespace {
 
+/// A registration, and the anchors that it was made by.
+struct RegistrationByAnchors {
+  Registration registration;
+  EstimatedAnchors estimated;        // without those that the fit left out
+  std::vector<std::size_t> numbers;  // of the fit's anchors, among those given
+};
+
+enum class Pairs { doubted, trusted };
+
+/// One flag a pair: whether the fit may leave it out. Pairs with a given accuracy are taken as they are,
+/// those of curves and counterparts are no anchors.
+std::vector<char> doubted_pairs(const RegistrationTask& task, const EstimatedAnchors& estimated,
+                                std::size_t count) {
+  const std::vector<AnchorPair>& given = task.problem.anchors.pairs;
+  std::vector<char> doubted(count, 0);
+  for (std::size_t k = 0; k < estimated.kept.size(); ++k) {
+    const std::size_t number = estimated.kept[k];
+    doubted[k] = number < given.size() && has_no_given_sigma(given[number]);
+  }
+  return doubted;
+}
+
+/// Whether there are enough of them for the others to tell which are wrong.
+bool may_leave_out(const RegistrationTask& task, const EstimatedAnchors& estimated) {
+  const std::vector<char> doubted = doubted_pairs(task, estimated, estimated.kept.size());
+  return std::count(doubted.begin(), doubted.end(), 1) >= OutlierAnchorSettings().min_doubted;
+}
+
+/// Without the pairs that the fit left out.
+EstimatedAnchors without_outliers(EstimatedAnchors estimated, const Registration& registration,
+                                  const RegistrationTask& task) {
+  std::vector<RejectedAnchor> left_out;
+  for (const std::size_t k : registration.summary.surface->outlier_anchors) {
+    const AnchorPair& pair = task.problem.anchors.pairs[estimated.kept[k]];
+    const Points place = registered_with_source(registration, task.problem.source, Points(pair.a));
+    left_out.push_back({estimated.kept[k], (place - pair.b).norm()});
+  }
+  return without(std::move(estimated), left_out);
+}
+
 /// By anchors and by what is known of places far from them: aligned (IV.A, IV.B), then fitted (IV.C).
-Registration register_by_pairs(const RegistrationTask& task, const EstimatedAnchors& estimated,
-                               const std::vector<AnchorPair>& counterparts, const Progress& progress) {
+RegistrationByAnchors register_by_pairs(const RegistrationTask& task, EstimatedAnchors estimated,
+                                        const std::vector<AnchorPair>& counterparts, Pairs which,
+                                        const Progress& progress) {
   std::vector<AnchorPair> leading = task.of_parts;
   leading.insert(leading.end(), counterparts.begin(), counterparts.end());
   AnchorAlignment aligned = align_by_anchors(task.problem, estimated, leading, progress);
   const PointPairs& pairs = aligned.pairs;
+  std::vector<char> doubted;
+  if (which == Pairs::doubted)
+    doubted = doubted_pairs(task, estimated, static_cast<std::size_t>(pairs.sources.cols()));
   SurfaceFit fit =
       fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources, pairs.targets,
-                   pairs.weights, pairs.sigmas, task.patches.source, task.patches.target},
+                   pairs.weights, pairs.sigmas, task.patches.source, task.patches.target, std::move(doubted)},
                   task.options, progress);
   Registration registration;
   registration.target_from_source = aligned.target_from_source;
@@ -34,78 +77,9 @@ Registration register_by_pairs(const RegistrationTask& task, const EstimatedAnch
   registration.summary.coarse = std::move(aligned.coarse);
   registration.summary.surface = std::move(fit.summary);
   registration.summary.surface_method = task.options.method;
-  return registration;
-}
-
-/// A registration, and the anchors that it was made by.
-struct RegistrationByAnchors {
-  Registration registration;
-  EstimatedAnchors estimated;
-};
-
-/// The source registered by its estimated pairs without some of them.
-struct RegistrationTrial {
-  const RegistrationTask& task;
-  const EstimatedAnchors& estimated;
-  const AnchorOutlierTest& outlier_test;
-  const Progress& progress;
-  Registration registered;  // the last
-
-  /// Those of the pairs left out that the surfaces then displace.
-  std::vector<RejectedAnchor> register_without(const std::vector<std::size_t>& left_out) {
-    std::vector<RejectedAnchor> all;
-    for (const std::size_t index : left_out) all.push_back({index, 0});
-    registered = register_by_pairs(task, without(estimated, all), {}, progress);
-    return outlier_test.displaced_pairs(registered_vertices(registered), left_out);
-  }
-};
-
-/// What tells outliers.
-struct OutlierSigns {
-  const AnchorOutlierTest& test;
-  const AnchorAudit& audit;
-  const std::vector<std::size_t>& suspects;
-};
-
-/// Registers the source without the pairs that the surfaces then displace, and keeps that if it explains the
-/// target no worse than by all. Where it explains it worse, right pairs may have been rejected beside wrong
-/// ones: then each of a few is tested alone. Of a few rejected pairs those are reinstated that are no
-/// suspects, and with which the target is explained no worse, without the others.
-RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const RegistrationByAnchors& by_all,
-                                          const OutlierSigns& signs, const Progress& progress) {
-  constexpr std::size_t few = 6;  // each is a surface fitting
-  RegistrationTrial trial{task, by_all.estimated, signs.test, progress, by_all.registration};
-  const RejectAnchors reject = [&](const auto& left_out) { return trial.register_without(left_out); };
-  const PlacementScore placement(task.problem.source, task.problem.target);
-  const auto misfit = [&](const Registration& registered) {
-    return placement(registered_vertices(registered)).misfit();
-  };
-  const double trusting = misfit(by_all.registration);
-
-  std::vector<RejectedAnchor> rejected = rejected_anchors(signs.suspects, reject);
-  double undoubted = misfit(trial.registered);
-  if (rejected.size() > 1 && rejected.size() <= few && undoubted > trusting) {
-    rejected = rejected_anchors(rejected_alone(rejected, reject), reject);
-    undoubted = misfit(trial.registered);
-  }
-  if (rejected.empty() || undoubted > trusting) return by_all;
-
-  Registration best = trial.registered;
-  if (rejected.size() == 1 || rejected.size() > few)
-    return {std::move(best), without(by_all.estimated, rejected)};
-  const ReinstateAnchor reinstate = [&](std::size_t anchor, const std::vector<std::size_t>& others) {
-    trial.register_without(others);
-    const std::vector<std::size_t> suspect_pairs =
-        signs.test.suspects(registered_vertices(trial.registered), signs.audit);
-    const double with_anchor = misfit(trial.registered);
-    if (std::binary_search(suspect_pairs.begin(), suspect_pairs.end(), anchor) || with_anchor > undoubted)
-      return false;
-    best = trial.registered;
-    undoubted = with_anchor;
-    return true;
-  };
-  rejected = not_reinstated(rejected, reinstate);
-  return {std::move(best), without(by_all.estimated, rejected)};
+  std::vector<std::size_t> numbers = estimated.kept;
+  estimated = without_outliers(std::move(estimated), registration, task);
+  return {std::move(registration), std::move(estimated), std::move(numbers)};
 }
 
 GeodesicCounterparts remote_counterparts(const RegistrationTask& task, const Anchors& anchors,
@@ -134,29 +108,67 @@ bool is_suspect(const PlacementFigures& registered) {
 /// Where some parts of the source are far from all pairs, and came to lie elsewhere than distances along the
 /// surfaces put them: registers the source by these too, and keeps that if it explains the target clearly
 /// better.
-Registration register_by_counterparts(const RegistrationTask& task, const RegistrationByAnchors& by_anchors,
-                                      const Progress& progress) {
+RegistrationByAnchors with_counterparts(const RegistrationTask& task, RegistrationByAnchors by_anchors,
+                                        const Progress& progress) {
   constexpr double accuracy = 0.01;        // of the target's diagonal (tests/accuracy/tuning.md)
   constexpr double far_off = 3;            // standard deviations
   constexpr double clearly_better = 0.99;  // ratio of the misfits (tests/accuracy/tuning.md)
   const Stopwatch watch;
-  const auto& [registration, estimated] = by_anchors;
+  const Registration& registration = by_anchors.registration;
+  const EstimatedAnchors& estimated = by_anchors.estimated;
   const GeodesicCounterparts counterparts = remote_counterparts(task, estimated.anchors, progress);
-  if (counterparts.sources.cols() == 0) return registration;
+  if (counterparts.sources.cols() == 0) return by_anchors;
   const double sigma = accuracy * diagonal(task.problem.target.vertices);
   const Points places = registered_with_source(registration, task.problem.source, counterparts.sources);
   const auto displaced = ((places - counterparts.targets).colwise().norm().array() > far_off * sigma).count();
-  if (displaced < 2) return registration;  // one alone may be mistaken
+  if (displaced < 2) return by_anchors;  // one alone may be mistaken
   const PlacementScore placement(task.problem.source, task.problem.target);
   const PlacementFigures figures = placement(registered_vertices(registration));
-  if (!is_suspect(figures)) return registration;
+  if (!is_suspect(figures)) return by_anchors;
 
-  Registration trial = register_by_pairs(task, estimated, pairs_of(counterparts, sigma), progress);
-  const bool taken = placement(registered_vertices(trial)).misfit() < clearly_better * figures.misfit();
-  Registration result = taken ? std::move(trial) : registration;
-  result.summary.counterparts = {static_cast<std::size_t>(counterparts.sources.cols()),
-                                 static_cast<std::size_t>(displaced), taken, watch.seconds()};
+  RegistrationByAnchors trial =
+      register_by_pairs(task, estimated, pairs_of(counterparts, sigma), Pairs::trusted, progress);
+  const bool taken =
+      placement(registered_vertices(trial.registration)).misfit() < clearly_better * figures.misfit();
+  RegistrationByAnchors result = std::move(taken ? trial : by_anchors);
+  result.registration.summary.counterparts = {static_cast<std::size_t>(counterparts.sources.cols()),
+                                              static_cast<std::size_t>(displaced), taken, watch.seconds()};
   return result;
+}
+
+double misfit(const RegistrationByAnchors& fit, const RegistrationTask& task) {
+  return PlacementScore(task.problem.source, task.problem.target)(registered_vertices(fit.registration))
+      .misfit();
+}
+
+bool has_left_out(const RegistrationByAnchors& fit) {
+  return !fit.registration.summary.surface->outlier_anchors.empty();
+}
+
+/// Without the outliers that the fit finds. Where the anchors pose the source, it is posed anew without them,
+/// until no more are found, and what explains the target worse than a fit with all pairs is not kept: in a
+/// pose that the others do not tell, a right pair looks like an outlier.
+RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
+                                          const Progress& progress) {
+  constexpr int max_rounds = 3;
+  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, Pairs::doubted, progress);
+  if (!has_left_out(fit) || !fit.registration.summary.surface->posed_by_anchors) return fit;
+  RegistrationByAnchors best = register_by_pairs(task, estimated, {}, Pairs::trusted, progress);
+  for (int round = 0; round < max_rounds && has_left_out(fit); ++round) {
+    fit = register_by_pairs(task, fit.estimated, {}, Pairs::doubted, progress);
+    if (misfit(fit, task) < misfit(best, task)) best = fit;
+  }
+  return best;
+}
+
+/// Of what the pairs alone make suspicious, what the fit did not test: the surfaces explain what it kept.
+AnchorAudit unexplained(const Anchors& given, const SurfaceFitSummary& surface) {
+  AnchorAudit audit = audit_anchors(given);
+  if (!surface.tested_anchors) return audit;
+  std::erase_if(audit.suspicious, [&](const SuspiciousAnchor& anchor) {
+    return has_no_given_sigma(given.pairs[anchor.index]);
+  });
+  return audit;
 }
 
 /// Without those of curves.
@@ -166,12 +178,13 @@ std::vector<double> given_sigmas(const EstimatedAnchors& estimated, const Anchor
 }
 
 /// What the surface fitting did not meet is not exact for those after it.
-EstimatedAnchors with_given_way(EstimatedAnchors estimated, const Anchors& given,
-                                const std::vector<AnchorGivenWay>& given_way) {
-  for (const AnchorGivenWay& anchor : given_way) {
-    if (anchor.index >= estimated.kept.size()) continue;  // a counterpart
-    const std::size_t number = estimated.kept[anchor.index];
-    estimated.anchors.pairs[anchor.index].sigma = anchor.sigma;
+EstimatedAnchors with_given_way(RegistrationByAnchors fit, const Anchors& given) {
+  EstimatedAnchors estimated = std::move(fit.estimated);
+  for (const AnchorGivenWay& anchor : fit.registration.summary.surface->anchors_given_way) {
+    if (anchor.index >= fit.numbers.size()) continue;  // a counterpart
+    const std::size_t number = fit.numbers[anchor.index];
+    const auto kept = std::lower_bound(estimated.kept.begin(), estimated.kept.end(), number);
+    estimated.anchors.pairs[static_cast<std::size_t>(kept - estimated.kept.begin())].sigma = anchor.sigma;
     estimated.sigmas[number] = anchor.sigma;
     if (number < given.pairs.size()) estimated.accuracy.given_way.push_back({number, anchor.sigma});
   }
@@ -191,30 +204,20 @@ Points registered_with_source(const Registration& registration, const TriangleMe
 
 Registration register_by_anchors(const RegistrationTask& task, const Anchors& anchors,
                                  const Progress& progress) {
-  const TriangleMesh& source = task.problem.source;
-  const TriangleMesh& target = task.problem.target;
   const Anchors& given = task.problem.anchors;
-  EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, source, target);
+  EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, task.problem.source, task.problem.target);
   // The printed method takes all pairs.
   const bool doubts = task.options.method == SurfaceFitMethod::deformation_graph;
-  if (doubts) let_contradicting_share(estimated, given.pairs.size(), task.options.max_stretch);
-  Registration by_all = register_by_pairs(task, estimated, {}, progress);
-  RegistrationByAnchors best{std::move(by_all), std::move(estimated)};
-  AnchorAudit audit = audit_anchors(given);
-  if (doubts) {
-    const AnchorOutlierTest outlier_test(source, target, given, best.estimated);
-    const std::vector<std::size_t> suspects =
-        outlier_test.suspects(registered_vertices(best.registration), audit);
-    if (!suspects.empty()) best = register_by_inliers(task, best, {outlier_test, audit, suspects}, progress);
-    best.registration = register_by_counterparts(task, best, progress);
-    audit = outlier_test.unexplained(std::move(audit), registered_vertices(best.registration));
-  }
-  Registration result = std::move(best.registration);
+  if (doubts && !may_leave_out(task, estimated))
+    let_contradicting_share(estimated, given.pairs.size(), task.options.max_stretch);
+  RegistrationByAnchors best = doubts ? register_by_inliers(task, estimated, progress)
+                                      : register_by_pairs(task, estimated, {}, Pairs::trusted, progress);
+  if (doubts) best = with_counterparts(task, std::move(best), progress);
+  Registration result = best.registration;
   CoarseSummary& coarse = *result.summary.coarse;
   coarse.contradicting = contradicting_anchors(given, given_sigmas(best.estimated, given));
-  coarse.audit = std::move(audit);
-  EstimatedAnchors used =
-      with_given_way(std::move(best.estimated), given, result.summary.surface->anchors_given_way);
+  coarse.audit = unexplained(given, *result.summary.surface);
+  EstimatedAnchors used = with_given_way(std::move(best), given);
   result.summary.accuracy = std::move(used.accuracy);
   result.anchor_sigma = given_sigmas(used, given);
   result.anchors = std::move(used.anchors);

@@ -31,6 +31,7 @@ struct SurfaceAnchors {
   Eigen::VectorXd weights, sigmas;
   std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
   std::vector<Eigen::Index> given;  // k: columns among all anchors of the fit
+  std::vector<char> doubted;        // k, or empty
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
@@ -63,7 +64,11 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
                          input.anchor_weights(near),
                          sigmas(near),
                          {},
-                         near};
+                         near,
+                         {}};
+  if (!input.anchor_doubted.empty())
+    for (const Eigen::Index k : near)
+      anchors.doubted.push_back(input.anchor_doubted[static_cast<std::size_t>(k)]);
   for (Eigen::Index k = 0; k < anchors.weights.size(); ++k) {
     if (anchors.sigmas[k] > 0)
       anchors.weights[k] = std::numeric_limits<double>::infinity();  // limited by σ instead
@@ -148,7 +153,7 @@ Alignment align(const SurfaceFitInput& input, const TriangleMesh& surface, const
 struct Scene {
   TriangleMesh surface;
   const TargetSurface& target;
-  const SurfaceAnchors& anchors;
+  SurfaceAnchors& anchors;
   Points exact_sources;  // 3×k, carried with the surface
   Points exact_targets;  // 3×k
   double diagonal;
@@ -219,7 +224,8 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
   std::optional<PosingByAnchors> posing;
   const auto degrees_by_anchors = [&] {
-    posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal},
+    posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal,
+                                   scene.anchors.doubted},
                    settings.pose);
     summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
     return summary.anchor_turn_degrees;
@@ -227,7 +233,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
                         scene.anchors.weights, scene.diagonal, how.options.boundaries, scene.anchors.sigmas,
-                        scene.patches, is_posed},
+                        scene.patches, is_posed, scene.anchors.doubted},
                        settings.nodes, how.progress);
   };
   if (are_out_of_reach(scene, anchors, settings)) {
@@ -252,7 +258,15 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Defo
   const NodeFit nodes = fit_nodes(scene, aligned_anchors, how, summary);
   const Points shape = std::exchange(scene.surface.vertices, nodes.vertices);
   scene.hidden = nodes.hidden;
+  std::erase_if(scene.anchors.exact, [&](Eigen::Index k) {
+    return std::find(nodes.outliers.begin(), nodes.outliers.end(), k) != nodes.outliers.end();
+  });
+  summary.tested_anchors = nodes.tested_anchors;
+  for (const Eigen::Index k : nodes.outliers)
+    summary.outlier_anchors.push_back(
+        static_cast<std::size_t>(scene.anchors.given[static_cast<std::size_t>(k)]));
   scene.exact_sources = nodes.anchor_sources(Eigen::all, scene.anchors.exact);
+  scene.exact_targets = scene.anchors.exact_targets();
   const DetailFit details = fit_details(scene.details(), settings.details, progress);
   FaceRepairSettings face_repair = settings.face_repair;
   face_repair.max_stretch = options.max_stretch;
@@ -303,7 +317,7 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   PatchedMesh source = refined_source(input, settings.edges_per_area);
   const PatchedMesh attracting = without_excluded(input.target, input.target_patches);
   const TargetSurface target(attracting.mesh, attracting.patches);
-  const SurfaceAnchors anchors = anchors_of(input, settings.nodes);
+  SurfaceAnchors anchors = anchors_of(input, settings.nodes);
   const auto [aligned, suffices] =
       align(input, without_excluded(source.mesh, source.patches).mesh, target, anchors, settings.similarity);
   source.mesh.vertices = aligned * source.mesh.vertices;

@@ -7,6 +7,8 @@
 
 namespace bespoke {
 
+class AnchorPosterior;
+
 /// A surface bent by its anchors alone.
 struct AnchorPose {
   Points vertices;        ///< 3×n, mesh units
@@ -14,18 +16,20 @@ struct AnchorPose {
 };
 
 struct AnchorPoseInput {
-  const TriangleMesh& rest;       ///< aligned with the targets by one similarity
-  const Points& anchor_sources;   ///< 3×k, aligned like `rest`; need not lie on it
-  const Points& anchor_targets;   ///< 3×k
-  const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
-  double diagonal = 0;            ///< of `rest`
+  const TriangleMesh& rest;        ///< aligned with the targets by one similarity
+  const Points& anchor_sources;    ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_targets;    ///< 3×k
+  const Eigen::VectorXd& sigmas;   ///< k, accuracies of the anchors, ≥ 0, mesh units
+  double diagonal = 0;             ///< of `rest`
+  std::vector<char> doubted = {};  ///< k: whether an anchor may be an outlier; empty: none may
 };
 
 /// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets
 /// with
 ///   min Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ,
 /// h the spacing of the nodes, before any closest point is queried. Alternates between similarities and
-/// places, coarse nodes first. Without anchors nothing moves. Same bytes at any thread count.
+/// places, coarse nodes first, anew from rest without the outliers that AnchorPosterior finds. Without
+/// anchors nothing moves. Same bytes at any thread count.
 class PosingByAnchors {
  public:
   /// Poses the few nodes. What `input` refers to must outlive it. Throws SolverError.
@@ -40,9 +44,12 @@ class PosingByAnchors {
 
  private:
   class Nodes;
+  void pose();
+
   AnchorPoseInput input_;
   PoseSettings settings_;
   std::unique_ptr<Nodes> coarse_;  // null without anchors
+  std::unique_ptr<AnchorPosterior> posterior_;
 };
 
 }  // namespace bespoke

@@ -92,7 +92,9 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       anchors_(node_anchors(input, rest_)),
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
       surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
-      limits_(input.anchor_sigmas, surface_.area, input.diagonal, settings.anchors) {
+      limits_(input.anchor_sigmas, surface_.area, input.diagonal, settings.anchors),
+      posterior_({input.anchor_doubted, input.anchor_sigmas, surface_.area, input.diagonal},
+                 settings.outliers) {
   fit_.vertices = input.rest.vertices;
 }
 
@@ -132,6 +134,8 @@ NodeFit NodeFitting::fit_fine() {
   set_zero(fit_.hidden, areas_);
   iterate(*fine_, settings_.levels.back());
   fit_.anchor_sources = carried(input_, anchors_, fit_.vertices);
+  fit_.tested_anchors = posterior_.is_active();
+  fit_.outliers = posterior_.outliers();
   fit_.matched_boundaries = boundaries_.matched_boundaries();
   return std::move(fit_);
 }
@@ -161,10 +165,27 @@ void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
                     smoothing_length(settings_, fit_.iterations, input_.diagonal),
                     settings_.anchor_growth * (iteration + 1),
                     {},
-                    fit_.rigidity};
+                    fit_.rigidity,
+                    posterior_.inliers()};
     goals.anchor_limits = next_limits(goals);
     fit_.vertices = system.solve(goals);
+    if (posterior_.is_active() && &level == &settings_.levels.front())
+      fit_.vertices = solved_without_outliers(system, goals);
   }
+}
+
+/// Expectation and maximisation in turn, from a solution for these goals, until the outliers stay the same.
+Points NodeFitting::solved_without_outliers(NodeSystem& system, NodeGoals goals) {
+  constexpr int max_rounds = 5;
+  Points vertices = fit_.vertices;
+  for (int round = 0; round < max_rounds; ++round) {
+    const std::vector<Eigen::Index> before = posterior_.outliers();
+    posterior_.update(system.left_out());
+    if (posterior_.outliers() == before) break;
+    goals.anchor_inliers = posterior_.inliers();
+    vertices = system.solve(goals);
+  }
+  return vertices;
 }
 
 /// Limits for the next solve; empty where every anchor is exact or weighted.

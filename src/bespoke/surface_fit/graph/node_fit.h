@@ -6,6 +6,7 @@
 #include "bespoke/progress.h"
 #include "bespoke/surface_fit/deformation_graph_settings.h"
 #include "bespoke/surface_fit/graph/anchor_limits.h"
+#include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/node_system.h"
 #include "bespoke/surface_fit/matching/boundary_match.h"
 #include "bespoke/surface_fit/matching/target_surface.h"
@@ -29,16 +30,19 @@ struct NodeFitInput {
   Eigen::VectorXd anchor_sigmas = {};
   /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
   FacePatches patches = {};
-  bool is_posed = false;  ///< whether anchors have bent `rest`
+  bool is_posed = false;                  ///< whether anchors have bent `rest`
+  std::vector<char> anchor_doubted = {};  ///< k: whether it may be an outlier; empty: none may
 };
 
 struct NodeFit {
-  Points vertices;                ///< 3×n, of the deformed `rest`
-  Points coarse_vertices;         ///< 3×n, as the few nodes of the first level left them
-  Points anchor_sources;          ///< 3×k, carried along
-  Cavities unmatched_cavities;    ///< of `rest`
-  std::vector<Cavity> unmatched;  ///< of them, those that the target lacks
-  std::vector<char> hidden;       ///< n: in a cavity that the target lacks, without any pair
+  Points vertices;                     ///< 3×n, of the deformed `rest`
+  Points coarse_vertices;              ///< 3×n, as the few nodes of the first level left them
+  Points anchor_sources;               ///< 3×k, carried along
+  bool tested_anchors = false;         ///< whether outliers among them would have been found
+  std::vector<Eigen::Index> outliers;  ///< anchors that the fit left out
+  Cavities unmatched_cavities;         ///< of `rest`
+  std::vector<Cavity> unmatched;       ///< of them, those that the target lacks
+  std::vector<char> hidden;            ///< n: in a cavity that the target lacks, without any pair
   int iterations = 0;
   int matched_boundaries = 0;
   double rigidity = 1;  ///< g of the pair, from NodeFitting::fit_coarse
@@ -65,6 +69,7 @@ class NodeFitting {
   std::unique_ptr<NodeSystem> system(const NodeLevel& level) const;
   void iterate(NodeSystem& system, const NodeLevel& level);
   std::vector<double> next_limits(const NodeGoals& goals);
+  Points solved_without_outliers(NodeSystem& system, NodeGoals goals);
   void find_unmatched_cavities();
 
   const NodeFitInput input_;
@@ -77,6 +82,7 @@ class NodeFitting {
   BoundaryMatcher boundaries_;
   NodeSurface surface_;
   AnchorLimits limits_;
+  AnchorPosterior posterior_;
   std::vector<char> target_in_cavity_;  // found with the cavities
   NodeFit fit_;
   std::unique_ptr<NodeSystem> fine_;  // of the second level, from the end of the first on

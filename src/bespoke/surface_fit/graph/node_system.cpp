@@ -30,7 +30,7 @@ NodeSystem::NodeSystem(const NodeSurface& surface, DeformationNodes nodes,
               {nodes_.at_point(anchor.foot, surface.rest.faces), anchor.displacement, anchor.weight});
         return combined;
       }()),
-      system_(adjacency()),
+      system_(adjacency(), nodes_.rest),
       displacements_(Points::Zero(3, nodes_.size())) {}
 
 std::vector<std::vector<int>> NodeSystem::adjacency() const {
@@ -78,8 +78,26 @@ Points NodeSystem::solve(const NodeGoals& goals) {
   for (const EnergyTerm term : energy_terms) energy.add_step(term, system_);
   for (int node = 0; node < nodes_.size(); ++node)
     system_.add(node, node, settings_.free_floating * Matrix3::Identity());
+  anchor_weights_.clear();
+  for (std::size_t k = 0; k < anchors_.size(); ++k) anchor_weights_.push_back(energy.anchor_weight(k));
   displacements_ = system_.solve();
   return moved_vertices();
+}
+
+LeftOutAnchors NodeSystem::left_out() const {
+  const auto count = static_cast<Eigen::Index>(anchors_.size());
+  LeftOutAnchors result{Eigen::VectorXd(count), Eigen::VectorXd(count)};
+  parallel_for(anchors_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      Vector3 residual = -anchors_[k].displacement;
+      for (const auto& [node, weight] : anchors_[k].foot) residual += weight * displacements_.col(node);
+      const Matrix3 compliance = system_.compliance(anchors_[k].foot);
+      const Matrix3 without = (Matrix3::Identity() - anchor_weights_[k] * compliance).inverse();
+      result.distances[static_cast<Eigen::Index>(k)] = (without * residual).norm();
+      result.compliances[static_cast<Eigen::Index>(k)] = (without * compliance).trace() / 3;
+    }
+  });
+  return result;
 }
 
 Points NodeSystem::moved_vertices() const {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/block_system.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
 #include "bespoke/surface_fit/graph/registration_energy.h"
@@ -23,6 +24,9 @@ class NodeSystem {
   /// nothing else does. Returns where the vertices go, 3×n. Throws SolverError.
   Points solve(const NodeGoals& goals);
 
+  /// Each anchor against the last step without it.
+  LeftOutAnchors left_out() const;
+
   /// Half of the nodes have edges that differ less from the turned and scaled ones of the shape: root mean
   /// square over the node, of the edges' length.
   double median_strain() const;
@@ -38,6 +42,7 @@ class NodeSystem {
   std::vector<FollowedAnchor> anchors_;
   BlockSystem system_;
   Points displacements_;
+  std::vector<double> anchor_weights_;  // of the last step
 };
 
 }  // namespace bespoke

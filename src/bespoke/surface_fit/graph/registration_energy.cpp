@@ -108,17 +108,19 @@ void RegistrationEnergy::for_each_cut(const Visitor& visit) const {
   }
 }
 
+double RegistrationEnergy::anchor_weight(std::size_t anchor) const {
+  const double given = input_.anchors[anchor].weight;
+  if (!std::isinf(given)) return given / input_.settings.whole_surface_weight;
+  double weight = goals_.exact_anchor_weight / double(input_.anchors.size());
+  if (!goals_.anchor_limits.empty()) weight = std::min(weight, goals_.anchor_limits[anchor]);
+  return goals_.anchor_inliers.empty() ? weight : goals_.anchor_inliers[anchor] * weight;
+}
+
 template <class Visitor>
 void RegistrationEnergy::for_each_anchor(const Visitor& visit) const {
-  for (std::size_t k = 0; k < input_.anchors.size(); ++k) {
-    const FollowedAnchor& anchor = input_.anchors[k];
-    double weight = anchor.weight / input_.settings.whole_surface_weight;
-    if (std::isinf(anchor.weight)) {
-      weight = goals_.exact_anchor_weight / double(input_.anchors.size());
-      if (!goals_.anchor_limits.empty()) weight = std::min(weight, goals_.anchor_limits[k]);
-    }
-    visit(anchor.foot, Matrix3(weight * Matrix3::Identity()), anchor.displacement);
-  }
+  for (std::size_t k = 0; k < input_.anchors.size(); ++k)
+    visit(input_.anchors[k].foot, Matrix3(anchor_weight(k) * Matrix3::Identity()),
+          input_.anchors[k].displacement);
 }
 
 template <class Visitor>

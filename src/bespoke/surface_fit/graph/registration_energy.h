@@ -28,6 +28,8 @@ struct NodeGoals {
   /// k: the most that each anchor of infinite weight may pull (anchor_limits.h); empty: no limit.
   std::vector<double> anchor_limits = {};
   double rigidity = 1;  ///< g, ≥ 1: how much more than other pairs this one keeps its shape
+  /// k: by which the anchors' weights are multiplied (AnchorPosterior); empty: 1.
+  std::vector<double> anchor_inliers = {};
 };
 
 /// The surface that the nodes deform.
@@ -93,6 +95,9 @@ class RegistrationEnergy {
 
   /// displacements: 3×k.
   double value(EnergyTerm term, const Points& displacements) const;
+
+  /// w_k of an anchor.
+  double anchor_weight(std::size_t anchor) const;
 
   /// Adds the normal equations of the Gauss–Newton step from `now`: R_j stays.
   void add_step(EnergyTerm term, BlockSystem& system) const;

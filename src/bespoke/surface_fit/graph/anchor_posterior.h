@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "bespoke/surface_fit/deformation_graph_settings.h"
+#include "bespoke/types.h"
+
+namespace bespoke {
+
+/// Which anchors are to be tested, and against what.
+struct DoubtedAnchors {
+  std::vector<char> doubted;  ///< k: whether it may be an outlier; empty: none may
+  Eigen::VectorXd sigmas;     ///< k, ≥ 0, mesh units; empty is 0 for all
+  double area = 0;            ///< of the surface, mesh units squared
+  double diagonal = 0;        ///< mesh units
+};
+
+/// Each anchor against the fit without it, one Gauss-Newton step from the fit with all: the residual over one
+/// less its leverage (Cook, Weisberg 1982).
+struct LeftOutAnchors {
+  Eigen::VectorXd distances;    ///< k: of the target from where the others put the source, mesh units
+  Eigen::VectorXd compliances;  ///< k, > 0: how freely the source moves there without it; of any one unit
+};
+
+/// How probably each anchor is an inlier: a mixture of anchors that lie normally distributed about where the
+/// others and the surfaces put them, and of outliers, which lie anywhere on the surface,
+///   p_k = (1 − ε) N(e_k; v_k) / ((1 − ε) N(e_k; v_k) + ε / A),  v_k = s² c_k + σ_k²,
+/// e and c as LeftOutAnchors has them: the predictive distribution of a linear Gaussian model, whose scale s²
+/// is by the median of e² / c. v has a floor. Expectation maximisation (Dempster, Laird, Rubin 1977) with the
+/// fit as its other half. Not thread-safe.
+class AnchorPosterior {
+ public:
+  AnchorPosterior(DoubtedAnchors anchors, const OutlierAnchorSettings& settings);
+
+  /// Whether enough anchors are doubted for the others to tell.
+  bool is_active() const { return active_; }
+  /// Where more than a third would be outliers, the mixture tells nothing: all stay.
+  void update(const LeftOutAnchors& left_out);
+  /// k; all 1 before the first update.
+  const std::vector<double>& inliers() const { return inliers_; }
+  /// The probable outliers, ascending.
+  std::vector<Eigen::Index> outliers() const;
+
+ private:
+  DoubtedAnchors anchors_;
+  OutlierAnchorSettings settings_;
+  bool active_ = false;
+  std::vector<double> inliers_;
+};
+
+}  // namespace bespoke
