@@ -151,8 +151,8 @@ std::vector<DerivedStep> fit_inverses(const Asset& b_from_a, const TriangleMesh&
     const InverseFit fit{sizes[k + 1] * b_from_a.record.lambda,
                          options.tolerance * power_of_two_scale(sizes[k]) / static_cast<double>(count),
                          (count > 1 ? 2 : 1) * max_nodes / count, options.max_memory};
-    steps.push_back(bake_step(
-        *inverse_elements({map, b_from_a.target_from_source, before[k]}, fit, progress), options, progress));
+    steps.push_back(bake_step(*inverse_elements({map, b_from_a.target_from_source, before[k]}, fit, progress),
+                              options, progress));
   }
   return steps;
 }
