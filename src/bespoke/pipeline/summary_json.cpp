@@ -57,8 +57,6 @@ Json to_json(const BakeSummary& summary) {
                {"tolerance_met", summary.tolerance_met},
                {"turned_faces", summary.misoriented_faces},
                {"refined_folds", summary.refined_folds},
-               {"repaired_cells", summary.repaired_cells},
-               {"repair_cost", summary.repair_cost},
                {"folded_cells", summary.folded_cells},
                {"evaluated_points", summary.evaluated_points},
                {"peak_bytes", summary.peak_bytes}};
@@ -234,7 +232,6 @@ Json to_json(const ElasticSummary& summary) {
   json["turn"] = summary.motion.turn;
   json["stretch"] = summary.motion.stretch;
   if (summary.divided_where_missed) json["divided_where_missed"] = true;
-  if (summary.divided_steps > 0) json["divided_steps"] = summary.divided_steps;
   for (const ElasticFindings& found : summary.later_steps)
     add_figures(found, json["later_steps"].emplace_back());
   return json;
