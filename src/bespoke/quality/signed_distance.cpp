@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "bespoke/mesh/closest_point.h"
@@ -67,6 +68,12 @@ struct SignedDistance::Surface {
     at_edges = edge_normals(joined, table, normals);
   }
 
+  /// max_distance: within which there is one, but for rounding.
+  SurfacePoint closest(const Vector3& x, double max_distance) const {
+    const std::optional<SurfacePoint> within = tree.closest(x, {.max_distance = max_distance});
+    return within ? *within : *tree.closest(x);
+  }
+
   /// behind: of the closest point, by the normal there.
   bool is_inside(const Vector3& x, bool behind) const {
     return closed ? winding.whole(x) != 0 : behind || winding.exceeds_half(x);
@@ -110,8 +117,7 @@ SignedDistance::Values SignedDistance::operator()(const Points& x) const {
       const Vector3 point = x.col(static_cast<Eigen::Index>(i));
       // Points in turn are often near each other: the surface is no farther than by way of the last one.
       const double step = (point - before).norm();
-      const SurfacePoint at =
-          *surface_->tree.closest(point, {.max_distance = (distance_before + step) * (1 + slack)});
+      const SurfacePoint at = surface_->closest(point, (distance_before + step) * (1 + slack));
       const Vector3 normal = surface_->normal_at(at);
       const double distance = std::sqrt(at.squared_distance);
       // Where none of a closed surface is between, neither is another side of it.
