@@ -155,7 +155,7 @@ class SmoothDisplacement {
     std::vector<char> found(static_cast<std::size_t>(weights.size()), 0);
     std::vector<int> all, ring, next;
     for (int i = 0; i < weights.size(); ++i)
-      if (weights[i] > 0) ring.push_back(i), found[static_cast<std::size_t>(i)] = 1;
+      if (weights[i] > 0 && !std::exchange(found[static_cast<std::size_t>(i)], 1)) ring.push_back(i);
     for (int rings = 0;; ++rings) {
       all.insert(all.end(), ring.begin(), ring.end());
       if (rings == affected_rings || ring.empty()) break;
