@@ -8,8 +8,6 @@
 
 #include "bespoke/certificate/certificate.h"
 #include "bespoke/error.h"
-#include "bespoke/lattice/pyramid.h"
-#include "bespoke/mapping/affine_map.h"
 #include "support/error_message.h"
 #include "support/instruction_sets.h"
 #include "support/random_points.h"
@@ -166,24 +164,6 @@ TEST(FitFiniteElements, RefusesWhatItCannotFit) {
   FiniteElementOptions squeezed = options_for(0.3);
   squeezed.max_squeeze = 1;
   EXPECT_THAT(refusal(sphere.vertices, squeezed), HasSubstr("squeeze"));
-}
-
-TEST(FitFiniteElements, AMapThatIsKnownInAllOfSpaceIsMetThere) {
-  const TriangleMesh sphere = shapes::icosphere(3);
-  const FiniteElementOptions options = options_for(0.4);
-  const FiniteElementFit fit = fit_finite_elements(sphere.vertices, bent(sphere.vertices), sphere, options);
-  // Its inverse.
-  const TriangleMesh there{(*fit.map)(sphere.vertices), sphere.faces};
-  const Points nodes = moved_nodes(fit.map->pyramid());
-  FiniteElementOptions back = options;
-  back.known = KnownSpace{inverse(fit.map->affine()), (*fit.map)(nodes), nodes};
-  const FiniteElementFit inverse_fit = fit_finite_elements(there.vertices, sphere.vertices, there, back);
-  EXPECT_GT(min_relative_determinant(*inverse_fit.map), 0.1);
-  const Points x = 1.8 * test::random_points(3000, 5);
-  const Eigen::VectorXd missed = ((*inverse_fit.map)((*fit.map)(x)) - x).colwise().norm();
-  EXPECT_LT(summarize({missed.begin(), missed.end()}).p99, 20 * options.fit_tolerance);
-  const Points far = 3 * test::sphere_points(100);
-  EXPECT_LT(((*inverse_fit.map)((*fit.map)(far)) - far).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 }  // namespace

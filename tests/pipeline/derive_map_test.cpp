@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -64,36 +63,6 @@ TEST(InvertMap, IsAnAssetThatUndoesTheOther) {
   write_asset(scratch / "back.vdb", back.asset);
   EXPECT_EQ(read_asset(scratch / "back.vdb").steps.front().pyramid.voxel_count(),
             back.asset.steps.front().pyramid.voxel_count());
-}
-
-// A sphere that grows and bends, as finite elements.
-Asset fitted_asset(int steps) {
-  const TriangleMesh source = test::sphere(Vector3::Zero(), 0.8, 3);
-  TriangleMesh fitted = source;
-  for (auto x : fitted.vertices.colwise())
-    x = 1.2 * Vector3(x[0] + 0.3 * std::sin(2 * x[1]), x[1], 0.8 * x[2]);
-  MakeMapOptions options = default_options(diagonal(source.vertices));
-  options.fit.steps = steps;
-  return make_map({source, fitted, {}, &fitted}, options).asset;
-}
-
-TEST(InvertMap, OfFiniteElementsIsFittedAndSaysItsRoundTrip) {
-  for (const int steps : {1, 2}) {
-    const Asset forth = fitted_asset(steps);
-    ASSERT_EQ(forth.steps.size(), static_cast<std::size_t>(steps));
-    const DerivedMap back =
-        invert_map(forth, derived_bake({}, tolerance_of_inverse(forth), ValuePrecision::single));
-    EXPECT_TRUE(whole_certificate(back.asset).is_bijection());
-    EXPECT_TRUE(back.bake.relaxed.empty());
-    EXPECT_EQ(back.bake.error.max, back.deviation.max);
-    EXPECT_EQ(back.asset.record.bake_error.max, back.deviation.max);
-    EXPECT_LT(back.asset.steps.front().pyramid.voxel_count(), 4'200'000u);
-    const Points x = test::sphere(Vector3::Zero(), 0.8, 4).vertices;
-    const Eigen::VectorXd missed = (whole_map(back.asset, whole_map(forth, x)) - x).colwise().norm();
-    EXPECT_LT(summarize({missed.begin(), missed.end()}).p95, 2 * back.asset.record.tolerance) << steps;
-    const Points far = 9 * test::sphere(Vector3::Zero(), 1, 1).vertices;
-    EXPECT_LT((whole_map(back.asset, whole_map(forth, far)) - far).cwiseAbs().maxCoeff(), 1e-9);
-  }
 }
 
 TEST(DerivedMaps, RecordHalfPrecisionAsFitsDo) {

@@ -38,12 +38,10 @@ void add_invert_command(CLI::App& app, const PlanHandler& handle_plan) {
       "invert", "Make the map from the target back to the source (`apply --inverse` goes back without one)");
   begin_group(*invert, input_group);
   invert->add_option("MAP", arguments->map, "Map that is proved to be one-to-one")->required();
-  add_derived_map_options(
-      *invert, arguments->options,
-      "Largest difference between the baked and the exact inverse, mesh units or % of "
-      "the target's bounding-box diagonal (default: fitted as MAP was; for other methods that of MAP, "
-      "within 4.2 M voxels), "
-      "scaled with the source's size in powers of two");
+  add_derived_map_options(*invert, arguments->options,
+                          "Largest difference between the baked and the exact inverse, mesh units or % of "
+                          "the target's bounding-box diagonal (default: that of MAP, within 4.2 M voxels), "
+                          "scaled with the source's size in powers of two");
   invert->footer(
       "Examples:\n"
       "  bespoke invert woman_to_man.vdb -o man_to_woman.vdb\n"

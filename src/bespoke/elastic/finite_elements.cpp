@@ -7,7 +7,6 @@
 #include <numeric>
 #include <utility>
 
-#include "bespoke/elastic/detail/element_band.h"
 #include "bespoke/elastic/detail/element_objective.h"
 #include "bespoke/elastic/detail/element_weights.h"
 #include "bespoke/elastic/detail/exact_map_bytes.h"
@@ -26,6 +25,8 @@ namespace {
 constexpr double compliance = 0.1, refined_beyond = 3;
 // Of λ: the coarsest voxel.
 constexpr double coarsest_voxel = 0.25;
+// Of a finer voxel, along each axis: nodes around a vertex that is missed.
+constexpr double refined_reach = 2;
 // Of the mean size of the sources' displacement: how soft data are at first; their stiffness then grows
 // fourfold.
 constexpr double softest = 0.25, stiffening = 4;
@@ -47,6 +48,45 @@ constexpr double unrefined_beyond = 10;
 constexpr double share_of_a_lone_point = 300, lone_beyond = 0.01;
 // Of the barriers, fourfold each.
 constexpr int max_widenings = 20;
+
+/// The nodes within lambda of the surface, which is in the box.
+std::vector<LatticeCoordinates> band_nodes(const ClosestPointTree& surface, const Box& box,
+                                           const Lattice& lattice, double lambda) {
+  const LatticeCoordinates low = lattice.cell_of(box.min() - Vector3::Constant(lambda)),
+                           high = lattice.cell_of(box.max() + Vector3::Constant(lambda));
+  std::vector<std::vector<LatticeCoordinates>> slabs(static_cast<std::size_t>(high[0] - low[0] + 2));
+  parallel_for(slabs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t slab = begin; slab < end; ++slab)
+      for (int j = low[1]; j <= high[1] + 1; ++j)
+        for (int k = low[2]; k <= high[2] + 1; ++k) {
+          const LatticeCoordinates node{low[0] + static_cast<int>(slab), j, k};
+          if (surface.closest(lattice(node), {.max_distance = lambda})) slabs[slab].push_back(node);
+        }
+  });
+  std::vector<LatticeCoordinates> nodes;
+  for (const auto& slab : slabs) nodes.insert(nodes.end(), slab.begin(), slab.end());
+  return nodes;
+}
+
+/// Those within lambda of a point.
+void add_nodes_within(const Lattice& lattice, const Vector3& x, double lambda,
+                      std::vector<LatticeCoordinates>& nodes) {
+  const LatticeCoordinates low = lattice.cell_of(x - Vector3::Constant(lambda)),
+                           high = lattice.cell_of(x + Vector3::Constant(lambda));
+  for (int i = low[0]; i <= high[0] + 1; ++i)
+    for (int j = low[1]; j <= high[1] + 1; ++j)
+      for (int k = low[2]; k <= high[2] + 1; ++k)
+        if ((lattice({i, j, k}) - x).norm() <= lambda) nodes.push_back({i, j, k});
+}
+
+void add_nodes_around(const Lattice& lattice, const Vector3& x, std::vector<LatticeCoordinates>& nodes) {
+  const Vector3 at = (x - lattice.origin) / lattice.voxel_size;
+  const Eigen::Vector3i low = (at.array() - refined_reach).ceil().cast<int>(),
+                        high = (at.array() + refined_reach).floor().cast<int>();
+  for (int i = low[0]; i <= high[0]; ++i)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int k = low[2]; k <= high[2]; ++k) nodes.push_back({i, j, k});
+}
 
 void require_usable(const Points& sources, const Points& targets, const FiniteElementOptions& options) {
   if (sources.cols() != targets.cols() || sources.cols() == 0)
@@ -77,7 +117,6 @@ class Solver {
       : sources_(std::move(sources)),
         wanted_(std::move(wanted)),
         vertices_(vertices),
-        met_(vertices),
         tolerance_(tolerance),
         options_(options),
         barriers_{1 / (barrier_beyond * options.max_squeeze),
@@ -88,12 +127,12 @@ class Solver {
         coarsest_{bounding_box(source.vertices).min(), coarsest_voxel * options.lambda} {
     weighted_area_ = vertex_areas(source).sum() / static_cast<double>(vertices);
     std::vector<LatticeCoordinates> nodes =
-        nodes_near(source_, bounding_box(source.vertices), coarsest_, options.lambda);
-    if (options.known) {
-      add_nodes_of_cells_around(coarsest_, sources_, nodes);
-      met_ = shares_.size();
-    } else {
-      add_lone_points(nodes);
+        band_nodes(source_, bounding_box(source.vertices), coarsest_, options.lambda);
+    for (std::size_t i = 0; i < vertices; ++i) {
+      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
+      if (source_.closest(x, {.max_distance = lone_beyond * options.lambda})) continue;
+      shares_[i] = share_of_a_lone_point;
+      add_nodes_within(coarsest_, x, options.lambda, nodes);
     }
     elements_ = std::make_unique<NestedElements>(
         coarsest_, std::vector<std::vector<LatticeCoordinates>>{unique_leaves(std::move(nodes))});
@@ -124,16 +163,6 @@ class Solver {
   FiniteElementSummary summary() const { return summary_; }
 
  private:
-  /// Points far from the surface count for what is around them.
-  void add_lone_points(std::vector<LatticeCoordinates>& nodes) {
-    for (std::size_t i = 0; i < vertices_; ++i) {
-      const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
-      if (source_.closest(x, {.max_distance = lone_beyond * options_.lambda})) continue;
-      shares_[i] = share_of_a_lone_point;
-      add_nodes_within(coarsest_, x, options_.lambda, nodes);
-    }
-  }
-
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
     if (!objective_)
@@ -215,7 +244,7 @@ class Solver {
                                                       const std::vector<double>& residuals,
                                                       double distance) const {
     std::vector<LatticeCoordinates> nodes;
-    for (std::size_t i = 0; i < met_; ++i) {
+    for (std::size_t i = 0; i < vertices_; ++i) {
       const Vector3 x = sources_.col(static_cast<Eigen::Index>(i));
       if (shares_[i] >= 1 && residuals[i] > distance && !elements_->places(x).empty())
         add_nodes_around(finer, x, nodes);
@@ -248,7 +277,6 @@ class Solver {
   Points sources_;
   Points wanted_;
   std::size_t vertices_;
-  std::size_t met_;  ///< places that halve cells where they are missed
   double tolerance_;
   FiniteElementOptions options_;
   DistortionBounds barriers_;
@@ -293,13 +321,11 @@ FiniteElementFit fit_finite_elements(const Points& sources, const Points& target
                                      const FiniteElementOptions& options, const Progress& progress) {
   require_usable(sources, targets, options);
   const Stopwatch watch;
-  const AffineMap affine =
-      options.known ? options.known->affine : upright_affine(sources, targets, options.affine_part);
+  const AffineMap affine = upright_affine(sources, targets, options.affine_part);
   const double scale = std::cbrt(affine.linear.determinant());
-  const Points& more = options.known ? options.known->sources : options.guides.sources;
-  Points places(3, sources.cols() + more.cols()), images(3, places.cols());
-  places << sources, more;
-  images << targets, options.known ? options.known->targets : options.guides.targets;
+  Points places(3, sources.cols() + options.guides.sources.cols()), images(3, places.cols());
+  places << sources, options.guides.sources;
+  images << targets, options.guides.targets;
   Points wanted = affine.linear.inverse() * (images.colwise() - affine.offset) - places;
   Solver solver(std::move(places), std::move(wanted), static_cast<std::size_t>(sources.cols()), source,
                 options.fit_tolerance / scale, options, progress);

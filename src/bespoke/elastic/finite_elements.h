@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +15,6 @@ namespace bespoke {
 
 class ExactMapReader;
 class ExactMapWriter;
-
-/// A map that is known in all of space, such as the inverse of another.
-struct KnownSpace {
-  AffineMap affine;  ///< its affine part
-  Points sources;    ///< 3×n, mesh units: places that are dense in its support
-  Points targets;    ///< 3×n: where they go
-};
 
 struct FiniteElementOptions {
   double lambda = 0;         ///< effective distance around the source, > 0, mesh units
@@ -41,9 +33,6 @@ struct FiniteElementOptions {
   /// They count as vertices do, so that space turns with the surface beneath it, but change neither the
   /// affine part nor what the summary says, and halve no cell.
   SpaceGuides guides = {};
-  /// In place of guides and of an affine part of its own: these places are met as vertices are, and cells are
-  /// around them, however far from the source.
-  std::optional<KnownSpace> known = {};
 };
 
 struct FiniteElementSummary {

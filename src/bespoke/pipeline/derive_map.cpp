@@ -10,13 +10,11 @@
 #include "bespoke/asset/source_surface.h"
 #include "bespoke/bake/error_points.h"
 #include "bespoke/certificate/inverse.h"
-#include "bespoke/elastic/elastic_methods.h"
 #include "bespoke/error.h"
 #include "bespoke/lattice/baked_map.h"
 #include "bespoke/mapping/affine_map.h"
 #include "bespoke/mapping/composed_map.h"
 #include "bespoke/pipeline/detail/bake_steps.h"
-#include "bespoke/pipeline/detail/inverse_elements.h"
 #include "bespoke/pipeline/make_map.h"
 #include "bespoke/pipeline/summary_json.h"
 
@@ -120,52 +118,9 @@ std::vector<DerivedStep> bake_in_turn(const std::vector<std::shared_ptr<const El
   return steps;
 }
 
-// E⁻¹ is the steps' inverses, the last one first. target: the model where the map ends.
-std::vector<DerivedStep> bake_inverses(const Asset& b_from_a, TriangleMesh target, const BakeOptions& options,
-                                       const Progress& progress) {
-  const ElasticChain forth = baked_chain(b_from_a.steps);
-  std::vector<std::shared_ptr<const ElasticMap>> inverses;
-  for (auto step = forth.steps().rbegin(); step != forth.steps().rend(); ++step)
-    inverses.push_back(
-        std::make_shared<InverseMap>(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source));
-  return bake_in_turn(inverses, std::move(target), options, progress);
-}
-
-// The inverses of finite elements, the last step's first, as finite elements.
-std::vector<DerivedStep> fit_inverses(const Asset& b_from_a, const TriangleMesh& source,
-                                      const BakeOptions& options, const Progress& progress) {
-  // Of all steps together. What was squeezed is spread out again, which takes more than a fit does.
-  constexpr std::size_t max_nodes = 360'000;
-  const ElasticChain forth = baked_chain(b_from_a.steps);
-  const std::size_t count = forth.steps().size();
-  std::vector<TriangleMesh> before = {source};
-  std::vector<double> sizes = {1};
-  for (const auto& step : forth.steps()) {
-    before.push_back({(*step)(before.back().vertices), source.faces});
-    sizes.push_back(sizes.back() * size_ratio(step->affine()));
-  }
-  std::vector<DerivedStep> steps;
-  for (std::size_t k = count; k-- > 0;) {
-    progress.step("inverse", count - 1 - k, count);
-    const auto& map = dynamic_cast<const BakedMap&>(*forth.steps()[k]);
-    const InverseFit fit{sizes[k + 1] * b_from_a.record.lambda,
-                         options.tolerance * power_of_two_scale(sizes[k]) / static_cast<double>(count),
-                         (count > 1 ? 2 : 1) * max_nodes / count, options.max_memory};
-    steps.push_back(bake_step(*inverse_elements({map, b_from_a.target_from_source, before[k]}, fit, progress),
-                              options, progress));
-  }
-  return steps;
-}
-
-// Fitted maps are inverted as they were fitted, unless a tolerance is named, which only a bake keeps to.
-bool is_inverted_by_fit(const Asset& b_from_a, const TriangleMesh& source, const BakeOptions& options) {
-  return options.max_leaves && usable(source) &&
-         b_from_a.record.elastic_method.ends_with(elastic_method(ElasticMethod::finite_elements).name);
-}
-
-// The error of a chain is that of the whole, not of its first step; that of a fit is no bake's.
+// The error of a chain is that of the whole, not of its first step.
 void take_measured_error(DerivedMap& derived) {
-  if (derived.asset.steps.size() == 1 && derived.bake.error.count > 0) return;
+  if (derived.asset.steps.size() == 1) return;
   derived.bake.error = derived.asset.record.bake_error = derived.deviation;
   derived.bake.error_random_points = derived.deviation.count;
   derived.bake.error_surface_points = 0;
@@ -227,11 +182,12 @@ DerivedMap invert_map(const Asset& b_from_a, const BakeOptions& options, const P
   asset.record.elastic_method = "inverse of " + b_from_a.record.elastic_method;
   asset.record.options_json =
       recorded_options({{"inverse_of", Json::parse(b_from_a.record.options_json)}}, options);
-  const TriangleMesh source = source_surface(b_from_a);
-  take_steps(derived,
-             is_inverted_by_fit(b_from_a, source, options)
-                 ? fit_inverses(b_from_a, source, options, progress)
-                 : bake_inverses(b_from_a, {forth(source.vertices), source.faces}, options, progress),
+  // E⁻¹ is the steps' inverses, the last one first.
+  std::vector<std::shared_ptr<const ElasticMap>> inverses;
+  for (auto step = forth.elastic().steps().rbegin(); step != forth.elastic().steps().rend(); ++step)
+    inverses.push_back(
+        std::make_shared<InverseMap>(dynamic_cast<const BakedMap&>(**step), b_from_a.target_from_source));
+  take_steps(derived, bake_in_turn(inverses, previewed_source(b_from_a, forth), options, progress),
              options.tolerance);
   const WholeMap back(asset);
   for (AnchorRecord& anchor : asset.record.anchors) {
