@@ -36,6 +36,9 @@ void warn_of_anchors(const RunContext& context, const FitSummary& summary, const
 /// Why the bake's error exceeds the tolerance, and what lowers it.
 std::string cause_of_missed_tolerance(const BakeOptions& options, const BakeSummary& bake) {
   if (options.voxel_size) return "a smaller --voxel-size lowers it";
+  if (bake.repaired_cells > 0)
+    return "the repair of " + std::to_string(bake.repaired_cells) +
+           " folded cells moved nodes there; no tolerance is met without folds where the map is that flat";
   if (!bake.relaxed.empty())
     return "it was relaxed in " + std::to_string(bake.relaxed.size()) +
            " regions, where the map is too steep for its share of voxels; --strict or a --tolerance of your "

@@ -58,11 +58,12 @@ std::string to_string(const BakeSummary& summary) {
   std::snprintf(
       text, sizeof text,
       "%zu levels, finest voxel %.4g, %zu leaves, %zu voxels; error p99 %.4g max %.4g (n = %zu), tolerance "
-      "%s; %zu folds refined, %zu left; %.2f s (refine %.2f, measure %.2f, folds %.2f)",
+      "%s; %zu folds refined, %zu cells repaired by at most %.2g, %zu still folded; %.2f s (refine %.2f, "
+      "measure %.2f, repair %.2f)",
       summary.levels.size(), summary.levels.empty() ? 0.0 : summary.levels.back().voxel_size, leaves, voxels,
       summary.error.p99, summary.error.max, summary.error.count, summary.tolerance_met ? "met" : "not met",
-      summary.refined_folds, summary.folded_cells, summary.seconds, summary.refine_seconds,
-      summary.measure_seconds, summary.repair_seconds);
+      summary.refined_folds, summary.repaired_cells, summary.repair_cost, summary.folded_cells,
+      summary.seconds, summary.refine_seconds, summary.measure_seconds, summary.repair_seconds);
   std::string line = text;
   if (summary.misoriented_faces > 0)
     line += "; " + std::to_string(summary.misoriented_faces) + " faces misoriented against the map";

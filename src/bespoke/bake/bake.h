@@ -16,7 +16,7 @@ struct Bake {
 };
 
 /// Samples u of the map over its support as a nested pyramid, or on one lattice (src/bespoke/README.md,
-/// "Bake"); affine maps exactly. Folded cells of a pyramid are refined where the map does not fold; the
+/// "Bake"); affine maps exactly. Folded cells of a pyramid are refined, then repaired, all or none; the
 /// summary counts the rest. Where ‖∇u‖ > 2 or u jumps, voxels stop at half the tolerance, which may then be
 /// missed. A BakedMap is stored as it is, unless a voxel size is given. Throws MemoryLimitError, naming what
 /// would fit; InvalidInput for values out of range, also of half precision.

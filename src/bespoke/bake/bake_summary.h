@@ -34,13 +34,15 @@ struct BakeSummary {
   /// Of the surface, by more than max_face_turn, except for those thinner than the smallest voxel that a
   /// nested pyramid may have; of a chain, over its steps.
   std::size_t misoriented_faces = 0;
-  std::size_t refined_folds = 0;  ///< cells that folded though the map does not, repaired by finer leaves
-  std::size_t folded_cells = 0;   ///< cells that still fold or are undecided
+  std::size_t refined_folds = 0;   ///< cells that folded though the map does not, repaired by finer leaves
+  std::size_t repaired_cells = 0;  ///< cells that folded as the map does, repaired by moving nodes
+  double repair_cost = 0;          ///< largest distance that a node was moved, mesh units
+  std::size_t folded_cells = 0;    ///< cells that still fold or are undecided
   std::size_t evaluated_points = 0;
   std::size_t peak_bytes = 0;  ///< estimate that was held against max_memory
   double refine_seconds = 0;   ///< evaluating the map and growing the pyramid
   double measure_seconds = 0;  ///< evaluating the map at other points
-  double repair_seconds = 0;   ///< certifying and refining folds
+  double repair_seconds = 0;   ///< certifying, refining and repairing folds
   double seconds = 0;
 };
 

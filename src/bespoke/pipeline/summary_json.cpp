@@ -57,6 +57,8 @@ Json to_json(const BakeSummary& summary) {
                {"tolerance_met", summary.tolerance_met},
                {"turned_faces", summary.misoriented_faces},
                {"refined_folds", summary.refined_folds},
+               {"repaired_cells", summary.repaired_cells},
+               {"repair_cost", summary.repair_cost},
                {"folded_cells", summary.folded_cells},
                {"evaluated_points", summary.evaluated_points},
                {"peak_bytes", summary.peak_bytes}};

@@ -57,6 +57,7 @@ class AdaptiveBake {
     summary().peak_bytes = builder_->byte_count();
     summary().relaxed = builder_->relaxed();
     builder_.reset();
+    repair();
     summary().misoriented_faces = face_turns_.misoriented_faces(result_.pyramid).size();
     keep_first_places(result_.certificate);
     return std::move(result_);
@@ -122,6 +123,12 @@ class AdaptiveBake {
     bespoke::refine_folds(map_, builder_, result_, progress_);
     summary().repair_seconds += watch_.lap();
     if (result_.pyramid.leaf_count() != leaves) measure();
+  }
+
+  void repair() {
+    repair_all_or_none(map_, result_, progress_);
+    summary().repair_seconds += watch_.lap();
+    if (summary().repaired_cells > 0) measure();
   }
 
   // Around what a sample has found, until nothing more is. Returns whether anything was refined.

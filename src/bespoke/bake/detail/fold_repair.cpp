@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/bake/detail/repair.h"
 #include "bespoke/certificate/certificate.h"
 
 namespace bespoke {
@@ -65,6 +66,18 @@ void refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builde
     bake.certificate = std::move(certificate);
     builder = std::move(refined);
   }
+}
+
+void repair_all_or_none(const ElasticMap& map, Bake& bake, const Progress& progress) {
+  const std::vector<FoldedCell>& folds = bake.certificate.places;
+  if (folds.empty() || folds.size() > max_mendable_folds) return;
+  Pyramid repaired = bake.pyramid;
+  const RepairSummary summary = repair_folds(repaired, map.affine(), folds, progress);
+  if (summary.folded > 0) return;
+  bake.summary.repaired_cells = folds.size();
+  bake.summary.repair_cost = summary.largest_change;
+  bake.pyramid = std::move(repaired);
+  bake.certificate = certify(bake.pyramid, map.affine(), 1, progress);
 }
 
 }  // namespace bespoke

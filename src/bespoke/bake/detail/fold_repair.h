@@ -14,4 +14,8 @@ namespace bespoke {
 void refine_folds(const ElasticMap& map, std::unique_ptr<PyramidBuilder>& builder, Bake& bake,
                   const Progress& progress);
 
+/// Repairs all that the certificate lists by moving nodes (repair_folds), or none, since half a repair would
+/// cost accuracy and prove nothing. Fills what the summary says about it.
+void repair_all_or_none(const ElasticMap& map, Bake& bake, const Progress& progress);
+
 }  // namespace bespoke

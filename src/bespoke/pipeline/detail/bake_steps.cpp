@@ -132,6 +132,8 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.surface_cells += step.surface_cells;
   whole.misoriented_faces += step.misoriented_faces;
   whole.refined_folds += step.refined_folds;
+  whole.repaired_cells += step.repaired_cells;
+  whole.repair_cost = std::max(whole.repair_cost, step.repair_cost);
   whole.folded_cells += step.folded_cells;
   whole.evaluated_points += step.evaluated_points;
   whole.peak_bytes = std::max(whole.peak_bytes, step.peak_bytes);
