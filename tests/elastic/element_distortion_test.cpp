@@ -173,28 +173,5 @@ TEST(Distortion, HasTheSameBitsWithEveryInstructionSet) {
   });
 }
 
-TEST(CellsBeyond, ShareTheBoundOnVolumesWithMapsBefore) {
-  const NestedElements elements = two_levels();
-  const std::vector<Points> values = linear_values(elements, Vector3(0.25, 1, 1).asDiagonal());
-  const auto cells = [&](double before) {
-    std::vector<std::vector<double>> all;
-    for (const ElementLevel& level : elements.levels()) all.emplace_back(level.finest.size(), before);
-    std::size_t count = 0;
-    for (const auto& of_level : cells_beyond(elements, values, {0.1, 1e6}, all)) count += of_level.size();
-    return count;
-  };
-  std::size_t all = 0;
-  for (const ElementLevel& level : elements.levels()) all += level.finest.size();
-  EXPECT_EQ(cells(1), 0u);
-  EXPECT_EQ(cells(0.5), 0u);
-  EXPECT_EQ(cells(0.3), all);
-  EXPECT_EQ(cells(10), 0u);  // what was spread out is no licence
-  // A map that halves no volume is not to blame.
-  const std::vector<Points> slight = linear_values(elements, Vector3(0.6, 1, 1).asDiagonal());
-  std::vector<std::vector<double>> flat;
-  for (const ElementLevel& level : elements.levels()) flat.emplace_back(level.finest.size(), 1e-3);
-  for (const auto& of_level : cells_beyond(elements, slight, {0.1, 1e6}, flat)) EXPECT_TRUE(of_level.empty());
-}
-
 }  // namespace
 }  // namespace bespoke

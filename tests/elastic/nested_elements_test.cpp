@@ -97,21 +97,5 @@ TEST(NestedElements, RefiningKeepsTheMap) {
   EXPECT_LT((before.displacement(x) - after.displacement(x)).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(NestedElements, FindTheFinestCellOfAPoint) {
-  const NestedElements elements = three_levels();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const ElementLevel& level = elements.levels()[k];
-    for (std::size_t number = 0; number < level.finest.size(); ++number) {
-      const LatticeCoordinates& cell = level.cells[static_cast<std::size_t>(level.finest[number])];
-      const auto found =
-          elements.finest_at(elements.lattice(k)(cell) + Vector3::Constant(level.voxel_size / 3));
-      ASSERT_TRUE(found);
-      EXPECT_EQ(found->level, k);
-      EXPECT_EQ(found->number, number);
-    }
-  }
-  EXPECT_FALSE(elements.finest_at(Vector3(9, 0, 0)));
-}
-
 }  // namespace
 }  // namespace bespoke

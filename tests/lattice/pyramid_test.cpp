@@ -89,20 +89,5 @@ TEST(RoundValues, MovesNothingByMoreThanA64thOfTheToleranceAndLeavesFewBits) {
   EXPECT_EQ(again, rounded);
 }
 
-TEST(MovedNodes, AreThoseOfAValueOnceEach) {
-  Pyramid pyramid;
-  pyramid.origin = Vector3(1, 2, 3);
-  for (const double size : {1.0, 0.5})
-    pyramid.levels.push_back({size, {{0, 0, 0}}, std::vector<float>(leaf_floats, 0.0f)});
-  const auto set = [&](std::size_t level, const LatticeCoordinates& node) {
-    pyramid.levels[level].values[static_cast<std::size_t>(3 * number_of_place(node)) + 1] = 0.5f;
-  };
-  set(0, {1, 2, 3});
-  set(0, {5, 5, 5});
-  set(1, {2, 4, 6});  // that of the level above, at the same place
-  set(1, {1, 1, 1});
-  EXPECT_EQ(moved_nodes(pyramid), (Points{{1.5, 2, 6}, {2.5, 4, 7}, {3.5, 6, 8}}));
-}
-
 }  // namespace
 }  // namespace bespoke

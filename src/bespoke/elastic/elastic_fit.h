@@ -24,13 +24,6 @@ enum class AffinePart {
   similarity,  ///< the nearest similarity: for steps of a change of pose, whose affine maps would shear space
 };
 
-/// Places in space, and what the steps of a chain before this one have made of a volume there, relative to
-/// their affine parts.
-struct SqueezedSpace {
-  Points places;                     ///< 3×n, where they have come to, mesh units
-  std::vector<double> determinants;  ///< n, > 0, no unit
-};
-
 struct ElasticOptions {
   double lambda = 0;  ///< effective distance around the source, > 0, mesh units
   double fit_tolerance =
@@ -43,7 +36,6 @@ struct ElasticOptions {
   double max_squeeze = 50;
   std::size_t max_nodes = 180'000;  ///< of finite elements, > 0
   bool give_up_blocked = false;     ///< finite elements: see FiniteElementOptions
-  SqueezedSpace squeezed = {};      ///< finite elements: what max_squeeze is bound to together with this map
   /// How many times as large lambda is around the fitted source, > 0: there the layers of a composition act.
   double growth = 1;
 };

@@ -25,7 +25,6 @@ ElasticFit finite_elements(const ElasticInput& input, const ElasticOptions& opti
   elements.max_squeeze = options.max_squeeze;
   elements.max_nodes = options.max_nodes;
   elements.give_up_blocked = options.give_up_blocked;
-  elements.squeezed = options.squeezed;
   if (options.guided) elements.guides = space_guides(input.source, input.fitted, options.lambda);
   FiniteElementFit fit = fit_finite_elements(input.sources, input.targets, input.source, elements, progress);
   return {std::move(fit.map), std::move(fit.summary)};

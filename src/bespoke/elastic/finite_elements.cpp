@@ -209,9 +209,8 @@ class Solver {
   /// Where cells are so many times beyond the bounds their places count less. Whether there are any.
   bool loosen(double times) {
     const std::vector<std::size_t> squeezed = objective_->squeezed(
-        coefficients_,
-        {1 / (times * options_.max_squeeze), std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2},
-        options_.squeezed);
+        coefficients_, {1 / (times * options_.max_squeeze),
+                        std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
       summary_.loosened += place < vertices_ && shares_[place] >= 1;
       shares_[place] *= loosening;

@@ -28,8 +28,6 @@ struct FiniteElementOptions {
   std::size_t max_memory = std::size_t{8} << 30;  ///< bytes
   AffinePart affine_part = AffinePart::least_squares;
   bool give_up_blocked = false;  ///< on the coarsest level where the minimiser is blocked (summary)
-  /// By maps before this one: together they keep to max_squeeze, except where this one halves no volume.
-  SqueezedSpace squeezed = {};
   /// They count as vertices do, so that space turns with the surface beneath it, but change neither the
   /// affine part nor what the summary says, and halve no cell.
   SpaceGuides guides = {};

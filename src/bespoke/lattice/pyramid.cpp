@@ -6,14 +6,8 @@
 
 #include "bespoke/error.h"
 #include "bespoke/lattice/detail/pyramid_checks.h"
-#include "bespoke/lattice/leaf_table.h"
 
 namespace bespoke {
-namespace {
-
-bool is_zero(const float* value) { return value[0] == 0 && value[1] == 0 && value[2] == 0; }
-
-}  // namespace
 
 const char* name_of(ValuePrecision precision) {
   return precision == ValuePrecision::half ? "half" : "single";
@@ -79,32 +73,6 @@ void require_valid(const Pyramid& pyramid) {
     const PyramidLevel& above = pyramid.levels[index - 1];
     require_nested(above.voxel_size, above.leaves, level.voxel_size, level.leaves, index);
   }
-}
-
-Points moved_nodes(const Pyramid& pyramid) {
-  std::vector<Vector3> found;
-  LeafTable finer;
-  const PyramidLevel* below = nullptr;
-  const auto moves_below = [&](const LatticeCoordinates& node) {
-    const LatticeCoordinates fine{2 * node[0], 2 * node[1], 2 * node[2]};
-    const int leaf = below ? finer.find(leaf_of(fine)) : no_leaf;
-    return leaf != no_leaf && !is_zero(below->values_of(static_cast<std::size_t>(leaf)) +
-                                       3 * number_of_place(place_in_leaf(fine)));
-  };
-  for (std::size_t k = pyramid.levels.size(); k-- > 0;) {
-    const PyramidLevel& level = pyramid.levels[k];
-    for (std::size_t leaf = 0; leaf < level.leaves.size(); ++leaf)
-      for (int number = 0; number < leaf_nodes; ++number) {
-        const LatticeCoordinates node = moved(first_node(level.leaves[leaf]), place_of_number(number));
-        if (is_zero(level.values_of(leaf) + 3 * number) || moves_below(node)) continue;
-        found.push_back(pyramid.lattice(static_cast<int>(k))(node));
-      }
-    finer = LeafTable(level.leaves);
-    below = &level;
-  }
-  Points nodes(3, static_cast<Eigen::Index>(found.size()));
-  for (std::size_t i = 0; i < found.size(); ++i) nodes.col(static_cast<Eigen::Index>(i)) = found[i];
-  return nodes;
 }
 
 }  // namespace bespoke

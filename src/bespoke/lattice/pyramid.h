@@ -49,9 +49,6 @@ struct Pyramid {
   std::size_t byte_count() const;   ///< of values and leaf coordinates
 };
 
-/// The nodes whose value is not zero, each once, by the finest level that has it. 3×n, mesh units.
-Points moved_nodes(const Pyramid& pyramid);
-
 /// No component of the sum of the levels exceeds it anywhere: bounds the rounding of that sum. Mesh units.
 double largest_sum(const Pyramid& pyramid);
 

@@ -1,6 +1,5 @@
 #include "bespoke/pipeline/elastic_steps.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,8 +7,6 @@
 #include <variant>
 
 #include "bespoke/error.h"
-#include "bespoke/lattice/baked_map.h"
-#include "bespoke/lattice/pyramid.h"
 #include "bespoke/length.h"
 #include "bespoke/mesh/facing_outward.h"
 
@@ -69,7 +66,6 @@ class StepFitter {
     if (give_up && is_blocked(fit.found)) return false;
     steps_.sources.push_back(vertices_);
     steps_.found.push_back(std::move(fit.found));
-    if (const auto* stored = dynamic_cast<const BakedMap*>(fit.map.get())) squeeze_by(*stored);
     move_by(*fit.map);
     steps_.maps.push_back(std::move(fit.map));
     return true;
@@ -78,22 +74,6 @@ class StepFitter {
   ElasticSteps steps() && { return std::move(steps_); }
 
  private:
-  /// What comes after has what is left of max_squeeze.
-  void squeeze_by(const BakedMap& map) {
-    SqueezedSpace& space = options_.squeezed;
-    const Points nodes = moved_nodes(map.pyramid());
-    Points all(3, space.places.cols() + nodes.cols());
-    all << space.places, nodes;
-    space.determinants.resize(static_cast<std::size_t>(all.cols()), 1.0);
-    const Matrix3 linear = map.affine().linear;
-    const Points gradients = map.displacement_gradient(all);
-    for (std::size_t i = 0; i < space.determinants.size(); ++i)
-      space.determinants[i] *=
-          Matrix3(linear + gradients.middleCols<3>(3 * static_cast<Eigen::Index>(i))).determinant() /
-          linear.determinant();
-    space.places = map(all);
-  }
-
   const TriangleMesh& source_;
   Points vertices_;
   Points places_;

@@ -304,8 +304,7 @@ Distortion add_distortion(const NestedElements& elements, const std::vector<Poin
 
 std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& elements,
                                                    const std::vector<Points>& values,
-                                                   const DistortionBounds& bounds,
-                                                   const std::vector<std::vector<double>>& before) {
+                                                   const DistortionBounds& bounds) {
   std::vector<std::vector<std::size_t>> beyond(elements.levels().size());
   CellPack pack;
   for (std::size_t k = 0; k < elements.levels().size(); ++k) {
@@ -314,13 +313,11 @@ std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& element
       evaluate(level, values[k], bounds, first, pack);
       Lane coefficient;
       run_dispatched_by_set<MinCoefficientOfPack>(pack.u, 1 / level.voxel_size, coefficient);
-      for (std::size_t l = 0; l < lanes && first + l < level.finest.size(); ++l) {
-        const double least =
-            std::max(bounds.min_determinant, std::min(bounds.min_determinant / before[k][first + l], 0.5));
-        if (!(pack.min_determinant[l] >= least && pack.max_inverse_squared[l] <= bounds.max_inverse_squared &&
-              coefficient[l] >= coefficient_share * least))
+      for (std::size_t l = 0; l < lanes && first + l < level.finest.size(); ++l)
+        if (!(pack.min_determinant[l] >= bounds.min_determinant &&
+              pack.max_inverse_squared[l] <= bounds.max_inverse_squared &&
+              coefficient[l] >= coefficient_share * bounds.min_determinant))
           beyond[k].push_back(first + l);
-      }
     }
   }
   return beyond;

@@ -33,12 +33,10 @@ Distortion add_distortion(const NestedElements& elements, const std::vector<Poin
                           std::vector<double>& scratch);
 
 /// The finest cells, per level by their place in ElementLevel::finest, at a corner of which a bound does not
-/// hold, or within which a Bézier coefficient of J is below a tenth of its bound. before: of every such cell,
-/// the least determinant of maps before; the bound is that of the product, but J may be 1/2 anywhere.
+/// hold, or within which a Bézier coefficient of J is below a tenth of its bound.
 std::vector<std::vector<std::size_t>> cells_beyond(const NestedElements& elements,
                                                    const std::vector<Points>& values,
-                                                   const DistortionBounds& bounds,
-                                                   const std::vector<std::vector<double>>& before);
+                                                   const DistortionBounds& bounds);
 
 /// About the diagonal of its Hessian where the finest cells have this stiffness (Distortion): one per point
 /// and level, of hat functions of that level (the preconditioner of Bramble, Pasciak and Xu 1990).

@@ -23,19 +23,6 @@ bool touches(const ElementPlace& place, const std::vector<std::vector<char>>& fl
                      [&](int corner) { return of_level[static_cast<std::size_t>(corner)] != 0; });
 }
 
-/// The least determinant of the places in each finest cell, per level; 1 where there are none.
-std::vector<std::vector<double>> least_in_cells(const NestedElements& elements, const SqueezedSpace& space) {
-  std::vector<std::vector<double>> least;
-  for (const ElementLevel& level : elements.levels()) least.emplace_back(level.finest.size(), 1.0);
-  for (std::size_t i = 0; i < space.determinants.size(); ++i)
-    if (const std::optional<FinestElement> cell =
-            elements.finest_at(space.places.col(static_cast<Eigen::Index>(i)))) {
-      double& here = least[cell->level][cell->number];
-      here = std::min(here, space.determinants[i]);
-    }
-  return least;
-}
-
 }  // namespace
 
 ElementObjective::ElementObjective(const NestedElements& elements, const ElementData& data,
@@ -144,10 +131,9 @@ std::vector<double> ElementObjective::residuals(const Points& coefficients) cons
 }
 
 std::vector<std::size_t> ElementObjective::squeezed(const Points& coefficients,
-                                                    const DistortionBounds& bounds,
-                                                    const SqueezedSpace& before) const {
+                                                    const DistortionBounds& bounds) const {
   const std::vector<std::vector<std::size_t>> cells =
-      cells_beyond(elements_, elements_.values(coefficients), bounds, least_in_cells(elements_, before));
+      cells_beyond(elements_, elements_.values(coefficients), bounds);
   std::vector<std::vector<char>> flags;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const ElementLevel& level = elements_.levels()[k];

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "bespoke/elastic/detail/element_distortion.h"
-#include "bespoke/elastic/elastic_fit.h"
 
 namespace bespoke {
 
@@ -39,9 +38,8 @@ class ElementObjective {
   /// |u(vᵢ) − uᵢ|, mesh units.
   std::vector<double> residuals(const Points& coefficients) const;
 
-  /// The places at a corner of a cell beyond these bounds, together with maps before (cells_beyond).
-  std::vector<std::size_t> squeezed(const Points& coefficients, const DistortionBounds& bounds,
-                                    const SqueezedSpace& before) const;
+  /// The places at a corner of a cell beyond these bounds.
+  std::vector<std::size_t> squeezed(const Points& coefficients, const DistortionBounds& bounds) const;
 
   std::size_t outside() const;                                  ///< places without a term
   const Distortion& distortion() const { return distortion_; }  ///< of the last call

@@ -134,17 +134,6 @@ std::vector<ElementPlace> NestedElements::places(const Vector3& x) const {
   return result;
 }
 
-std::optional<FinestElement> NestedElements::finest_at(const Vector3& x) const {
-  for (std::size_t k = levels_.size(); k-- > 0;) {
-    const int cell = levels_[k].cell_table.find(lattice(k).cell_of(x));
-    if (cell == no_leaf) continue;
-    const std::vector<int>& finest = levels_[k].finest;  // rising
-    const auto at = std::lower_bound(finest.begin(), finest.end(), cell);
-    return FinestElement{k, static_cast<std::size_t>(at - finest.begin())};
-  }
-  return std::nullopt;
-}
-
 std::vector<Points> NestedElements::values(const Points& coefficients) const {
   std::vector<Points> values;
   evaluate(coefficients, values);

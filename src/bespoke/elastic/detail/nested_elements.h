@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "bespoke/lattice/lattice.h"
@@ -16,11 +15,6 @@ struct ElementPlace {
   int level = 0;
   std::array<int, 8> corners{};
   std::array<double, 8> weights{};
-};
-
-/// A finest cell: its level, and its place in ElementLevel::finest.
-struct FinestElement {
-  std::size_t level = 0, number = 0;
 };
 
 /// One level of nested trilinear elements.
@@ -59,9 +53,6 @@ class NestedElements {
 
   /// Places of x, one per level from 0 to the finest whose cells hold it; empty outside of all cells.
   std::vector<ElementPlace> places(const Vector3& x) const;
-
-  /// The finest cell that holds x, if any.
-  std::optional<FinestElement> finest_at(const Vector3& x) const;
 
   /// coefficients: 3×unknowns(). Values at the points of a level: its own and those of the coarser ones.
   std::vector<Points> values(const Points& coefficients) const;
