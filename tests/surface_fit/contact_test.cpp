@@ -108,7 +108,9 @@ TEST(SeparateContacts, MovesNothingFarFromContacts) {
   const ContactFit fit = separate_contacts(source, fitted.vertices, contact_options);
   EXPECT_EQ(fit.summary.left, 0u);
   for (Eigen::Index i = 0; i < ball.vertices.cols(); ++i)
-    if (ball.vertices.col(i).dot(direction) < -0.5) EXPECT_EQ(fit.vertices.col(i), fitted.vertices.col(i));
+    if (ball.vertices.col(i).dot(direction) < -0.5) {
+      EXPECT_EQ(fit.vertices.col(i), fitted.vertices.col(i));
+    }
 }
 
 }  // namespace
