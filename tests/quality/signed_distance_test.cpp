@@ -71,5 +71,22 @@ TEST(SignedDistance, HasNoSideAtAnEdgeOfFacesBackToBack) {
 
 TEST(SignedDistance, RefusesAnEmptyMesh) { EXPECT_THROW(SignedDistance({}), InvalidInput); }
 
+TEST(SignedDistance, IsThatOfEveryPointAlone) {
+  TriangleMesh open = shapes::icosphere(2);
+  open.faces.conservativeResize(3, open.faces.cols() - 40);
+  Points x(3, 4000);  // a walk in and out of the surface
+  const Points steps = 0.15 * test::random_points(x.cols(), 8);
+  for (Eigen::Index i = 0; i < x.cols(); ++i)
+    x.col(i) = i == 0 ? Vector3(0, 0, 0) : Vector3(0.99 * x.col(i - 1) + steps.col(i));
+  x.col(77) = x.col(78) = open.vertices.col(3);
+  for (const TriangleMesh& mesh :
+       {shapes::icosphere(2), open, shapes::joined(shapes::icosphere(2), shapes::cube())}) {
+    const SignedDistance surface(mesh);
+    const SignedDistance::Values values = surface(x);
+    for (Eigen::Index i = 0; i < x.cols(); ++i)
+      ASSERT_EQ(values.distance[static_cast<std::size_t>(i)], surface(x.col(i)).distance.front()) << i;
+  }
+}
+
 }  // namespace
 }  // namespace bespoke

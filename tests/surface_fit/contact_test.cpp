@@ -99,5 +99,19 @@ TEST(SeparateContacts, RefusesWhatCannotBe) {
   EXPECT_THROW(separate_contacts(source, source.vertices, {.gap = 0.1, .reach = 0.05}), InvalidInput);
 }
 
+TEST(SeparateContacts, MovesNothingFarFromContacts) {
+  const TriangleMesh ball = shapes::icosphere(5);
+  const auto apart = [&](double distance) {
+    return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), distance * direction}));
+  };
+  const TriangleMesh source = apart(4), fitted = apart(1.999);
+  const ContactFit fit = separate_contacts(source, fitted.vertices, contact_options);
+  EXPECT_EQ(fit.summary.left, 0u);
+  for (Eigen::Index i = 0; i < ball.vertices.cols(); ++i)
+    if (ball.vertices.col(i).dot(direction) < -0.5) {
+      EXPECT_EQ(fit.vertices.col(i), fitted.vertices.col(i));
+    }
+}
+
 }  // namespace
 }  // namespace bespoke

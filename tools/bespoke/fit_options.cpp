@@ -165,8 +165,7 @@ void add_method_options(CLI::App& fit, FitArguments& arguments) {
   fit.add_option(
          "--steps", arguments.steps,
          "Steps of the chain of maps (default: 1 for models in about the same pose, else by the largest turn "
-         "of a part; more where fewer would fold or miss vertices). One remains one; of more, steps that "
-         "fold when baked, or are predicted to, are divided")
+         "of a part; more where fewer would hold up the fit or miss vertices)")
       ->check(CLI::Range(1, 100))
       ->type_name("N");
   add_name_option(fit, "--path", arguments.path, rotation_paths,

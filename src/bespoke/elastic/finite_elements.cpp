@@ -165,7 +165,10 @@ class Solver {
  private:
   /// |u(vᵢ) − uᵢ| at the minimum.
   std::vector<double> minimised(int level) {
-    ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
+    if (!objective_)
+      objective_ =
+          std::make_unique<ElementObjective>(*elements_, ElementData{sources_, wanted_, shares_}, barriers_);
+    ElementObjective& objective = *objective_;
     std::size_t iterations = 0, evaluations = 0;
     const Objective of_coefficients{[&](const Points& x, Points& gradient) {
                                       progress_.check();
@@ -205,14 +208,14 @@ class Solver {
 
   /// Where cells are so many times beyond the bounds their places count less. Whether there are any.
   bool loosen(double times) {
-    const ElementObjective objective(*elements_, {sources_, wanted_, shares_}, barriers_);
-    const std::vector<std::size_t> squeezed =
-        objective.squeezed(coefficients_, {1 / (times * options_.max_squeeze),
-                                           std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2});
+    const std::vector<std::size_t> squeezed = objective_->squeezed(
+        coefficients_, {1 / (times * options_.max_squeeze),
+                        std::pow(std::cbrt(times) * options_.max_length_squeeze, 2) + 2});
     for (const std::size_t place : squeezed) {
       summary_.loosened += place < vertices_ && shares_[place] >= 1;
       shares_[place] *= loosening;
     }
+    objective_->set_shares(shares_);
     return !squeezed.empty();
   }
 
@@ -265,6 +268,7 @@ class Solver {
     auto refined = std::make_unique<NestedElements>(coarsest_, std::move(nodes));
     coefficients_ = transferred(*elements_, coefficients_, *refined);
     refined->weigh(element_weights(*refined, source_, options_.lambda, elements_.get()));
+    objective_.reset();  // refers to the elements
     elements_ = std::move(refined);
     return true;
   }
@@ -281,6 +285,7 @@ class Solver {
   Lattice coarsest_;
   double weighted_area_ = 0;  ///< of a place
   std::unique_ptr<NestedElements> elements_;
+  std::unique_ptr<ElementObjective> objective_;  ///< on these
   Points coefficients_;
   FiniteElementSummary summary_;
 };

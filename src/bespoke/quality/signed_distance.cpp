@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "bespoke/mesh/closest_point.h"
@@ -13,6 +15,9 @@
 
 namespace bespoke {
 namespace {
+
+// Of distances: far above their rounding.
+constexpr double slack = 1e-6;
 
 // Vertices at exactly one position get the index of the first of them.
 TriangleMesh joined_at_equal_positions(const TriangleMesh& mesh) {
@@ -63,9 +68,15 @@ struct SignedDistance::Surface {
     at_edges = edge_normals(joined, table, normals);
   }
 
+  /// max_distance: within which there is one, but for rounding.
+  SurfacePoint closest(const Vector3& x, double max_distance) const {
+    const std::optional<SurfacePoint> within = tree.closest(x, {.max_distance = max_distance});
+    return within ? *within : *tree.closest(x);
+  }
+
   /// behind: of the closest point, by the normal there.
   bool is_inside(const Vector3& x, bool behind) const {
-    return closed ? winding.whole(x) != 0 : behind || winding(x) > 0.5;
+    return closed ? winding.whole(x) != 0 : behind || winding.exceeds_half(x);
   }
 
   // The weight of an edge's point is exactly zero for the opposite corner, and so on: see ClosestPointTree.
@@ -99,14 +110,23 @@ SignedDistance::Values SignedDistance::operator()(const Points& x) const {
   const auto count = static_cast<std::size_t>(x.cols());
   Values values{std::vector<double>(count), std::vector<char>(count)};
   parallel_for(count, 256, [&](std::size_t begin, std::size_t end) {
+    Vector3 before = Vector3::Zero();
+    double distance_before = std::numeric_limits<double>::infinity();
+    bool is_inside = false;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3 point = x.col(static_cast<Eigen::Index>(i));
-      const SurfacePoint at = *surface_->tree.closest(point);
+      // Points in turn are often near each other: the surface is no farther than by way of the last one.
+      const double step = (point - before).norm();
+      const SurfacePoint at = surface_->closest(point, (distance_before + step) * (1 + slack));
       const Vector3 normal = surface_->normal_at(at);
       const double distance = std::sqrt(at.squared_distance);
-      const bool is_inside = surface_->is_inside(point, (point - at.point).dot(normal) < 0);
+      // Where none of a closed surface is between, neither is another side of it.
+      if (!surface_->closed || i == begin || !(step < std::max(distance, distance_before) * (1 - slack)))
+        is_inside = surface_->is_inside(point, (point - at.point).dot(normal) < 0);
       values.distance[i] = is_inside ? -distance : distance;
       values.sided[i] = !normal.isZero(0);
+      before = point;
+      distance_before = distance;
     }
   });
   return values;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "bespoke/error.h"
 #include "bespoke/mesh/closest_point.h"
@@ -19,6 +21,7 @@ namespace {
 // Of the smooth displacement: weight of an edge and of staying in place against that of a vertex in contact.
 // A displacement fades over about √(stiffness / rest) = 3 edges.
 constexpr double stiffness = 0.05, rest = 0.005;
+constexpr int affected_rings = 20;  // of edges around contacts; farther ones keep their place
 constexpr int patience = 5;         // steps without fewer contacts: folded parts push each other to and fro
 constexpr double overshoot = 0.25;  // of the gap: contacts that are solved together then settle in few steps
 
@@ -42,8 +45,9 @@ class ContactSearch {
         source_face_normals_(face_normals(source)) {}
 
   /// In the order of the vertices.
-  std::vector<Contact> operator()(const TriangleMesh& fitted) const {
-    const ClosestPointTree tree(fitted);
+  std::vector<Contact> operator()(const TriangleMesh& fitted) {
+    tree_.emplace(tree_ ? tree_->moved(fitted) : ClosestPointTree(fitted));
+    const ClosestPointTree& tree = *tree_;
     const Points facing = face_normals(fitted), normals = vertex_normals(fitted, facing);
     std::vector<std::optional<Contact>> found(static_cast<std::size_t>(fitted.vertices.cols()));
     constexpr std::size_t grain = 256;
@@ -99,35 +103,72 @@ class ContactSearch {
   const ContactOptions& options_;
   double fitted_size_;
   Points source_vertex_normals_, source_face_normals_;
+  std::optional<ClosestPointTree> tree_;  ///< of the last fitted surface
 };
 
 /// Displacements that separate the vertices in contact and fade along the edges around (screened Laplacian):
 /// the minimum of Σ wᵢ|δᵢ − dᵢ|² + stiffness Σ |δᵢ − δⱼ|² over edges + rest Σ |δᵢ|², factored anew for every
-/// set of contacts.
+/// set of contacts, over the vertices around them.
 class SmoothDisplacement {
  public:
   explicit SmoothDisplacement(const TriangleMesh& mesh) : adjacency_(vertex_adjacency(mesh)) {}
 
   /// weights: n, ≥ 0; wanted: n×3, the sum of weight × displacement. 3×n.
   Points operator()(const Eigen::VectorXd& weights, const Eigen::MatrixX3d& wanted) const {
-    const auto count = static_cast<int>(weights.size());
+    const std::vector<int> affected = around(weights);
+    const auto count = static_cast<int>(affected.size());
+    std::vector<int> number(static_cast<std::size_t>(weights.size()), none);
+    for (int k = 0; k < count; ++k)
+      number[static_cast<std::size_t>(affected[static_cast<std::size_t>(k)])] = k;
     std::vector<Eigen::Triplet<double>> entries;
-    for (int i = 0; i < count; ++i) {
-      const int begin = adjacency_.start[static_cast<std::size_t>(i)];
-      const int end = adjacency_.start[static_cast<std::size_t>(i) + 1];
-      entries.emplace_back(i, i, weights[i] + rest + stiffness * (end - begin));
-      for (int k = begin; k < end; ++k)
-        entries.emplace_back(i, adjacency_.neighbours[static_cast<std::size_t>(k)], -stiffness);
+    for (int k = 0; k < count; ++k) {
+      const int vertex = affected[static_cast<std::size_t>(k)];
+      const std::span<const int> neighbours = neighbours_of(vertex);
+      entries.emplace_back(k, k, weights[vertex] + rest + stiffness * static_cast<double>(neighbours.size()));
+      for (const int neighbour : neighbours)
+        if (const int column = number[static_cast<std::size_t>(neighbour)]; column != none)
+          entries.emplace_back(k, column, -stiffness);
     }
     Eigen::SparseMatrix<double> matrix(count, count);
     matrix.setFromTriplets(entries.begin(), entries.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
     if (factor.info() != Eigen::Success)
-      throw SolverError("the separation of " + std::to_string(count) + " vertices in contact was not solved");
-    return Eigen::MatrixX3d(factor.solve(wanted)).transpose();
+      throw SolverError("the separation of " + std::to_string(count) +
+                        " vertices around contacts was not solved");
+    Points displacements = Points::Zero(3, weights.size());
+    displacements(Eigen::all, affected) =
+        Eigen::MatrixX3d(factor.solve(Eigen::MatrixX3d(wanted(affected, Eigen::all)))).transpose();
+    return displacements;
   }
 
  private:
+  static constexpr int none = -1;
+
+  std::span<const int> neighbours_of(int vertex) const {
+    const auto at = static_cast<std::size_t>(vertex);
+    return {adjacency_.neighbours.data() + adjacency_.start[at],
+            adjacency_.neighbours.data() + adjacency_.start[at + 1]};
+  }
+
+  /// The vertices of a weight and those within a number of edges, rising.
+  std::vector<int> around(const Eigen::VectorXd& weights) const {
+    std::vector<char> found(static_cast<std::size_t>(weights.size()), 0);
+    std::vector<int> all, ring, next;
+    for (int i = 0; i < weights.size(); ++i)
+      if (weights[i] > 0 && !std::exchange(found[static_cast<std::size_t>(i)], 1)) ring.push_back(i);
+    for (int rings = 0;; ++rings) {
+      all.insert(all.end(), ring.begin(), ring.end());
+      if (rings == affected_rings || ring.empty()) break;
+      next.clear();
+      for (const int vertex : ring)
+        for (const int neighbour : neighbours_of(vertex))
+          if (!std::exchange(found[static_cast<std::size_t>(neighbour)], 1)) next.push_back(neighbour);
+      ring.swap(next);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
   VertexAdjacency adjacency_;
 };
 
@@ -187,7 +228,7 @@ ContactFit separate_contacts(const TriangleMesh& source, const Points& fitted, c
   ContactFit fit{fitted, {}};
   if (options.gap == 0) return fit;
   ContactSummary& summary = fit.summary;
-  const ContactSearch search(source, growth(source, fitted), options);
+  ContactSearch search(source, growth(source, fitted), options);
   TriangleMesh surface{fitted, source.faces};
   std::vector<Contact> contacts = search(surface);
   summary.touching = summary.left = contacts.size();

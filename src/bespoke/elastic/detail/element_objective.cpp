@@ -34,21 +34,37 @@ ElementObjective::ElementObjective(const NestedElements& elements, const Element
       terms_[i] = {elements.places(data.places.col(column)), data.wanted.col(column), data.shares[i]};
     }
   });
-  for (const ElementLevel& level : elements.levels()) data_diagonal_.emplace_back(level.points.size(), 0.0);
-  for (const Term& term : terms_)
-    for (const ElementPlace& place : term.places)
+  set_shares(data.shares);
+}
+
+void ElementObjective::set_shares(const std::vector<double>& shares) {
+  data_diagonal_.clear();
+  for (const ElementLevel& level : elements_.levels()) data_diagonal_.emplace_back(level.points.size(), 0.0);
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    terms_[i].share = shares[i];
+    for (const ElementPlace& place : terms_[i].places)
       for (std::size_t corner = 0; corner < 8; ++corner)
         data_diagonal_[static_cast<std::size_t>(place.level)]
                       [static_cast<std::size_t>(place.corners[corner])] +=
-            term.share * place.weights[corner] * place.weights[corner];
+            shares[i] * place.weights[corner] * place.weights[corner];
+  }
+}
+
+void ElementObjective::set_bounds(const DistortionBounds& bounds) {
+  bounds_ = bounds;
+  at_.resize(3, 0);
 }
 
 double ElementObjective::operator()(const Points& coefficients, Points& gradient) {
-  elements_.evaluate(coefficients, values_);
-  gradients_.resize(values_.size());
-  for (std::size_t k = 0; k < values_.size(); ++k) gradients_[k].setZero(3, values_[k].cols());
-  distortion_ = add_distortion(elements_, values_, bounds_, gradients_, scratch_);
+  if (coefficients.cols() != at_.cols() || coefficients.cols() == 0 || coefficients != at_) {
+    at_ = coefficients;
+    elements_.evaluate(coefficients, values_);
+    distortion_gradients_.resize(values_.size());
+    for (std::size_t k = 0; k < values_.size(); ++k) distortion_gradients_[k].setZero(3, values_[k].cols());
+    distortion_ = add_distortion(elements_, values_, bounds_, distortion_gradients_, scratch_);
+  }
   if (!std::isfinite(distortion_.energy)) return distortion_.energy;
+  gradients_ = distortion_gradients_;
   double data = 0;
   for (const Term& term : terms_) {
     if (term.places.empty()) continue;

@@ -20,10 +20,12 @@ class ElementObjective {
  public:
   ElementObjective(const NestedElements& elements, const ElementData& data, const DistortionBounds& bounds);
 
-  void set_bounds(const DistortionBounds& bounds) { bounds_ = bounds; }
+  void set_bounds(const DistortionBounds& bounds);
   void set_weight(double weight) { weight_ = weight; }
+  void set_shares(const std::vector<double>& shares);  ///< n
 
-  /// The energy and, where it is finite, its gradient.
+  /// The energy and, where it is finite, its gradient. The distortion is computed once for coefficients that
+  /// are those of the last call.
   double operator()(const Points& coefficients, Points& gradient);
 
   /// About the inverse of the Hessian's diagonal at the state of the last call, one number per unknown.
@@ -55,8 +57,9 @@ class ElementObjective {
   std::vector<std::vector<double>> data_diagonal_;  // of the Hessian for weight 1, per point and level
   double weight_ = 0;
   Distortion distortion_;
-  std::vector<Points> values_, gradients_;  // of the last call, per level
-  std::vector<double> scratch_;             // of add_distortion
+  Points at_;                                                      // the last call's coefficients
+  std::vector<Points> values_, distortion_gradients_, gradients_;  // of the last call, per level
+  std::vector<double> scratch_;                                    // of add_distortion
 };
 
 }  // namespace bespoke

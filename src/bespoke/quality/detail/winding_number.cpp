@@ -13,7 +13,7 @@ namespace {
 
 // Distance from which a group counts as a whole, in its radii: on nested spheres the largest error is 0.056
 // at 2, which Barill et al. recommend for one derivative more, and 0.01 at 4.
-constexpr double far_in_radii = 4, far_for_whole_numbers = 2;
+constexpr double far_in_radii = 4, far_roughly = 2;
 
 /// A sum of solid angles, each by Van Oosterom, Strackee 1983, Eq. 8: the argument of a complex number is
 /// half of it. Arguments below a right angle are summed by multiplying the numbers, which spares most
@@ -137,7 +137,13 @@ WindingNumber& WindingNumber::operator=(WindingNumber&&) noexcept = default;
 double WindingNumber::operator()(const Vector3& x) const { return number(x, far_in_radii); }
 
 int WindingNumber::whole(const Vector3& x) const {
-  return static_cast<int>(std::lround(number(x, far_for_whole_numbers)));
+  return static_cast<int>(std::lround(number(x, far_roughly)));
+}
+
+bool WindingNumber::exceeds_half(const Vector3& x) const {
+  constexpr double undecided = 0.1;  // twice the largest error
+  const double about = number(x, far_roughly);
+  return (std::abs(about - 0.5) > undecided ? about : (*this)(x)) > 0.5;
 }
 
 double WindingNumber::number(const Vector3& x, double radii) const {

@@ -23,6 +23,8 @@ class WindingNumber {
   double operator()(const Vector3& x) const;
   /// Of a closed surface, whose number is whole: rounded from a sum with an error below 0.1, in less time.
   int whole(const Vector3& x) const;
+  /// Whether it exceeds 1/2, from a sum with a larger error where that decides.
+  bool exceeds_half(const Vector3& x) const;
 
  private:
   double number(const Vector3& x, double radii) const;
