@@ -21,7 +21,8 @@ struct RegistrationByAnchors {
   std::vector<std::size_t> numbers;  // of the fit's anchors, among those given
 };
 
-enum class Pairs { doubted, trusted };
+/// Whether outliers among pairs are told before a pose, in it, or not at all (SurfaceFitInput).
+enum class Doubts { before_pose, in_pose, none };
 
 /// One flag a pair: whether the fit may leave it out. Pairs with a given accuracy are taken as they are,
 /// those of curves and counterparts are no anchors.
@@ -56,19 +57,19 @@ EstimatedAnchors without_outliers(EstimatedAnchors estimated, const Registration
 
 /// By anchors and by what is known of places far from them: aligned (IV.A, IV.B), then fitted (IV.C).
 RegistrationByAnchors register_by_pairs(const RegistrationTask& task, EstimatedAnchors estimated,
-                                        const std::vector<AnchorPair>& counterparts, Pairs which,
+                                        const std::vector<AnchorPair>& counterparts, Doubts doubts,
                                         const Progress& progress) {
   std::vector<AnchorPair> leading = task.of_parts;
   leading.insert(leading.end(), counterparts.begin(), counterparts.end());
   AnchorAlignment aligned = align_by_anchors(task.problem, estimated, leading, progress);
   const PointPairs& pairs = aligned.pairs;
   std::vector<char> doubted;
-  if (which == Pairs::doubted)
+  if (doubts != Doubts::none)
     doubted = doubted_pairs(task, estimated, static_cast<std::size_t>(pairs.sources.cols()));
-  SurfaceFit fit =
-      fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources, pairs.targets,
-                   pairs.weights, pairs.sigmas, task.patches.source, task.patches.target, std::move(doubted)},
-                  task.options, progress);
+  SurfaceFit fit = fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources,
+                                pairs.targets, pairs.weights, pairs.sigmas, task.patches.source,
+                                task.patches.target, std::move(doubted), doubts == Doubts::before_pose},
+                               task.options, progress);
   Registration registration;
   registration.target_from_source = aligned.target_from_source;
   registration.fitted_vertices = std::move(fit.vertices);
@@ -127,7 +128,7 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
   if (!is_suspect(figures)) return by_anchors;
 
   RegistrationByAnchors trial =
-      register_by_pairs(task, estimated, pairs_of(counterparts, sigma), Pairs::trusted, progress);
+      register_by_pairs(task, estimated, pairs_of(counterparts, sigma), Doubts::none, progress);
   const bool taken =
       placement(registered_vertices(trial.registration)).misfit() < clearly_better * figures.misfit();
   RegistrationByAnchors result = std::move(taken ? trial : by_anchors);
@@ -136,27 +137,30 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
   return result;
 }
 
-double misfit(const RegistrationByAnchors& fit, const RegistrationTask& task) {
-  return PlacementScore(task.problem.source, task.problem.target)(registered_vertices(fit.registration))
-      .misfit();
-}
-
 bool has_left_out(const RegistrationByAnchors& fit) {
   return !fit.registration.summary.surface->outlier_anchors.empty();
 }
 
-/// Without the outliers that the fit finds. Where the anchors pose the source, it is posed anew without them,
-/// until no more are found, and what explains the target worse than a fit with all pairs is not kept: in a
-/// pose that the others do not tell, a right pair looks like an outlier.
+/// Without the outliers that the fit finds. Where that may be wrong, the outliers may have posed the source,
+/// or it is in a pose in which right pairs look like outliers: it is fitted without those that a nearly
+/// affine fit leaves out, anew without those found, and without a doubt; what explains the target best is
+/// kept.
 RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
                                           const Progress& progress) {
-  constexpr int max_rounds = 3;
-  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, Pairs::doubted, progress);
-  if (!has_left_out(fit) || !fit.registration.summary.surface->posed_by_anchors) return fit;
-  RegistrationByAnchors best = register_by_pairs(task, estimated, {}, Pairs::trusted, progress);
-  for (int round = 0; round < max_rounds && has_left_out(fit); ++round) {
-    fit = register_by_pairs(task, fit.estimated, {}, Pairs::doubted, progress);
-    if (misfit(fit, task) < misfit(best, task)) best = fit;
+  RegistrationByAnchors best = register_by_pairs(task, estimated, {}, Doubts::in_pose, progress);
+  if (!has_left_out(best)) return best;
+  const PlacementScore placement(task.problem.source, task.problem.target);
+  PlacementFigures figures = placement(registered_vertices(best.registration));
+  const EstimatedAnchors without_found = best.estimated;
+  const std::pair<const EstimatedAnchors&, Doubts> others[] = {
+      {estimated, Doubts::before_pose}, {without_found, Doubts::in_pose}, {estimated, Doubts::none}};
+  for (const auto& [pairs, doubts] : others) {
+    if (!is_suspect(figures)) break;
+    RegistrationByAnchors other = register_by_pairs(task, pairs, {}, doubts, progress);
+    const PlacementFigures of_other = placement(registered_vertices(other.registration));
+    if (!(of_other.misfit() < figures.misfit())) continue;
+    best = std::move(other);
+    figures = of_other;
   }
   return best;
 }
@@ -211,7 +215,7 @@ Registration register_by_anchors(const RegistrationTask& task, const Anchors& an
   if (doubts && !may_leave_out(task, estimated))
     let_contradicting_share(estimated, given.pairs.size(), task.options.max_stretch);
   RegistrationByAnchors best = doubts ? register_by_inliers(task, estimated, progress)
-                                      : register_by_pairs(task, estimated, {}, Pairs::trusted, progress);
+                                      : register_by_pairs(task, estimated, {}, Doubts::none, progress);
   if (doubts) best = with_counterparts(task, std::move(best), progress);
   Registration result = best.registration;
   CoarseSummary& coarse = *result.summary.coarse;

@@ -32,6 +32,7 @@ struct SurfaceAnchors {
   std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
   std::vector<Eigen::Index> given;  // k: columns among all anchors of the fit
   std::vector<char> doubted;        // k, or empty
+  bool doubts_before_pose = false;
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
@@ -65,7 +66,8 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
                          sigmas(near),
                          {},
                          near,
-                         {}};
+                         {},
+                         input.doubts_before_pose};
   if (!input.anchor_doubted.empty())
     for (const Eigen::Index k : near)
       anchors.doubted.push_back(input.anchor_doubted[static_cast<std::size_t>(k)]);
@@ -204,9 +206,11 @@ Eigen::VectorXd pose_sigmas(const Scene& scene, const PoseSettings& settings) {
 
 /// Whether closest points cannot find what anchors tell: two at least, since one alone may be an outlier, are
 /// farther from their targets than closest points reach.
-bool are_out_of_reach(const Scene& scene, const Points& anchors, const DeformationGraphSettings& settings) {
+bool are_out_of_reach(const Scene& scene, const Points& anchors, const std::vector<Eigen::Index>& outliers,
+                      const DeformationGraphSettings& settings) {
   const double reach = settings.nodes.max_distance * scene.diagonal;
-  const Eigen::VectorXd distances = (anchors - scene.anchors.targets).colwise().norm();
+  Eigen::VectorXd distances = (anchors - scene.anchors.targets).colwise().norm();
+  for (const Eigen::Index k : outliers) distances[k] = 0;
   return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).count() > 1;
 }
 
@@ -221,7 +225,7 @@ struct Deforming {
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& how,
                   SurfaceFitSummary& summary) {
   const DeformationGraphSettings& settings = how.settings;
-  const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
+  Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
   std::optional<PosingByAnchors> posing;
   const auto degrees_by_anchors = [&] {
     posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal,
@@ -236,9 +240,16 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
                         scene.patches, is_posed, scene.anchors.doubted},
                        settings.nodes, how.progress);
   };
-  if (are_out_of_reach(scene, anchors, settings)) {
+  std::vector<Eigen::Index> outliers;
+  if (scene.anchors.doubts_before_pose) outliers = fitting(scene.surface, anchors, false).outliers_at_rest();
+  constexpr double anywhere = 100;  // diagonals: an anchor of this σ poses nothing
+  for (const Eigen::Index k : outliers) sigmas[k] = anywhere * scene.diagonal;
+  bool is_posed = are_out_of_reach(scene, anchors, outliers, settings);
+  if (is_posed) {
     degrees_by_anchors();
-  } else {
+    is_posed = are_out_of_reach(scene, anchors, posing->outliers(), settings);
+  }
+  if (!is_posed) {
     NodeFitting straight = fitting(scene.surface, anchors, false);
     if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.min_rigid_turn))
       return straight.fit_fine();

@@ -274,6 +274,10 @@ PosingByAnchors::~PosingByAnchors() = default;
 
 double PosingByAnchors::rotation_spread() const { return coarse_ ? coarse_->rotation_spread() : 0; }
 
+std::vector<Eigen::Index> PosingByAnchors::outliers() const {
+  return posterior_ ? posterior_->outliers() : std::vector<Eigen::Index>();
+}
+
 AnchorPose PosingByAnchors::bent() const {
   AnchorPose result{input_.rest.vertices, input_.anchor_sources};
   if (!coarse_) return result;

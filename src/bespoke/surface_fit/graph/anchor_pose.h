@@ -39,6 +39,9 @@ class PosingByAnchors {
   /// Largest angle between a node's rotation and the mean one, radians.
   double rotation_spread() const;
 
+  /// The anchors that the pose leaves out, ascending.
+  std::vector<Eigen::Index> outliers() const;
+
   /// As many nodes pose it. Throws SolverError.
   AnchorPose bent() const;
 

@@ -148,29 +148,51 @@ std::unique_ptr<NodeSystem> NodeFitting::system(const NodeLevel& level) const {
   return nodes;
 }
 
+std::vector<PlanePair> NodeFitting::plane_pairs(const NodeLevel& level) const {
+  return find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
+                           input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
+                          level, settings_);
+}
+
+/// Without limits of the anchors. iteration: of the level.
+NodeGoals NodeFitting::goals(const std::vector<PlanePair>& planes, const std::vector<BoundaryMatch>& cuts,
+                             int iteration) const {
+  return {fit_.vertices,
+          planes,
+          cuts,
+          smoothing_length(settings_, fit_.iterations, input_.diagonal),
+          settings_.anchor_growth * (iteration + 1),
+          {},
+          fit_.rigidity,
+          posterior_.inliers()};
+}
+
+std::vector<Eigen::Index> NodeFitting::outliers_at_rest() {
+  if (!posterior_.is_active()) return {};
+  const NodeLevel& level = settings_.levels.front();
+  const std::unique_ptr<NodeSystem> few = system(level);
+  const std::vector<PlanePair> planes = plane_pairs(level);
+  const std::vector<BoundaryMatch> no_cuts;
+  NodeGoals at_rest = goals(planes, no_cuts, 0);
+  at_rest.anchor_limits = next_limits(at_rest);
+  few->solve(at_rest);
+  solved_without_outliers(*few, at_rest);
+  return posterior_.outliers();
+}
+
 /// Non-rigid iterative closest points (Amberg, Romdhani, Vetter 2007).
 void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
   for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit_.iterations) {
     progress_.step("surface-fit", static_cast<std::size_t>(fit_.iterations),
                    static_cast<std::size_t>(total_iterations(settings_)));
-    const std::vector<PlanePair> planes =
-        find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
-                          input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
-                         level, settings_);
+    const std::vector<PlanePair> planes = plane_pairs(level);
     if (fit_.iterations == settings_.boundary_start) boundaries_.decide(fit_.vertices);
     const std::vector<BoundaryMatch> cuts = boundaries_.match(fit_.vertices);
-    NodeGoals goals{fit_.vertices,
-                    planes,
-                    cuts,
-                    smoothing_length(settings_, fit_.iterations, input_.diagonal),
-                    settings_.anchor_growth * (iteration + 1),
-                    {},
-                    fit_.rigidity,
-                    posterior_.inliers()};
-    goals.anchor_limits = next_limits(goals);
-    fit_.vertices = system.solve(goals);
+    NodeGoals now = goals(planes, cuts, iteration);
+    now.anchor_limits = next_limits(now);
+    fit_.vertices = system.solve(now);
     if (posterior_.is_active() && &level == &settings_.levels.front())
-      fit_.vertices = solved_without_outliers(system, goals);
+      fit_.vertices = solved_without_outliers(system, now);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/node_system.h"
 #include "bespoke/surface_fit/matching/boundary_match.h"
+#include "bespoke/surface_fit/matching/plane_pairs.h"
 #include "bespoke/surface_fit/matching/target_surface.h"
 #include "bespoke/surface_fit/matching/unmatched_cavities.h"
 #include "bespoke/surface_fit/surface_fit.h"
@@ -58,6 +59,9 @@ class NodeFitting {
   /// The input's references and the progress must outlive it.
   NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
 
+  /// The anchors that a nearly affine fit of the rest surface leaves out. Throws SolverError.
+  std::vector<Eigen::Index> outliers_at_rest();
+
   /// The first level. Returns the rigidity g ≥ 1 of the pair (NodeGoals), 1 where bodies differ as they
   /// mostly do. Throws SolverError.
   double fit_coarse();
@@ -68,6 +72,9 @@ class NodeFitting {
  private:
   std::unique_ptr<NodeSystem> system(const NodeLevel& level) const;
   void iterate(NodeSystem& system, const NodeLevel& level);
+  std::vector<PlanePair> plane_pairs(const NodeLevel& level) const;
+  NodeGoals goals(const std::vector<PlanePair>& planes, const std::vector<BoundaryMatch>& cuts,
+                  int iteration) const;
   std::vector<double> next_limits(const NodeGoals& goals);
   Points solved_without_outliers(NodeSystem& system, NodeGoals goals);
   void find_unmatched_cavities();
