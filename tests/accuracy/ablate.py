@@ -107,7 +107,7 @@ RULES = [
     Rule("swapped anchors dropped", "σ", file="anchors/anchor_accuracy.cpp",
          old="accuracy.swapped = swapped_anchors(anchors);", new="accuracy.swapped = {};"),
     Rule("contradicting anchors share their difference", "σ", file="registration/detail/register_by_anchors.cpp",
-         old="if (doubts && !may_leave_out(task, estimated))", new="if (false)"),
+         old="best = with_shared_contradictions(task, std::move(best), progress);", new="best = best;"),
     by_value("outliers among anchors", "outliers", OutlierAnchorSettings__min_doubted=1000000),
     Rule("fitted anew without outliers", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (!is_suspect(figures)) break;", new="if (is_suspect(figures) || true) break;"),

@@ -12,11 +12,11 @@ using testing::IsEmpty;
 
 /// Anchors on a surface of unit area and diagonal, all doubted, off by 2 % of it where the others would put
 /// them.
-struct Scene {
+struct Doubted {
   DoubtedAnchors anchors;
   LeftOutAnchors left_out;
 
-  explicit Scene(int count = 12) {
+  explicit Doubted(int count = 12) {
     anchors.doubted.assign(static_cast<std::size_t>(count), 1);
     anchors.sigmas = Eigen::VectorXd::Zero(count);
     anchors.area = anchors.diagonal = 1;
@@ -30,50 +30,50 @@ struct Scene {
   }
 };
 
-TEST(AnchorPosterior, HasNoOutlierAmongEqualDistances) { EXPECT_THAT(Scene().outliers(), IsEmpty()); }
+TEST(AnchorPosterior, HasNoOutlierAmongEqualDistances) { EXPECT_THAT(Doubted().outliers(), IsEmpty()); }
 
 TEST(AnchorPosterior, TellsWhatLiesManyDeviationsOff) {
-  Scene scene;
+  Doubted scene;
   scene.left_out.distances[3] = 0.2;
   scene.left_out.distances[7] = 0.03;
   EXPECT_THAT(scene.outliers(), ElementsAre(3));
 }
 
 TEST(AnchorPosterior, ExpectsMoreOfWhatTheOthersHoldLess) {
-  Scene scene;
+  Doubted scene;
   scene.left_out.distances[3] = 0.2;
   scene.left_out.compliances[3] = 100;
   EXPECT_THAT(scene.outliers(), IsEmpty());
 }
 
 TEST(AnchorPosterior, IsOfAnyUnitOfTheCompliances) {
-  Scene scene;
+  Doubted scene;
   scene.left_out.distances[3] = 0.2;
   scene.left_out.compliances *= 1e6;
   EXPECT_THAT(scene.outliers(), ElementsAre(3));
 }
 
 TEST(AnchorPosterior, AllowsForGivenAccuracies) {
-  Scene scene;
+  Doubted scene;
   scene.left_out.distances[3] = 0.2;
   scene.anchors.sigmas[3] = 0.1;
   EXPECT_THAT(scene.outliers(), IsEmpty());
 }
 
 TEST(AnchorPosterior, DoubtsNoneThatIsNotToBeDoubted) {
-  Scene scene;
+  Doubted scene;
   scene.left_out.distances[3] = scene.left_out.distances[4] = 0.2;
   scene.anchors.doubted[3] = 0;
   EXPECT_THAT(scene.outliers(), ElementsAre(4));
 }
 
 TEST(AnchorPosterior, IsIdleWithFewAnchors) {
-  EXPECT_TRUE(AnchorPosterior(Scene(7).anchors, {}).is_active());
-  EXPECT_FALSE(AnchorPosterior(Scene(6).anchors, {}).is_active());
+  EXPECT_TRUE(AnchorPosterior(Doubted(7).anchors, {}).is_active());
+  EXPECT_FALSE(AnchorPosterior(Doubted(6).anchors, {}).is_active());
 }
 
 TEST(AnchorPosterior, TellsNothingWhereMoreThanAThirdWouldGo) {
-  Scene scene;
+  Doubted scene;
   for (const int k : {0, 1, 2, 3}) scene.left_out.distances[k] = 0.5;
   EXPECT_THAT(scene.outliers(), ElementsAre(0, 1, 2, 3));
   scene.left_out.distances[4] = 0.5;

@@ -55,7 +55,7 @@ class RegistrationEnergyTest : public testing::Test {
     std::vector<std::vector<int>> all(static_cast<std::size_t>(nodes_.size()));
     for (auto& row : all)
       for (int node = 0; node < nodes_.size(); ++node) row.push_back(node);
-    BlockSystem system(all);
+    BlockSystem system(all, nodes_.rest);
     energy.add_step(term, system);
     return system.gradient(now_);
   }

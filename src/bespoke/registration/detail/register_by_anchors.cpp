@@ -9,7 +9,6 @@
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/registration/detail/align_by_anchors.h"
 #include "bespoke/stopwatch.h"
-#include "bespoke/surface_fit/deformation_graph_settings.h"
 
 namespace bespoke {
 namespace {
@@ -35,12 +34,6 @@ std::vector<char> doubted_pairs(const RegistrationTask& task, const EstimatedAnc
     doubted[k] = number < given.size() && has_no_given_sigma(given[number]);
   }
   return doubted;
-}
-
-/// Whether there are enough of them for the others to tell which are wrong.
-bool may_leave_out(const RegistrationTask& task, const EstimatedAnchors& estimated) {
-  const std::vector<char> doubted = doubted_pairs(task, estimated, estimated.kept.size());
-  return std::count(doubted.begin(), doubted.end(), 1) >= OutlierAnchorSettings().min_doubted;
 }
 
 /// Without the pairs that the fit left out.
@@ -165,6 +158,15 @@ RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const Es
   return best;
 }
 
+/// Where exact pairs that the fit kept contradict each other, another that need not meet them.
+RegistrationByAnchors with_shared_contradictions(const RegistrationTask& task, RegistrationByAnchors fit,
+                                                 const Progress& progress) {
+  EstimatedAnchors shared = fit.estimated;
+  let_contradicting_share(shared, task.problem.anchors.pairs.size(), task.options.max_stretch);
+  if (shared.accuracy.given_way.size() == fit.estimated.accuracy.given_way.size()) return fit;
+  return register_by_pairs(task, std::move(shared), {}, Doubts::none, progress);
+}
+
 /// Of what the pairs alone make suspicious, what the fit did not test: the surfaces explain what it kept.
 AnchorAudit unexplained(const Anchors& given, const SurfaceFitSummary& surface) {
   AnchorAudit audit = audit_anchors(given);
@@ -210,13 +212,14 @@ Registration register_by_anchors(const RegistrationTask& task, const Anchors& an
                                  const Progress& progress) {
   const Anchors& given = task.problem.anchors;
   EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, task.problem.source, task.problem.target);
-  // The printed method takes all pairs.
-  const bool doubts = task.options.method == SurfaceFitMethod::deformation_graph;
-  if (doubts && !may_leave_out(task, estimated))
-    let_contradicting_share(estimated, given.pairs.size(), task.options.max_stretch);
-  RegistrationByAnchors best = doubts ? register_by_inliers(task, estimated, progress)
-                                      : register_by_pairs(task, estimated, {}, Doubts::none, progress);
-  if (doubts) best = with_counterparts(task, std::move(best), progress);
+  RegistrationByAnchors best;
+  if (task.options.method == SurfaceFitMethod::deformation_graph) {
+    best = register_by_inliers(task, estimated, progress);
+    best = with_shared_contradictions(task, std::move(best), progress);
+    best = with_counterparts(task, std::move(best), progress);
+  } else {  // the printed method takes all pairs
+    best = register_by_pairs(task, estimated, {}, Doubts::none, progress);
+  }
   Registration result = best.registration;
   CoarseSummary& coarse = *result.summary.coarse;
   coarse.contradicting = contradicting_anchors(given, given_sigmas(best.estimated, given));
