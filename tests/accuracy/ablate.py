@@ -38,7 +38,7 @@ CANDIDATE = 1.01  # of the errors on the first pairs: what costs more stays
 NUMBER = r"-?\d[\d.']*(?:e-?\d+)?"
 # What is no number of the method: work shared out, texts, sizes of types, and the printed method.
 NO_CONSTANTS = re.compile(r"grain|max_named|max_names|few_names|features|^none$|nobody|fixed$|tiny|infinity|median_of_normal")
-NO_FILES = re.compile(r"laplacian|displacement_smoother|derive_map|bake_|fit_steps|fit_map|whole_fit|unusable_fit|"
+NO_FILES = re.compile(r"laplacian|displacement_smoother|derive_map|bake_|fit_steps|fit_map|divided_map|whole_fit|unusable_fit|"
                       r"anchor_suggestions|elastic_|enclosed_faces|anchor_files|unmet_vertices|/meshlab|slicer|summary|"
                       r"point_files|anchor_curves|anchor_scale|anchor_placement|make_map|anchor_json")
 

@@ -231,6 +231,39 @@ TEST(MultiscaleMap, ComposesAfterTheAffinePart) {
   EXPECT_EQ(summed(Points(Vector3(2, 0, 0))), Points(Vector3(4, 0.1, 0)));
 }
 
+TEST(MultiscaleHalves, AreTheMapOneAfterTheOther) {
+  const Points sources = test::sphere_points(400);
+  const MultiscaleFit fit = fit_multiscale(sources, wrung(sources), with_options(0.6, 1e-3, true));
+  const auto [first, second] = halves(*fit.map, fit.summary);
+  ASSERT_GT(fit.map->layers().size(), 2u);
+  const std::size_t half = first.map->layers().size();
+  EXPECT_LE(2 * half, fit.map->layers().size());
+  EXPECT_GE(2 * half + 1, fit.map->layers().size());
+  const Points x = 3 * test::random_points(2000, 4);
+  EXPECT_LT(test::largest_distance((*second.map)((*first.map)(x)), (*fit.map)(x)), 1e-12);
+
+  const auto joined = [&](auto member) {
+    auto all = first.summary.*member;
+    all.insert(all.end(), (second.summary.*member).begin(), (second.summary.*member).end());
+    return all;
+  };
+  EXPECT_EQ(joined(&MultiscaleSummary::lambdas), fit.summary.lambdas);
+  EXPECT_EQ(joined(&MultiscaleSummary::centers), fit.summary.centers);
+  EXPECT_EQ(joined(&MultiscaleSummary::gradient_bounds), fit.summary.gradient_bounds);
+  EXPECT_EQ(second.summary.within_tolerance, fit.summary.within_tolerance);
+  EXPECT_EQ(first.summary.residuals.count, 0u) << "what is missed is known at the end alone";
+  EXPECT_THAT(to_string(first.summary), Not(HasSubstr("residual")));
+}
+
+TEST(MultiscaleHalves, AreRefusedWhereThereAreNone) {
+  const Points sources = test::sphere_points(400);
+  const MultiscaleFit summed = fit_multiscale(sources, wrung(sources), with_options(0.6, 1e-3, false));
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { halves(*summed.map, summed.summary); }),
+              HasSubstr("summed"));
+  const MultiscaleMap single(AffineMap{}, {summed.map->layers().front()}, true);
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { halves(single, {}); }), HasSubstr("1 composed"));
+}
+
 TEST(MultiscaleSummary, PrintsOneLine) {
   const Points sources = test::sphere_points(300);
   const std::string line =

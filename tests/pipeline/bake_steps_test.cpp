@@ -74,5 +74,50 @@ TEST(BakeSteps, OfOneStepAreItsBake) {
   EXPECT_EQ(baked.whole.error.max, expected.summary.error.max);
 }
 
+TEST(BakeSteps, EndAtAStepThatFoldsAndMayBeDividedAndGoOnFromThoseAfterIt) {
+  const BakeScene scene;
+  const std::vector<std::shared_ptr<const ElasticMap>> sound = chain(3).steps();
+  // A bump that moves points farther than it is wide takes space back over itself.
+  const auto folding =
+      std::make_shared<const AnalyticMap>(std::vector<Bump>{{Vector3(0.1, 0, 0), 0.3, Vector3(0.6, 0, 0)}});
+  const ElasticChain folded({sound[0], folding, sound[2]});
+  const std::vector<bool> divisible(3, true);
+  BakeOptions options = scene.options;
+  options.tolerance = 0.02;
+  BakedSteps last =
+      bake_steps({folded, scene.surfaces(folded), scene.source.faces}, options, {divisible, {}});
+  ASSERT_EQ(last.steps.size(), 2u);
+  EXPECT_TRUE(is_to_be_divided(last, divisible));
+  last.steps.erase(last.steps.begin());
+  last.summaries.erase(last.summaries.begin());
+  EXPECT_FALSE(is_to_be_divided(last, divisible));
+
+  const auto values = last.steps.front().pyramid.levels.front().values;
+  const ElasticChain exact(sound);
+  const BakedSteps baked =
+      bake_steps({exact, scene.surfaces(exact), scene.source.faces}, options, {divisible, std::move(last)});
+  ASSERT_EQ(baked.steps.size(), 3u);
+  EXPECT_EQ(baked.steps.back().pyramid.levels.front().values, values);
+}
+
+// A step that is divided when those after it are baked would else leave little for its parts.
+TEST(BakeSteps, ShareFewLeavesEvenlyHoweverLateTheyWereDivided) {
+  BakeScene scene;
+  scene.options.tolerance = 1e-5;
+  scene.options.max_leaves = 800;
+  const ElasticChain exact = chain(4);
+  const std::vector<Points> surfaces = scene.surfaces(exact);
+  const ElasticChain second_half({exact.steps()[2], exact.steps()[3]});
+  BakedSteps last = bake_steps({second_half, {surfaces[2], surfaces[3]}, scene.source.faces}, scene.options);
+  ASSERT_GT(last.steps[0].pyramid.leaf_count() + last.steps[1].pyramid.leaf_count(), 700u);
+  const BakedSteps baked = bake_steps({exact, surfaces, scene.source.faces}, scene.options,
+                                      {std::vector<bool>(4, true), std::move(last)});
+  ASSERT_EQ(baked.steps.size(), 4u);
+  for (const MapStep& step : baked.steps) {
+    EXPECT_NEAR(static_cast<double>(step.pyramid.leaf_count()), 200, 40);
+    EXPECT_TRUE(step.certificate.is_bijection());
+  }
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -12,6 +12,7 @@
 
 #include "bespoke/anchors/anchors.h"
 #include "bespoke/error.h"
+#include "bespoke/pipeline/detail/divided_map.h"
 #include "bespoke/pipeline/detail/fit_map.h"
 #include "bespoke/pipeline/fit_mapping.h"
 #include "bespoke/pipeline/make_map.h"
@@ -50,6 +51,23 @@ FittedMapping fit_bent(const TriangleMesh& source, double angle, const FitOption
   const TriangleMesh fitted{test::bent(source.vertices, angle), source.faces};
   return fit_mapping({source, fitted, anchors, &fitted}, options);
 }
+
+/// The same without Γ, and what it was made of.
+struct BentFit {
+  BentFit(double angle, const FitOptions& how) : options(how) {
+    registration.fitted_vertices = test::bent(source.vertices, angle);
+    fit = fit_map(problem(), options);
+  }
+  MapProblem problem() const { return map_problem(source, registration, options); }
+  void divide(std::size_t step, bool leave_path = false) {
+    fit = divided_map(fit, {problem(), options, step, leave_path});
+  }
+
+  TriangleMesh source = test::tube();
+  Registration registration;
+  FitOptions options;
+  MapFit fit;
+};
 
 TEST(ElasticSteps, AreOneForOnePose) {
   const TriangleMesh source = test::tube();
@@ -186,6 +204,65 @@ TEST(ElasticSteps, CarryAnchorsOffTheSurfaceWithIt) {
   EXPECT_LE(fit.summary.elastic.anchor_residuals.max, 2 * options.fit_tolerance);
 }
 
+TEST(ElasticSteps, ComeApartAsTheyAreWhereHalvesOfThePathWouldMiss) {
+  const TriangleMesh source = test::tube();
+  FitOptions options = options_of(source);
+  options.steps = 3;
+  BentFit bent(90 * degree, options);
+  const MapFit& fit = bent.fit;
+  const auto maps = fit.elastic->steps();
+  const Points x = 2 * test::random_points(1000, 3), before = (*fit.elastic)(x);
+  const double missed = fit.summary.vertex_residuals.max;
+  bent.options.fit_tolerance = fit.summary.vertex_residuals.median / 10;
+  bent.divide(1);
+  ASSERT_EQ(fit.elastic->steps().size(), maps.size() + 1);
+  EXPECT_EQ(fit.elastic->steps().front(), maps.front());
+  EXPECT_EQ(fit.elastic->steps().back(), maps.back());
+  EXPECT_FALSE(fit.plan.has_value()) << "the chain has left its path";
+  EXPECT_LT(test::largest_distance((*fit.elastic)(x), before), 1e-12);
+  EXPECT_NEAR(fit.summary.vertex_residuals.max, missed, 1e-12);
+  EXPECT_LT(test::largest_distance((*fit.elastic->steps()[1])(fit.step_sources[1]), fit.step_sources[2]),
+            1e-12);
+}
+
+TEST(ElasticSteps, ComeApartUntilTheyAreSingleLayers) {
+  const TriangleMesh source = test::tube();
+  BentFit bent(30 * degree, options_of(source));
+  const MapFit& fit = bent.fit;
+  const Points before = (*fit.elastic)(source.vertices);
+  for (std::size_t step = 0; step < fit.elastic->steps().size();)
+    is_divisible(fit, step) ? bent.divide(step, true) : static_cast<void>(++step);
+  EXPECT_GT(fit.elastic->steps().size(), 2u);
+  EXPECT_LT(test::largest_distance((*fit.elastic)(source.vertices), before), 1e-12);
+  EXPECT_THAT(test::error_message<InvalidInput>([&] { bent.divide(0); }), HasSubstr("no such step"));
+}
+
+TEST(ElasticSteps, AreHalvedAlongThePathWhileTheyMeetTheirVertices) {
+  const TriangleMesh source = test::tube();
+  for (const ElasticMethod method : {ElasticMethod::diffeomorphic, ElasticMethod::multiscale}) {
+    FitOptions options = options_of(source);
+    options.elastic = method;
+    options.steps = 3;
+    BentFit bent(90 * degree, options);
+    const MapFit& fit = bent.fit;
+    const std::size_t before = fit.elastic->steps().size();
+    const auto maps = fit.elastic->steps();
+    const Points next = fit.step_sources[2];
+    bent.divide(1);
+    EXPECT_EQ(fit.elastic->steps().size(), before + 1);
+    EXPECT_EQ(fit.elastic->steps().front(), maps.front());
+    EXPECT_EQ(fit.elastic->steps().back(), maps.back());
+    ASSERT_TRUE(fit.plan.has_value());
+    EXPECT_EQ(fit.plan->steps(), before + 1);
+    EXPECT_EQ(fit.summary.divided_steps, 1u);
+    // The second half ends where the whole step did.
+    const Points end = (*fit.elastic->steps()[2])(fit.step_sources[2]);
+    const Eigen::VectorXd missed = (end - next).colwise().norm();
+    EXPECT_LE(summarize({missed.begin(), missed.end()}).p95, options.fit_tolerance);
+    EXPECT_LE(fit.summary.vertex_residuals.p95, options.fit_tolerance);
+  }
+}
+
 // Five anchors, most at the ends of limbs, leave the rest of a strong pose to the surfaces.
 TEST(ElasticStepsSharedCase, FollowAPoseThatFiveAnchorsTell) {
   const std::string folder = std::string(BESPOKE_SHARED_DIR) + "/cases/d08_pose_body/";
@@ -203,6 +280,11 @@ TEST(ElasticStepsSharedCase, FollowAPoseThatFiveAnchorsTell) {
   EXPECT_LE(fit.summary.elastic.vertex_residuals.p95, options.fit_tolerance);
 }
 
+/// What is known of E alone.
+MapFit map_fit(const FittedMapping& fit) {
+  return {fit.elastic, fit.step_sources, fit.plan, fit.summary.elastic};
+}
+
 /// Three tubes side by side, the middle one moved along the others by `slide`.
 TriangleMesh tubes(double slide) {
   constexpr double between = 0.02;
@@ -215,6 +297,98 @@ TriangleMesh tubes(double slide) {
     three.faces.middleCols(i * faces, faces) = tube.faces.array() + static_cast<int>(i * points);
   }
   return three;
+}
+
+// Between tubes that slide along each other space is sheared too steeply for the voxels of one step.
+TEST(ElasticSteps, TakeThePlaceOfASingleOneThatFoldsWhenItIsBaked) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.08);
+  MakeMapOptions options = layered_options(source);
+  options.bake.max_leaves = 1500;
+  options.fit.steps = 1;
+  const MadeMap one = make_map({source, fitted, {}, &fitted}, options);
+  ASSERT_GT(one.asset.steps.front().certificate.folded, 0u);
+  EXPECT_GT(one.fit->summary.bake->folded_cells, 0u);
+
+  options.fit.steps.reset();
+  const MadeMap chain = make_map({source, fitted, {}, &fitted}, options);
+  EXPECT_GT(chain.asset.steps.size(), 1u);
+  std::size_t levels = 0;
+  for (const MapStep& step : chain.asset.steps) {
+    EXPECT_TRUE(step.certificate.is_bijection());
+    levels += step.pyramid.levels.size();
+  }
+  EXPECT_EQ(chain.fit->summary.elastic.divided_steps, chain.asset.steps.size() - 1);
+  EXPECT_LE(chain.fit->summary.elastic.vertex_residuals.max, 2 * options.fit.fit_tolerance);
+  // Nothing of the bake that was given up is told.
+  EXPECT_EQ(chain.fit->summary.bake->levels.size(), levels);
+  EXPECT_EQ(chain.fit->summary.bake->folded_cells, 0u);
+}
+
+// A composition that goes over its scales again and again is too steep for voxels: to bake it, only to learn
+// that it folds, takes longer than all the steps that take its place.
+TEST(ElasticSteps, AreDividedBeforeTheyAreBakedWhereTheyAreForeseenToFold) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.16);
+  MakeMapOptions options = layered_options(source);
+  std::vector<std::string> stages;
+  Progress progress;
+  progress.report = [&](std::string_view stage, std::size_t, std::size_t) { stages.emplace_back(stage); };
+  const auto elastic_until = [&](std::vector<std::string>::const_iterator end) {
+    return std::count(stages.cbegin(), end, "elastic");
+  };
+
+  const FittedMapping one = fit_mapping({source, fitted, {}, &fitted}, options.fit, progress);
+  ASSERT_EQ(one.elastic->steps().size(), 1u);
+  EXPECT_TRUE(is_foreseen_to_fold(map_fit(one), 0));
+  EXPECT_THROW(is_foreseen_to_fold(map_fit(one), 1), std::out_of_range);
+  const TriangleMesh near = tubes(0.02);
+  EXPECT_FALSE(is_foreseen_to_fold(map_fit(fit_mapping({source, near, {}, &near}, options.fit)), 0));
+  const auto before = elastic_until(stages.cend());
+
+  stages.clear();
+  options.bake.max_leaves = 1500;
+  const MadeMap made = make_map({source, fitted, {}, &fitted}, options, progress);
+  EXPECT_GT(elastic_until(std::find(stages.cbegin(), stages.cend(), "bake")), before);
+  for (std::size_t k = 0; k < made.asset.steps.size(); ++k)
+    EXPECT_FALSE(is_foreseen_to_fold(map_fit(*made.fit), k)) << k;
+}
+
+// Halves of a step share what it had to say, and the voxels that the steps after them have left.
+TEST(ElasticSteps, AreEqualAgainWhereManyFoldWhenTheyAreBaked) {
+  const TriangleMesh source = tubes(0), fitted = tubes(0.2);
+  MakeMapOptions options = layered_options(source);
+  options.bake.max_leaves = 2500;
+  const MadeMap made = make_map({source, fitted, {}, &fitted}, options);
+  ASSERT_EQ(step_count(made.fit->summary.elastic.motion), 1);
+  ASSERT_GT(made.fit->summary.elastic.divided_steps, 1u);
+  ASSERT_TRUE(made.fit->plan.has_value());
+  EXPECT_EQ(made.fit->plan->times, equal_times(static_cast<int>(made.asset.steps.size())));
+  EXPECT_LE(made.fit->summary.elastic.vertex_residuals.p95, options.fit.fit_tolerance);
+  for (const MapStep& step : made.asset.steps) EXPECT_TRUE(step.certificate.is_bijection());
+}
+
+TEST(ElasticSteps, LeaveGuidesThatTakeOneBeyondItsVoxels) {
+  const TriangleMesh source = shapes::icosphere(4);
+  TriangleMesh fitted = source;
+  for (auto x : fitted.vertices.colwise())
+    x = Vector3(1.1 * x[0], 0.9 * x[1] + 0.05 * x[0] * x[0], 1.2 * x[2]);
+  MakeMapOptions options = layered_options(source);
+  const auto make = [&] { return make_map({source, fitted, {}, &fitted}, options); };
+  const auto leaves = [](const MadeMap& made) {
+    std::size_t sum = 0;
+    for (const BakeLevelSummary& level : made.fit->summary.bake->levels) sum += level.leaves;
+    return sum;
+  };
+  const MadeMap guided = make();
+  EXPECT_FALSE(guided.fit->summary.elastic.left_guides);
+  EXPECT_GT(leaves(guided), 700u);
+  EXPECT_THAT(guided.asset.record.options_json, HasSubstr("\"guides\":\"all\""));
+
+  options.bake.max_leaves = 700;
+  const MadeMap within = make();
+  EXPECT_TRUE(within.fit->summary.elastic.left_guides);
+  EXPECT_LE(leaves(within), 700u);
+  EXPECT_TRUE(within.fit->summary.bake->relaxed.empty());
+  EXPECT_THAT(within.asset.record.options_json, HasSubstr("\"guides\":\"none\""));
 }
 
 TEST(ElasticSteps, BecomeMoreWherePartsSlideAlongEachOther) {

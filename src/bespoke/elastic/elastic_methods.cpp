@@ -1,5 +1,6 @@
 #include "bespoke/elastic/elastic_methods.h"
 
+#include <set>
 #include <string>
 #include <utility>
 
@@ -54,6 +55,23 @@ ElasticFit multiscale(const ElasticInput& input, const ElasticOptions& options, 
   return {std::move(fit.map), std::move(fit.summary)};
 }
 
+std::size_t multiscale_layers(const ElasticMap& map) {
+  return dynamic_cast<const MultiscaleMap&>(map).layers().size();
+}
+
+std::size_t multiscale_scales(const ElasticMap& map) {
+  std::set<double> lambdas;
+  for (const RbfLayer& layer : dynamic_cast<const MultiscaleMap&>(map).layers()) lambdas.insert(layer.lambda);
+  return lambdas.size();
+}
+
+std::array<ElasticFit, 2> multiscale_halves(const ElasticFit& fit) {
+  auto [first, second] =
+      halves(dynamic_cast<const MultiscaleMap&>(*fit.map), std::get<MultiscaleSummary>(fit.found));
+  return {
+      {{std::move(first.map), std::move(first.summary)}, {std::move(second.map), std::move(second.summary)}}};
+}
+
 template <class Map>
 ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const Progress&) {
   return {std::make_shared<const Map>(input.source, input.fitted, options.lambda),
@@ -63,16 +81,71 @@ ElasticFit pffd(const ElasticInput& input, const ElasticOptions& options, const 
 }  // namespace
 
 constinit const std::array<ElasticMethodRow, 6> elastic_methods{
-    {{"finite-elements", ElasticMethod::finite_elements, finite_elements, true, true, true, true, 10, 2,
+    {{"finite-elements",
+      ElasticMethod::finite_elements,
+      finite_elements,
+      true,
+      true,
+      true,
+      true,
+      10,
+      2,
+      {},
       stored<BakedMap, read_baked>(5)},
-     {"csrbf", ElasticMethod::csrbf, csrbf, true, false, false, false, 1, 1, stored<CsrbfMap, read_csrbf>(1)},
-     {"multiscale", ElasticMethod::multiscale, multiscale<false>, true, false, true, false, 1, 1,
+     {"csrbf",
+      ElasticMethod::csrbf,
+      csrbf,
+      true,
+      false,
+      false,
+      false,
+      1,
+      1,
+      {},
+      stored<CsrbfMap, read_csrbf>(1)},
+     {"multiscale",
+      ElasticMethod::multiscale,
+      multiscale<false>,
+      true,
+      false,
+      true,
+      false,
+      1,
+      1,
+      {},
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"diffeomorphic", ElasticMethod::diffeomorphic, multiscale<true>, true, true, true, false, 1, 1,
+     {"diffeomorphic",
+      ElasticMethod::diffeomorphic,
+      multiscale<true>,
+      true,
+      true,
+      true,
+      false,
+      1,
+      1,
+      {multiscale_layers, multiscale_scales, multiscale_halves},
       stored<MultiscaleMap, read_multiscale>(2)},
-     {"pffd", ElasticMethod::pffd, pffd<PffdMap>, false, false, false, false, 1, 1,
+     {"pffd",
+      ElasticMethod::pffd,
+      pffd<PffdMap>,
+      false,
+      false,
+      false,
+      false,
+      1,
+      1,
+      {},
       stored<PffdMap, read_pffd>(4)},
-     {"pffd-smooth", ElasticMethod::pffd_smooth, pffd<SmoothPffdMap>, false, false, false, false, 1, 1,
+     {"pffd-smooth",
+      ElasticMethod::pffd_smooth,
+      pffd<SmoothPffdMap>,
+      false,
+      false,
+      false,
+      false,
+      1,
+      1,
+      {},
       stored<SmoothPffdMap, read_pffd_smooth>(3)}}};
 
 const ElasticMethodRow& elastic_method(ElasticMethod method) {

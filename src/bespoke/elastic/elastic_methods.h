@@ -33,6 +33,18 @@ struct StoredMapType {
   std::shared_ptr<const ElasticMap> (*read)(ExactMapReader& reader);
 };
 
+/// How maps that are compositions of others come apart; null for methods whose maps are none.
+struct CompositionOfMaps {
+  std::size_t (*parts)(const ElasticMap& map) = nullptr;
+  /// Of how many different sizes the parts of a map are; some are of one size where motion is too steep for
+  /// one of them.
+  std::size_t (*scales)(const ElasticMap& map) = nullptr;
+  /// Of a map of two parts or more: the same map as two, one after the other.
+  std::array<ElasticFit, 2> (*halves)(const ElasticFit& fit) = nullptr;
+
+  explicit operator bool() const { return parts != nullptr; }
+};
+
 /// All that is known of a method elsewhere: the command line, the asset's record and the exact map's bytes
 /// go through this table.
 struct ElasticMethodRow {
@@ -52,6 +64,7 @@ struct ElasticMethodRow {
   /// Steps of a chain for each that the motion requires. More than one where a minimiser is held up in large
   /// ones; these are then halved (elastic_steps.h).
   int steps_per_required;
+  CompositionOfMaps composition;
   StoredMapType stored;
 };
 

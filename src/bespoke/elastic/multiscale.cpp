@@ -83,6 +83,31 @@ std::vector<Figure> figures(const MultiscaleSummary& summary) {
           {"within_tolerance", summary.within_tolerance}};
 }
 
+std::array<MultiscaleFit, 2> halves(const MultiscaleMap& map, const MultiscaleSummary& summary) {
+  if (!map.composed() || map.layers().size() < 2)
+    throw InvalidInput("a map of " + std::to_string(map.layers().size()) +
+                       (map.composed() ? " composed" : " summed") + " layers has no halves");
+  const auto middle = static_cast<std::ptrdiff_t>(map.layers().size() / 2);
+  MultiscaleSummary first, second;
+  const auto part = [&](auto MultiscaleSummary::*member) {
+    const auto& all = summary.*member;
+    (first.*member).assign(all.begin(), all.begin() + middle);
+    (second.*member).assign(all.begin() + middle, all.end());
+  };
+  part(&MultiscaleSummary::lambdas);
+  part(&MultiscaleSummary::centers);
+  part(&MultiscaleSummary::gradient_bounds);
+  second.residuals = summary.residuals;
+  second.within_tolerance = summary.within_tolerance;
+  second.seconds = summary.seconds;
+  const auto layers = [&](auto begin, auto end) { return std::vector<RbfLayer>(begin, end); };
+  const auto begin = map.layers().begin(), end = map.layers().end();
+  return {{{std::make_shared<const MultiscaleMap>(map.affine(), layers(begin, begin + middle), true),
+            std::move(first)},
+           {std::make_shared<const MultiscaleMap>(AffineMap{}, layers(begin + middle, end), true),
+            std::move(second)}}};
+}
+
 void write_exact(const MultiscaleMap& map, ExactMapWriter& writer) {
   writer.affine(map.affine());
   writer.integer(std::uint32_t{map.composed()});

@@ -77,6 +77,11 @@ struct MultiscaleFit {
   MultiscaleSummary summary;
 };
 
+/// A composed map as two: the affine part and the first half of the layers, and the other half after it. The
+/// residuals are those at the end, so the first has none. Throws InvalidInput for a map that is summed or has
+/// less than two layers.
+std::array<MultiscaleFit, 2> halves(const MultiscaleMap& map, const MultiscaleSummary& summary);
+
 /// E(sources) ≈ targets, 3×n each, mesh units, after the least-squares affine map or similarity (the identity
 /// along directions without extent). Centres are λ_k/4 apart; λ_k is halved while a residual exceeds the
 /// tolerance. A composed scale takes several layers where residuals are clipped to 0.3 λ_k, or a layer is

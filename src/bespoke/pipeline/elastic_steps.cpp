@@ -47,10 +47,15 @@ class StepFitter {
     places_ = map(places_);
   }
 
-  /// Along the plan, from one time to another: vertices and loose points. Does nothing and says false where
-  /// finite elements are held up and are to give up.
-  bool fit_to(const StepPlan& plan, double from, double to, bool give_up) {
-    const Points next = plan.surface(to);
+  /// Where a map would take vertices and loose points, one after the other.
+  Points moved_by(const ElasticMap& map) const { return map(with_loose(vertices_, places_, loose_)); }
+
+  /// Along the plan, from one time to another, to where the path is then or to `next`: vertices and loose
+  /// points. Does nothing and says false where finite elements are held up and are to give up.
+  bool fit_to(const StepPlan& plan, double from, double to, bool give_up = false) {
+    return fit_to(plan, from, to, plan.surface(to), give_up);
+  }
+  bool fit_to(const StepPlan& plan, double from, double to, const Points& next, bool give_up = false) {
     const auto loose = static_cast<Eigen::Index>(loose_);
     const Points fitted = next.leftCols(vertices_.cols());
     const TriangleMesh here{vertices_, source_.faces};
@@ -122,6 +127,13 @@ std::vector<double> equal_times(int steps) {
   return times;
 }
 
+StepPlan halved(const StepPlan& plan, std::size_t step) {
+  StepPlan finer = plan;
+  const double middle = (plan.times[step] + plan.times[step + 1]) / 2;
+  finer.times.insert(finer.times.begin() + static_cast<std::ptrdiff_t>(step) + 1, middle);
+  return finer;
+}
+
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
                                const StepMethod& method, const Progress& progress) {
   // A chain has as many nodes as two maps of one step.
@@ -145,6 +157,18 @@ ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& p
   ElasticSteps steps = std::move(fitter).steps();
   steps.times = std::move(times);
   return steps;
+}
+
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const HalvedStep& halves,
+                        const StepMethod& method, const Progress& progress) {
+  const auto& [plan, chain, step] = halves;
+  StepFitter fitter(source, pairs, method, progress);
+  for (std::size_t k = 0; k < step; ++k) fitter.move_by(*chain.steps()[k]);
+  const bool last = step + 1 == chain.steps().size();
+  const Points end = last ? plan.surface(1) : fitter.moved_by(*chain.steps()[step]);
+  fitter.fit_to(plan, plan.times[step], plan.times[step + 1]);
+  fitter.fit_to(plan, plan.times[step + 1], plan.times[step + 2], end);
+  return std::move(fitter).steps();
 }
 
 }  // namespace bespoke

@@ -41,6 +41,9 @@ std::vector<double> equal_times(int steps);
 /// Throws InvalidInput where one surface looks out of what it encloses and the other into it.
 StepPlan plan_steps(const TriangleMesh& source, const Points& fitted, const ElasticPairs& pairs, int steps);
 
+/// The plan with a step halved.
+StepPlan halved(const StepPlan& plan, std::size_t step);
+
 struct ElasticSteps {
   std::vector<std::shared_ptr<const ElasticMap>> maps;
   std::vector<ElasticFindings> found;
@@ -65,5 +68,17 @@ struct StepMethod {
 /// maps of a changing pose shear the space around the model.
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
                                const StepMethod& method, const Progress& progress = {});
+
+/// A step of a plan that was `halved` there.
+struct HalvedStep {
+  const StepPlan& plan;
+  const ElasticChain& chain;  ///< the maps of the plan before
+  std::size_t step = 0;
+};
+
+/// Two maps for one. The second ends where that of the whole step did, so that the steps after it remain as
+/// they are.
+ElasticSteps fit_halves(const TriangleMesh& source, const ElasticPairs& pairs, const HalvedStep& halves,
+                        const StepMethod& method, const Progress& progress = {});
 
 }  // namespace bespoke

@@ -5,7 +5,7 @@
 #include "bespoke/clearance/model_sides.h"
 #include "bespoke/cloud/point_cloud_surface.h"
 #include "bespoke/elastic/exact_map_io.h"
-#include "bespoke/pipeline/detail/bake_steps.h"
+#include "bespoke/pipeline/detail/bake_map.h"
 #include "bespoke/pipeline/detail/fit_map.h"
 #include "bespoke/pipeline/detail/unusable_fit.h"
 #include "bespoke/pipeline/detail/whole_fit.h"
@@ -158,15 +158,16 @@ MadeMap make_map(const Problem& problem, const MakeMapOptions& options, const Pr
   if (!problem.fitted)
     require_met_anchors(problem.anchors, anchor_residuals(fit, registration, problem.anchors), options.fit);
 
-  BakedSteps baked = bake_steps({*fit.elastic, fit.step_sources, registered.faces}, options.bake, progress);
+  // The bake takes another fit where this one's does not do.
+  BakedFit baked = bake_map(fit, to_fit, options, progress);
 
-  FittedMapping whole =
-      whole_fit(problem, registration, fit, map_findings(problem, registration, fit, options.fit));
-  whole.summary = with_bake(with_named_parts(std::move(whole.summary), problem), baked);
+  FittedMapping whole = whole_fit(problem, registration, baked.fit,
+                                  map_findings(problem, registration, baked.fit, options.fit));
+  whole.summary = with_bake(with_named_parts(std::move(whole.summary), problem), baked.baked);
   if (problem.target_cloud) whole.summary.cloud = *problem.target_cloud;
 
   MadeMap made;
-  made.asset = make_asset(problem, options, whole, std::move(baked.steps));
+  made.asset = make_asset(problem, options, whole, std::move(baked.baked.steps));
   progress.check();
   const Stopwatch watch;
   made.asset =

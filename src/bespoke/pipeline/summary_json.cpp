@@ -234,6 +234,7 @@ Json to_json(const ElasticSummary& summary) {
   json["turn"] = summary.motion.turn;
   json["stretch"] = summary.motion.stretch;
   if (summary.divided_where_missed) json["divided_where_missed"] = true;
+  if (summary.divided_steps > 0) json["divided_steps"] = summary.divided_steps;
   for (const ElasticFindings& found : summary.later_steps)
     add_figures(found, json["later_steps"].emplace_back());
   return json;

@@ -75,6 +75,8 @@ std::string steps_text(const ElasticSummary& summary) {
   std::vector<std::string> reasons;
   if (step_count(summary.motion) > 1) reasons.push_back(motion_text(summary.motion));
   if (summary.divided_where_missed) reasons.emplace_back("fewer miss vertices");
+  if (summary.divided_steps > 0)
+    reasons.push_back(std::to_string(summary.divided_steps) + " folded when baked or were foreseen to");
   std::string line = std::to_string(summary.later_steps.size() + 1) + " steps";
   for (std::size_t i = 0; i < reasons.size(); ++i) line += (i == 0 ? ", since " : " and ") + reasons[i];
   line += "; 1: " + to_string(summary.found);
@@ -92,7 +94,7 @@ std::string to_string(const ElasticSummary& summary) {
   std::snprintf(text, sizeof text, "; vertices p95 %.4g max %.4g, anchors max %.4g off",
                 summary.vertex_residuals.p95, summary.vertex_residuals.max, summary.anchor_residuals.max);
   line += text;
-  if (summary.left_guides) line += "; without guides, which took it off the surface";
+  if (summary.left_guides) line += "; without guides, which took it off the surface or beyond its voxels";
   if (!summary.unmet.empty()) line += "; " + to_string(summary.unmet);
   if (summary.unreferenced_vertices > 0)
     line += "; " + std::to_string(summary.unreferenced_vertices) + " unreferenced vertices left out";

@@ -64,11 +64,12 @@ struct ElasticSummary {
   std::vector<ElasticFindings> later_steps;  ///< of a chain, what it says of the others
   RegionalMotion motion;                     ///< of the fitted source: what the number of steps follows from
   bool divided_where_missed = false;         ///< more steps than the motion requires, to meet the vertices
-  double lambda = 0;                         ///< effective distance, mesh units
-  bool left_guides = false;                  ///< the surface is met without
-  Statistics vertex_residuals;               ///< |E(vᵢ) − v'ᵢ|, mesh units
-  Statistics anchor_residuals;               ///< |Γ(E(q)) − q'|, mesh units
-  std::vector<UnmetVertex> unmet;            ///< beyond a fit tolerance above 0; none requested at 0
+  std::size_t divided_steps = 0;   ///< folded when baked or were foreseen to, so that there are more
+  double lambda = 0;               ///< effective distance, mesh units
+  bool left_guides = false;        ///< the surface, or the bake's tolerance, is met without
+  Statistics vertex_residuals;     ///< |E(vᵢ) − v'ᵢ|, mesh units
+  Statistics anchor_residuals;     ///< |Γ(E(q)) − q'|, mesh units
+  std::vector<UnmetVertex> unmet;  ///< beyond a fit tolerance above 0; none requested at 0
   std::size_t unreferenced_vertices = 0;
   std::size_t duplicate_vertices = 0;
   std::size_t anchors_off_surface = 0;    ///< exact ones, beyond the fit tolerance from the source

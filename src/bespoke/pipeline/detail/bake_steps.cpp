@@ -86,22 +86,30 @@ Bake bake_step(const ElasticMap& exact, const TriangleMesh& surface, const Steps
   return bake(exact, options, progress);
 }
 
-/// The last step first.
-BakedSteps bake_all(const ExactSteps& exact, const BakeOptions& options, const Progress& progress) {
-  BakedSteps baked;
+/// The last step first, before `done`, until one folds that may be divided.
+BakedSteps bake_all(const ExactSteps& exact, const BakeOptions& options, PartialBake partial,
+                    const Progress& progress) {
+  BakedSteps baked = std::move(partial.done);
+  const std::vector<bool>& divisible = partial.divisible;
   std::size_t used = 0;
   StepsAfter after;
-  for (std::size_t k = exact.chain.steps().size(); k-- > 0;) {
+  for (auto step = baked.steps.rbegin(); step != baked.steps.rend(); ++step) {
+    used += step->pyramid.leaf_count();
+    put_first(*step, after);
+  }
+  for (std::size_t k = exact.chain.steps().size() - baked.steps.size(); k-- > 0;) {
     const ElasticMap& map = *exact.chain.steps()[k];
     BakeOptions step_options = options;
-    // Steps that need less leave it to those before them.
+    // Steps that need less leave it to those before them; a share is kept in case one is divided.
+    const std::size_t shares = k + (k > 0 && !divisible.empty() ? 2 : 1);
     if (options.max_leaves)
-      step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / (k + 1);
+      step_options.max_leaves = (*options.max_leaves - std::min(*options.max_leaves, used)) / shares;
     Bake step = bake_step(map, {exact.surfaces[k], exact.faces}, after, step_options, progress);
     used += step.pyramid.leaf_count();
     baked.steps.insert(baked.steps.begin(),
                        {map.affine(), std::move(step.pyramid), std::move(step.certificate)});
     baked.summaries.insert(baked.summaries.begin(), std::move(step.summary));
+    if (is_to_be_divided(baked, divisible)) break;
     if (k > 0) put_first(baked.steps.front(), after);
   }
   return baked;
@@ -116,13 +124,33 @@ bool finer_steps_help(const BakedSteps& baked, const BakeOptions& options) {
   return met && leaves < options.max_leaves.value_or(4 * leaves) / 2;
 }
 
+/// Whether a step that misses its tolerance has less than half of an even share of the leaves
+/// (tests/accuracy/tuning.md).
+bool has_starved_step(const BakedSteps& baked, std::size_t max_leaves) {
+  const std::size_t share = max_leaves / baked.steps.size();
+  for (std::size_t k = 0; k < baked.steps.size(); ++k)
+    if (!baked.summaries[k].tolerance_met && baked.steps[k].pyramid.leaf_count() < share / 2) return true;
+  return false;
+}
+
 /// Whether every step is stored without an error, as maps on lattices are: then so is the whole.
 bool is_exact(const BakedSteps& baked) {
   return std::all_of(baked.summaries.begin(), baked.summaries.end(),
                      [](const BakeSummary& summary) { return summary.error.count == 0; });
 }
 
+bool is_bijection(const BakedSteps& baked) {
+  return std::all_of(baked.steps.begin(), baked.steps.end(),
+                     [](const MapStep& step) { return step.certificate.is_bijection(); });
+}
+
 }  // namespace
+
+bool is_to_be_divided(const BakedSteps& baked, const std::vector<bool>& divisible) {
+  if (baked.steps.empty() || divisible.empty()) return false;
+  const std::size_t first = divisible.size() - baked.steps.size();
+  return divisible[first] && !baked.steps.front().certificate.is_bijection();
+}
 
 void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.levels.insert(whole.levels.end(), step.levels.begin(), step.levels.end());
@@ -142,26 +170,35 @@ void add_step(const BakeSummary& step, BakeSummary& whole) {
   whole.repair_seconds += step.repair_seconds;
 }
 
-BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, const Progress& progress) {
+BakedSteps bake_steps(const ExactSteps& exact, const BakeOptions& options, PartialBake partial,
+                      const Progress& progress) {
+  const std::vector<bool> divisible = partial.divisible;
   if (exact.chain.steps().size() == 1) {
-    BakedSteps baked = bake_all(exact, options, progress);
-    baked.whole = baked.summaries.front();
+    BakedSteps baked = bake_all(exact, options, std::move(partial), progress);
+    if (!is_to_be_divided(baked, divisible)) baked.whole = baked.summaries.front();
     return baked;
   }
   const Stopwatch watch;
+  const bool was_divided = !partial.done.steps.empty();
   BakeOptions step_options = options;
   step_options.tolerance = tolerance_of_a_step * options.tolerance;
   step_options.max_face_turn = tolerance_of_a_step * options.max_face_turn;
   step_options.error_points = std::max<std::size_t>(1, options.error_points / share_of_a_step);
   BakedSteps baked;
-  for (const std::uint64_t seed : {first_seed, first_seed + 1}) {
-    baked = bake_all(exact, step_options, progress);
+  for (const bool again : {false, true}) {
+    baked = bake_all(exact, step_options, again ? PartialBake{} : std::move(partial), progress);
+    if (!again && is_to_be_divided(baked, divisible)) return baked;
+    if (!again && was_divided && options.max_leaves && has_starved_step(baked, *options.max_leaves)) {
+      BakedSteps even = bake_all(exact, step_options, {}, progress);
+      if (is_bijection(even)) baked = std::move(even);
+    }
     for (const BakeSummary& summary : baked.summaries) add_step(summary, baked.whole);
     if (is_exact(baked)) {
       baked.whole.tolerance_met = true;
       break;
     }
-    baked = with_whole_measured(std::move(baked), exact, options, seed, progress);
+    baked =
+        with_whole_measured(std::move(baked), exact, options, again ? first_seed + 1 : first_seed, progress);
     if (baked.whole.tolerance_met || !finer_steps_help(baked, options)) break;
     step_options.tolerance *= aim * options.tolerance / baked.whole.error.max;
   }

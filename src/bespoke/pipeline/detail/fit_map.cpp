@@ -62,22 +62,12 @@ auto* fit_of(const FitOptions& options) {
   if (options.steps) return &fit_steps;
   const ElasticMethodRow& method = elastic_method(options.elastic);
   if (method.steps_per_required > 1) return &fit_unblocked;
-  return method.keeps_orientation && options.fit_tolerance > 0 ? &fit_until_met : &fit_steps;
+  return method.composition && options.fit_tolerance > 0 ? &fit_until_met : &fit_steps;
 }
 
 bool is_guided(const MapFit& fit, const FitOptions& options) {
   return elastic_method(options.elastic).takes_guides && !fit.summary.left_guides &&
          elastic_options(options, step_count(fit) > 1).guided;
-}
-
-/// The same surfaces with a map that meets these alone, or nothing if guides in space did not shape `fit`.
-std::optional<MapFit> refitted_without_guides(const MapFit& fit, const MapProblem& problem,
-                                              const FitOptions& options, const Progress& progress) {
-  if (!is_guided(fit, options)) return std::nullopt;
-  MapFit unguided =
-      fit_of(options)(problem, without_guides(options), required_steps(problem, options), progress);
-  unguided.summary.left_guides = true;
-  return unguided;
 }
 
 }  // namespace
@@ -97,6 +87,18 @@ MapFit fit_map(const MapProblem& problem, const FitOptions& options, const Progr
   fit.summary.seconds = watch.seconds();
   if (is_registered) require_usable(*fit.elastic, problem.source, fitted, options);
   return fit;
+}
+
+std::optional<MapFit> refitted_without_guides(const MapFit& fit, const MapProblem& problem,
+                                              const FitOptions& options, const Progress& progress) {
+  if (!is_guided(fit, options)) return std::nullopt;
+  const Stopwatch watch;
+  MapFit unguided =
+      fit_of(options)(problem, without_guides(options), required_steps(problem, options), progress);
+  unguided.summary.left_guides = true;
+  unguided.summary.divided_steps = fit.summary.divided_steps;
+  unguided.summary.seconds = fit.summary.seconds + watch.seconds();
+  return unguided;
 }
 
 }  // namespace bespoke

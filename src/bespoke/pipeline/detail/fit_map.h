@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "bespoke/pipeline/detail/map_fit.h"
 
 namespace bespoke {
@@ -8,5 +10,10 @@ namespace bespoke {
 /// same pose, else a chain of them along surfaces between the two. Throws InvalidInput, SolverError (also
 /// where no useful map follows from a registration), MemoryLimitError.
 MapFit fit_map(const MapProblem& problem, const FitOptions& options, const Progress& progress = {});
+
+/// The same surfaces with a map that meets these alone, or nothing if guides in space did not shape `fit`.
+/// Options as before.
+std::optional<MapFit> refitted_without_guides(const MapFit& fit, const MapProblem& problem,
+                                              const FitOptions& options, const Progress& progress = {});
 
 }  // namespace bespoke

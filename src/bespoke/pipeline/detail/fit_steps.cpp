@@ -34,6 +34,10 @@ double met_within(const FitOptions& options) {
   return elastic_method(options.elastic).met_within * options.fit_tolerance;
 }
 
+bool follows_fit(const MapFit& fit, const FitOptions& options) {
+  return fit.summary.vertex_residuals.p95 <= met_within(options);
+}
+
 FitOptions without_guides(FitOptions options) {
   options.guides = GuidedMaps::none;
   return options;

@@ -33,4 +33,7 @@ FitOptions without_guides(FitOptions options);
 /// By how much a vertex may be missed before it is listed, mesh units.
 double met_within(const FitOptions& options);
 
+/// Whether no more than one vertex in twenty is missed.
+bool follows_fit(const MapFit& fit, const FitOptions& options);
+
 }  // namespace bespoke

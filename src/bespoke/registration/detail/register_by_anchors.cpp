@@ -130,26 +130,31 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
   return result;
 }
 
-bool has_left_out(const RegistrationByAnchors& fit) {
-  return !fit.registration.summary.surface->outlier_anchors.empty();
+/// As if the outliers that it finds had not been given: anew without them, until it finds no more.
+RegistrationByAnchors register_without_outliers(const RegistrationTask& task,
+                                                const EstimatedAnchors& estimated, Doubts doubts,
+                                                const Progress& progress) {
+  constexpr int max_rounds = 3;
+  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, doubts, progress);
+  for (int round = 0; round < max_rounds; ++round) {
+    if (fit.registration.summary.surface->outlier_anchors.empty()) break;
+    fit = register_by_pairs(task, fit.estimated, {}, doubts, progress);
+  }
+  return fit;
 }
 
-/// Without the outliers that the fit finds. Where that may be wrong, the outliers may have posed the source,
-/// or it is in a pose in which right pairs look like outliers: it is fitted without those that a nearly
-/// affine fit leaves out, anew without those found, and without a doubt; what explains the target best is
-/// kept.
+/// Without outliers. Where the result may be wrong, they may have posed the source, or it is in a pose in
+/// which right pairs look like outliers: it is fitted without those that a nearly affine fit leaves out, and
+/// without a doubt; what explains the target best is kept.
 RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
                                           const Progress& progress) {
-  RegistrationByAnchors best = register_by_pairs(task, estimated, {}, Doubts::in_pose, progress);
-  if (!has_left_out(best)) return best;
+  RegistrationByAnchors best = register_without_outliers(task, estimated, Doubts::in_pose, progress);
+  if (best.estimated.kept.size() == estimated.kept.size()) return best;
   const PlacementScore placement(task.problem.source, task.problem.target);
   PlacementFigures figures = placement(registered_vertices(best.registration));
-  const EstimatedAnchors without_found = best.estimated;
-  const std::pair<const EstimatedAnchors&, Doubts> others[] = {
-      {estimated, Doubts::before_pose}, {without_found, Doubts::in_pose}, {estimated, Doubts::none}};
-  for (const auto& [pairs, doubts] : others) {
+  for (const Doubts doubts : {Doubts::before_pose, Doubts::none}) {
     if (!is_suspect(figures)) break;
-    RegistrationByAnchors other = register_by_pairs(task, pairs, {}, doubts, progress);
+    RegistrationByAnchors other = register_without_outliers(task, estimated, doubts, progress);
     const PlacementFigures of_other = placement(registered_vertices(other.registration));
     if (!(of_other.misfit() < figures.misfit())) continue;
     best = std::move(other);
