@@ -108,7 +108,7 @@ RULES = [
          old="accuracy.swapped = swapped_anchors(anchors);", new="accuracy.swapped = {};"),
     Rule("contradicting anchors share their difference", "σ", file="registration/detail/register_by_anchors.cpp",
          old="best = with_shared_contradictions(task, std::move(best), progress);", new="best = best;"),
-    by_value("outliers among anchors", "outliers", OutlierAnchorSettings__min_doubted=1000000),
+    by_value("outliers among anchors", "outliers", OutlierAnchorSettings__min_tested=1000000),
     Rule("fitted anew without outliers", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (!is_suspect(figures)) break;", new="if (is_suspect(figures) || true) break;"),
     Rule("counterparts along the surfaces", "outliers", file="registration/detail/register_by_anchors.cpp",

@@ -187,9 +187,8 @@ TEST(KeepClear, PartsAreNotPushedOffWhatTheyAreWornOn) {
   EXPECT_FALSE(cleared.summary.places.empty());
 }
 
-TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
-  // A sheet between two plates that leave less than it had to each side.
-  TriangleMesh product = shapes::square_grid(20);
+/// Two plates 0.04 apart, from which 0.05 is required.
+Obstacle narrow_plates() {
   Obstacle plates;
   plates.name = "the plates";
   plates.step = 1e-3;
@@ -202,6 +201,13 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
     for (const auto& point : x.colwise()) values.push_back(0.02 - std::abs(point.z()));
     return values;
   };
+  return plates;
+}
+
+TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
+  // A sheet between two plates that leave less than it had to each side.
+  TriangleMesh product = shapes::square_grid(20);
+  const Obstacle plates = narrow_plates();
   const Points carried = product.vertices.colwise() + Vector3(0, 0, 0.01);
   const ClearedProduct cleared = keep_clear(PreparedProduct(product), carried, {plates});
   // Nowhere is there 0.05: every sample misses, each counted once.
@@ -219,18 +225,7 @@ TEST(KeepClear, PlacesWithoutSpaceAreListedAndNotCrumpled) {
 // What came into a plate leaves it, although it does not get the distance that it had.
 TEST(KeepClear, WhereThereIsLessSpaceThanRequiredNothingStaysInside) {
   const TriangleMesh product = shapes::square_grid(20);
-  Obstacle plates;
-  plates.name = "the plates";
-  plates.step = 1e-3;
-  plates.tolerance = 1e-4;
-  plates.required = [](const SourcePlaces& places) {
-    return std::vector<double>(static_cast<std::size_t>(places.points().cols()), 0.05);
-  };
-  plates.distance = [](const Points& x) {
-    std::vector<double> values;
-    for (const auto& point : x.colwise()) values.push_back(0.02 - std::abs(point.z()));
-    return values;
-  };
+  const Obstacle plates = narrow_plates();
   Points carried = product.vertices;
   for (auto vertex : carried.colwise())
     vertex.z() = 0.04 * std::exp(-50 * (vertex - Vector3(0.5, 0.5, 0)).squaredNorm());

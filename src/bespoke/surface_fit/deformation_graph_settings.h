@@ -94,7 +94,7 @@ struct AnchorSettings {
 struct OutlierAnchorSettings {
   double expected = 0.1;        ///< ε, share of the anchors
   double min_deviation = 0.02;  ///< diagonals: proportions differ that much
-  int min_doubted = 7;          ///< with fewer the others do not tell
+  int min_tested = 7;           ///< with fewer the others do not tell
 };
 
 /// The source posed by its anchors alone (anchor_pose.h), as in as-rigid-as-possible modelling.

@@ -21,19 +21,19 @@ struct RegistrationByAnchors {
 };
 
 /// Whether outliers among pairs are told before a pose, in it, or not at all (SurfaceFitInput).
-enum class Doubts { before_pose, in_pose, none };
+enum class OutlierTest { before_pose, in_pose, none };
 
 /// One flag a pair: whether the fit may leave it out. Pairs with a given accuracy are taken as they are,
 /// those of curves and counterparts are no anchors.
-std::vector<char> doubted_pairs(const RegistrationTask& task, const EstimatedAnchors& estimated,
-                                std::size_t count) {
+std::vector<char> tested_pairs(const RegistrationTask& task, const EstimatedAnchors& estimated,
+                               std::size_t count) {
   const std::vector<AnchorPair>& given = task.problem.anchors.pairs;
-  std::vector<char> doubted(count, 0);
+  std::vector<char> tested(count, 0);
   for (std::size_t k = 0; k < estimated.kept.size(); ++k) {
     const std::size_t number = estimated.kept[k];
-    doubted[k] = number < given.size() && has_no_given_sigma(given[number]);
+    tested[k] = number < given.size() && has_no_given_sigma(given[number]);
   }
-  return doubted;
+  return tested;
 }
 
 /// Without the pairs that the fit left out.
@@ -50,18 +50,18 @@ EstimatedAnchors without_outliers(EstimatedAnchors estimated, const Registration
 
 /// By anchors and by what is known of places far from them: aligned (IV.A, IV.B), then fitted (IV.C).
 RegistrationByAnchors register_by_pairs(const RegistrationTask& task, EstimatedAnchors estimated,
-                                        const std::vector<AnchorPair>& counterparts, Doubts doubts,
+                                        const std::vector<AnchorPair>& counterparts, OutlierTest test,
                                         const Progress& progress) {
   std::vector<AnchorPair> leading = task.of_parts;
   leading.insert(leading.end(), counterparts.begin(), counterparts.end());
   AnchorAlignment aligned = align_by_anchors(task.problem, estimated, leading, progress);
   const PointPairs& pairs = aligned.pairs;
-  std::vector<char> doubted;
-  if (doubts != Doubts::none)
-    doubted = doubted_pairs(task, estimated, static_cast<std::size_t>(pairs.sources.cols()));
+  std::vector<char> tested;
+  if (test != OutlierTest::none)
+    tested = tested_pairs(task, estimated, static_cast<std::size_t>(pairs.sources.cols()));
   SurfaceFit fit = fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources,
                                 pairs.targets, pairs.weights, pairs.sigmas, task.patches.source,
-                                task.patches.target, std::move(doubted), doubts == Doubts::before_pose},
+                                task.patches.target, std::move(tested), test == OutlierTest::before_pose},
                                task.options, progress);
   Registration registration;
   registration.target_from_source = aligned.target_from_source;
@@ -121,7 +121,7 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
   if (!is_suspect(figures)) return by_anchors;
 
   RegistrationByAnchors trial =
-      register_by_pairs(task, estimated, pairs_of(counterparts, sigma), Doubts::none, progress);
+      register_by_pairs(task, estimated, pairs_of(counterparts, sigma), OutlierTest::none, progress);
   const bool taken =
       placement(registered_vertices(trial.registration)).misfit() < clearly_better * figures.misfit();
   RegistrationByAnchors result = std::move(taken ? trial : by_anchors);
@@ -132,29 +132,29 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
 
 /// As if the outliers that it finds had not been given: anew without them, until it finds no more.
 RegistrationByAnchors register_without_outliers(const RegistrationTask& task,
-                                                const EstimatedAnchors& estimated, Doubts doubts,
+                                                const EstimatedAnchors& estimated, OutlierTest test,
                                                 const Progress& progress) {
   constexpr int max_rounds = 3;
-  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, doubts, progress);
+  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, test, progress);
   for (int round = 0; round < max_rounds; ++round) {
     if (fit.registration.summary.surface->outlier_anchors.empty()) break;
-    fit = register_by_pairs(task, fit.estimated, {}, doubts, progress);
+    fit = register_by_pairs(task, fit.estimated, {}, test, progress);
   }
   return fit;
 }
 
-/// Without outliers. Where the result may be wrong, they may have posed the source, or it is in a pose in
-/// which right pairs look like outliers: it is fitted without those that a nearly affine fit leaves out, and
-/// without a doubt; what explains the target best is kept.
+/// Without outliers. The result is suspect where an outlier has posed the source, or where in a pose a right
+/// pair looks like an outlier: then the source is also fitted without those that a nearly affine fit leaves
+/// out, and with all pairs; the fit that explains the target best is kept.
 RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
                                           const Progress& progress) {
-  RegistrationByAnchors best = register_without_outliers(task, estimated, Doubts::in_pose, progress);
+  RegistrationByAnchors best = register_without_outliers(task, estimated, OutlierTest::in_pose, progress);
   if (best.estimated.kept.size() == estimated.kept.size()) return best;
   const PlacementScore placement(task.problem.source, task.problem.target);
   PlacementFigures figures = placement(registered_vertices(best.registration));
-  for (const Doubts doubts : {Doubts::before_pose, Doubts::none}) {
+  for (const OutlierTest test : {OutlierTest::before_pose, OutlierTest::none}) {
     if (!is_suspect(figures)) break;
-    RegistrationByAnchors other = register_without_outliers(task, estimated, doubts, progress);
+    RegistrationByAnchors other = register_without_outliers(task, estimated, test, progress);
     const PlacementFigures of_other = placement(registered_vertices(other.registration));
     if (!(of_other.misfit() < figures.misfit())) continue;
     best = std::move(other);
@@ -163,13 +163,14 @@ RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const Es
   return best;
 }
 
-/// Where exact pairs that the fit kept contradict each other, another that need not meet them.
+/// Fitted again where exact pairs that the fit kept contradict each other: by what they differ they need not
+/// be met.
 RegistrationByAnchors with_shared_contradictions(const RegistrationTask& task, RegistrationByAnchors fit,
                                                  const Progress& progress) {
   EstimatedAnchors shared = fit.estimated;
   let_contradicting_share(shared, task.problem.anchors.pairs.size(), task.options.max_stretch);
   if (shared.accuracy.given_way.size() == fit.estimated.accuracy.given_way.size()) return fit;
-  return register_by_pairs(task, std::move(shared), {}, Doubts::none, progress);
+  return register_by_pairs(task, std::move(shared), {}, OutlierTest::none, progress);
 }
 
 /// Of what the pairs alone make suspicious, what the fit did not test: the surfaces explain what it kept.
@@ -223,7 +224,7 @@ Registration register_by_anchors(const RegistrationTask& task, const Anchors& an
     best = with_shared_contradictions(task, std::move(best), progress);
     best = with_counterparts(task, std::move(best), progress);
   } else {  // the printed method takes all pairs
-    best = register_by_pairs(task, estimated, {}, Doubts::none, progress);
+    best = register_by_pairs(task, estimated, {}, OutlierTest::none, progress);
   }
   Registration result = best.registration;
   CoarseSummary& coarse = *result.summary.coarse;

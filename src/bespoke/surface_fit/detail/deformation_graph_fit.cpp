@@ -31,8 +31,8 @@ struct SurfaceAnchors {
   Eigen::VectorXd weights, sigmas;
   std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
   std::vector<Eigen::Index> given;  // k: columns among all anchors of the fit
-  std::vector<char> doubted;        // k, or empty
-  bool doubts_before_pose = false;
+  std::vector<char> tested;         // k, or empty
+  bool tests_before_pose = false;
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
@@ -67,10 +67,10 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
                          {},
                          near,
                          {},
-                         input.doubts_before_pose};
-  if (!input.anchor_doubted.empty())
+                         input.tests_before_pose};
+  if (!input.anchor_tested.empty())
     for (const Eigen::Index k : near)
-      anchors.doubted.push_back(input.anchor_doubted[static_cast<std::size_t>(k)]);
+      anchors.tested.push_back(input.anchor_tested[static_cast<std::size_t>(k)]);
   for (Eigen::Index k = 0; k < anchors.weights.size(); ++k) {
     if (anchors.sigmas[k] > 0)
       anchors.weights[k] = std::numeric_limits<double>::infinity();  // limited by σ instead
@@ -229,7 +229,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   std::optional<PosingByAnchors> posing;
   const auto degrees_by_anchors = [&] {
     posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal,
-                                   scene.anchors.doubted},
+                                   scene.anchors.tested},
                    settings.pose);
     summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
     return summary.anchor_turn_degrees;
@@ -237,11 +237,11 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
                         scene.anchors.weights, scene.diagonal, how.options.boundaries, scene.anchors.sigmas,
-                        scene.patches, is_posed, scene.anchors.doubted},
+                        scene.patches, is_posed, scene.anchors.tested},
                        settings.nodes, how.progress);
   };
   std::vector<Eigen::Index> outliers;
-  if (scene.anchors.doubts_before_pose) outliers = fitting(scene.surface, anchors, false).outliers_at_rest();
+  if (scene.anchors.tests_before_pose) outliers = fitting(scene.surface, anchors, false).outliers_at_rest();
   constexpr double anywhere = 100;  // diagonals: an anchor of this σ poses nothing
   for (const Eigen::Index k : outliers) sigmas[k] = anywhere * scene.diagonal;
   bool is_posed = are_out_of_reach(scene, anchors, outliers, settings);

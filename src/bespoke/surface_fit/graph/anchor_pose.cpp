@@ -247,7 +247,7 @@ PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSetting
   if (input.anchor_sources.cols() == 0) return;
   coarse_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
   posterior_ = std::make_unique<AnchorPosterior>(
-      DoubtedAnchors{input.doubted, input.sigmas, vertex_areas(input.rest).sum(), input.diagonal},
+      TestedAnchors{input.tested, input.sigmas, vertex_areas(input.rest).sum(), input.diagonal},
       settings.outliers);
   pose();
   // Only a pose that has come to rest tells: on the way every tip of a limb is far from its target.

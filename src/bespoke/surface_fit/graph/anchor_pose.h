@@ -16,12 +16,12 @@ struct AnchorPose {
 };
 
 struct AnchorPoseInput {
-  const TriangleMesh& rest;        ///< aligned with the targets by one similarity
-  const Points& anchor_sources;    ///< 3×k, aligned like `rest`; need not lie on it
-  const Points& anchor_targets;    ///< 3×k
-  const Eigen::VectorXd& sigmas;   ///< k, accuracies of the anchors, ≥ 0, mesh units
-  double diagonal = 0;             ///< of `rest`
-  std::vector<char> doubted = {};  ///< k: whether an anchor may be an outlier; empty: none may
+  const TriangleMesh& rest;       ///< aligned with the targets by one similarity
+  const Points& anchor_sources;   ///< 3×k, aligned like `rest`; need not lie on it
+  const Points& anchor_targets;   ///< 3×k
+  const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
+  double diagonal = 0;            ///< of `rest`
+  std::vector<char> tested = {};  ///< k: whether an anchor may be an outlier; empty: none may
 };
 
 /// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets

@@ -9,11 +9,11 @@
 
 namespace bespoke {
 
-AnchorPosterior::AnchorPosterior(DoubtedAnchors anchors, const OutlierAnchorSettings& settings)
-    : anchors_(std::move(anchors)), settings_(settings), inliers_(anchors_.doubted.size(), 1) {
+AnchorPosterior::AnchorPosterior(TestedAnchors anchors, const OutlierAnchorSettings& settings)
+    : anchors_(std::move(anchors)), settings_(settings), inliers_(anchors_.tested.size(), 1) {
   if (anchors_.sigmas.size() == 0)
     anchors_.sigmas = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(inliers_.size()));
-  active_ = std::count(anchors_.doubted.begin(), anchors_.doubted.end(), 1) >= settings.min_doubted;
+  active_ = std::count(anchors_.tested.begin(), anchors_.tested.end(), 1) >= settings.min_tested;
 }
 
 void AnchorPosterior::update(const LeftOutAnchors& left_out) {
@@ -21,7 +21,7 @@ void AnchorPosterior::update(const LeftOutAnchors& left_out) {
   const Eigen::ArrayXd squared = left_out.distances.array().square();
   std::vector<double> all;
   for (std::size_t k = 0; k < inliers_.size(); ++k)
-    if (anchors_.doubted[k]) {
+    if (anchors_.tested[k]) {
       const auto at = static_cast<Eigen::Index>(k);
       all.push_back(squared[at] / left_out.compliances[at]);
     }
@@ -30,7 +30,7 @@ void AnchorPosterior::update(const LeftOutAnchors& left_out) {
   const double floor = std::pow(settings_.min_deviation * anchors_.diagonal, 2);
   std::size_t outliers = 0;
   for (std::size_t k = 0; k < inliers_.size(); ++k) {
-    if (!anchors_.doubted[k]) continue;
+    if (!anchors_.tested[k]) continue;
     const auto at = static_cast<Eigen::Index>(k);
     const double variance =
         std::max(scale * left_out.compliances[at], floor) + anchors_.sigmas[at] * anchors_.sigmas[at];

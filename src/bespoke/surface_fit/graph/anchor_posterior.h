@@ -8,11 +8,11 @@
 namespace bespoke {
 
 /// Which anchors are to be tested, and against what.
-struct DoubtedAnchors {
-  std::vector<char> doubted;  ///< k: whether it may be an outlier; empty: none may
-  Eigen::VectorXd sigmas;     ///< k, ≥ 0, mesh units; empty is 0 for all
-  double area = 0;            ///< of the surface, mesh units squared
-  double diagonal = 0;        ///< mesh units
+struct TestedAnchors {
+  std::vector<char> tested;  ///< k: whether it may be an outlier; empty: none may
+  Eigen::VectorXd sigmas;    ///< k, ≥ 0, mesh units; empty is 0 for all
+  double area = 0;           ///< of the surface, mesh units squared
+  double diagonal = 0;       ///< mesh units
 };
 
 /// Each anchor against the fit without it, one Gauss-Newton step from the fit with all: the residual over one
@@ -30,9 +30,9 @@ struct LeftOutAnchors {
 /// fit as its other half. Not thread-safe.
 class AnchorPosterior {
  public:
-  AnchorPosterior(DoubtedAnchors anchors, const OutlierAnchorSettings& settings);
+  AnchorPosterior(TestedAnchors anchors, const OutlierAnchorSettings& settings);
 
-  /// Whether enough anchors are doubted for the others to tell.
+  /// Whether enough anchors are tested for the others to tell.
   bool is_active() const { return active_; }
   /// Where more than a third would be outliers, the mixture tells nothing: all stay.
   void update(const LeftOutAnchors& left_out);
@@ -42,7 +42,7 @@ class AnchorPosterior {
   std::vector<Eigen::Index> outliers() const;
 
  private:
-  DoubtedAnchors anchors_;
+  TestedAnchors anchors_;
   OutlierAnchorSettings settings_;
   bool active_ = false;
   std::vector<double> inliers_;

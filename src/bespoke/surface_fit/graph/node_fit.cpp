@@ -93,7 +93,7 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
       surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
       limits_(input.anchor_sigmas, surface_.area, input.diagonal, settings.anchors),
-      posterior_({input.anchor_doubted, input.anchor_sigmas, surface_.area, input.diagonal},
+      posterior_({input.anchor_tested, input.anchor_sigmas, surface_.area, input.diagonal},
                  settings.outliers) {
   fit_.vertices = input.rest.vertices;
 }

@@ -31,8 +31,8 @@ struct NodeFitInput {
   Eigen::VectorXd anchor_sigmas = {};
   /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
   FacePatches patches = {};
-  bool is_posed = false;                  ///< whether anchors have bent `rest`
-  std::vector<char> anchor_doubted = {};  ///< k: whether it may be an outlier; empty: none may
+  bool is_posed = false;                 ///< whether anchors have bent `rest`
+  std::vector<char> anchor_tested = {};  ///< k: whether it may be an outlier; empty: none may
 };
 
 struct NodeFit {
