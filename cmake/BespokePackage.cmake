@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # For programs that link the library.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "libopenvdb-dev, libopenmesh-dev, libeigen3-dev, libtbb-dev, nlohmann-json3-dev, libssl-dev, zlib1g-dev, libexpat1-dev, libcairo2-dev, libpolyclipping-dev, libzip-dev, libpng-dev")
+    "libopenvdb-dev, libopenmesh-dev, libmeshoptimizer-dev, libeigen3-dev, libtbb-dev, nlohmann-json3-dev, libssl-dev, zlib1g-dev, libexpat1-dev, libcairo2-dev, libpolyclipping-dev, libzip-dev, libpng-dev")
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 # The tags of lintian that stay, each with its reason.

@@ -11,7 +11,7 @@ TriangleMesh resampled(const TriangleMesh& mesh, Eigen::Index vertices) {
     const double every_edge = 1e-9 * diagonal(fine.vertices);
     fine = refine_long_edges(fine, every_edge, 1).mesh;
   }
-  return decimated(fine, {.max_vertices = static_cast<std::size_t>(vertices)}).mesh;
+  return decimated(fine, 2 * static_cast<std::size_t>(vertices)).mesh;
 }
 
 }  // namespace bespoke

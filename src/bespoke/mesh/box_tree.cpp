@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -45,7 +46,7 @@ class Builder {
  public:
   explicit Builder(const std::vector<Box>& boxes) {
     items_.reserve(boxes.size());
-    for (const Box& box : boxes) items_.push_back({box, box.center(), static_cast<int>(items_.size())});
+    for (const Box& box : boxes) items_.push_back({rounded(box), static_cast<int>(items_.size())});
   }
 
   BoxTree build() && {
@@ -57,7 +58,7 @@ class Builder {
       const std::vector<Range> parts = divide(range);
       for (std::size_t i = 0; i < width; ++i) {
         const bool used = i < parts.size();
-        set_child(nodes[node], i, used ? bounds(parts[i]) : Box(), used ? parts[i].begin : 0,
+        set_child(nodes[node], i, used ? bounds(parts[i]) : FloatBox(), used ? parts[i].begin : 0,
                   used ? parts[i].size() : -1);
         if (!used || parts[i].size() <= leaf_size) continue;
         nodes[node].child[i] = static_cast<int>(nodes.size());
@@ -72,26 +73,36 @@ class Builder {
   }
 
  private:
-  /// What is sorted: walks over a range read one stretch of memory.
+  using FloatBox = Eigen::AlignedBox3f;
+
+  /// What is sorted: walks over a range read one short stretch of memory.
   struct Item {
-    Box box;
-    Vector3 center;
+    FloatBox box;  // rounded outwards
     int index;
+    Eigen::Vector3f doubled_center() const { return box.min() + box.max(); }
   };
+
+  static FloatBox rounded(const Box& box) {
+    return {Eigen::Vector3f(box.min().unaryExpr(&round_down)),
+            Eigen::Vector3f(box.max().unaryExpr(&round_up))};
+  }
 
   std::span<Item> items(const Range& range) {
     return std::span(items_).subspan(static_cast<std::size_t>(range.begin),
                                      static_cast<std::size_t>(range.size()));
   }
 
-  Box bounds(const Range& range) {
-    Box box;
+  FloatBox bounds(const Range& range) {
+    FloatBox box;
     for (const Item& item : items(range)) box.extend(item.box);
     return box;
   }
 
-  static void set_child(Node& node, std::size_t i, const Box& box, int first, int count) {
-    set_bounds(node, i, count < 0 ? Box(Vector3::Zero()) : box);
+  static void set_child(Node& node, std::size_t i, const FloatBox& box, int first, int count) {
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][i] = count < 0 ? 0 : box.min()(axis);
+      node.high[axis][i] = count < 0 ? 0 : box.max()(axis);
+    }
     node.child[i] = first;
     node.count[i] = count;
   }
@@ -113,19 +124,20 @@ class Builder {
   // By the surface-area heuristic over bins of the centres along their longest axis (Wald 2007).
   int split(const Range& range) {
     const std::span<Item> all = items(range);
-    Box centers;
-    for (const Item& item : all) centers.extend(item.center);
+    FloatBox centers;
+    for (const Item& item : all) centers.extend(item.doubled_center());
     int axis = 0;
-    const double extent = centers.diagonal().maxCoeff(&axis);
-    if (!(extent > 0)) return range.begin + range.size() / 2;
+    const float extent = centers.diagonal().maxCoeff(&axis);
+    if (!(extent > 0 && std::isfinite(extent))) return range.begin + range.size() / 2;
     if (range.depth >= balanced_from) {
       const int half = range.size() / 2;
-      std::nth_element(all.begin(), all.begin() + half, all.end(),
-                       [&](const Item& x, const Item& y) { return x.center(axis) < y.center(axis); });
+      std::nth_element(all.begin(), all.begin() + half, all.end(), [&](const Item& x, const Item& y) {
+        return x.doubled_center()(axis) < y.doubled_center()(axis);
+      });
       return range.begin + half;
     }
     const auto bin = [&](const Item& item) {
-      const double share = (item.center(axis) - centers.min()(axis)) / extent;
+      const float share = (item.doubled_center()(axis) - centers.min()(axis)) / extent;
       return std::clamp(static_cast<int>(share * bins), 0, bins - 1);
     };
     const int cut = best_cut(all, bin);
@@ -137,27 +149,27 @@ class Builder {
   // Between 1 and bins − 1: the first and the last bin are never empty.
   template <class Bin>
   static int best_cut(std::span<const Item> items, const Bin& bin) {
-    std::array<Box, bins> bounds_of_bin;
+    std::array<FloatBox, bins> bounds_of_bin;
     std::array<int, bins> count{};
     for (const Item& item : items) {
       const auto at = static_cast<std::size_t>(bin(item));
       bounds_of_bin[at].extend(item.box);
       ++count[at];
     }
-    std::array<double, bins> cost{};
-    const auto area = [](const Box& b) {
-      const Vector3 d = b.diagonal();
+    std::array<float, bins> cost{};
+    const auto area = [](const FloatBox& b) {
+      const Eigen::Vector3f d = b.diagonal();
       return d.x() * d.y() + d.y() * d.z() + d.z() * d.x();
     };
-    Box left, right;
+    FloatBox left, right;
     int left_count = 0, right_count = 0;
     for (std::size_t i = 0; i + 1 < bins; ++i) {
       left.extend(bounds_of_bin[i]);
       left_count += count[i];
-      cost[i + 1] += area(left) * left_count;
+      cost[i + 1] += area(left) * static_cast<float>(left_count);
       right.extend(bounds_of_bin[bins - 1 - i]);
       right_count += count[bins - 1 - i];
-      cost[bins - 1 - i] += area(right) * right_count;
+      cost[bins - 1 - i] += area(right) * static_cast<float>(right_count);
     }
     return static_cast<int>(std::min_element(cost.begin() + 1, cost.end()) - cost.begin());
   }

@@ -284,6 +284,7 @@ std::vector<StageJson> stages_json(const FitSummary& summary, const Anchors& anc
         {{"joined_source_vertices", summary.seams.source}, {"joined_target_vertices", summary.seams.target}},
         0);
   if (summary.parts) add("parts", to_json(*summary.parts), 0);
+  if (summary.leading_vertices > 0) add("decimation", {{"registered_vertices", summary.leading_vertices}}, 0);
   if (summary.unanchored) add("alignment", to_json(*summary.unanchored), summary.unanchored->seconds);
   // Only where it found something: the records of all other fits stay as they were.
   if (!to_string(summary.accuracy, anchors).empty()) add("accuracy", to_json(summary.accuracy, anchors), 0);

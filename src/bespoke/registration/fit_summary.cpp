@@ -135,6 +135,9 @@ std::vector<StageLine> stage_lines(const FitSummary& summary, const Anchors& anc
   if (summary.cloud) lines.push_back({"cloud", to_string(*summary.cloud)});
   if (has_any(summary.seams)) lines.push_back({"seams", to_string(summary.seams)});
   if (summary.parts) lines.push_back({"parts", to_string(*summary.parts)});
+  if (summary.leading_vertices > 0)
+    lines.push_back({"decimation", std::to_string(summary.leading_vertices) +
+                                       " vertices are registered, the others follow them"});
   if (summary.unanchored) lines.push_back({"alignment", to_string(*summary.unanchored)});
   const std::string accuracy = to_string(summary.accuracy, anchors);
   if (!accuracy.empty()) lines.push_back({"accuracy", accuracy});

@@ -103,6 +103,9 @@ inline bool has_any(const SeamSummary& summary) { return summary.source + summar
 struct RegistrationSummary {
   SeamSummary seams;
   std::optional<LoosePartsSummary> parts;       ///< empty where all parts of the source are registered
+  /// Of a dense source, those that were registered: what is said of the surface fit is said of them, and the
+  /// others follow (decimated_source.h). 0 where all were.
+  std::size_t leading_vertices = 0;
   std::optional<UnanchoredSummary> unanchored;  ///< empty with anchors or a given fitted source
   AnchorAccuracy accuracy;                      ///< of anchors that came without
   std::string matched_parts;  ///< how disconnected parts correspond (matched_parts.h); mostly empty

@@ -1,6 +1,7 @@
 #include "bespoke/registration/registration.h"
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "bespoke/anchors/size_ratio.h"
 #include "bespoke/error.h"
 #include "bespoke/number_format.h"
+#include "bespoke/registration/detail/decimated_source.h"
 #include "bespoke/registration/detail/register_source.h"
 #include "bespoke/registration/elastic_pairs.h"
 #include "bespoke/registration/renumbered.h"
@@ -102,12 +104,48 @@ Registration parted_at_seams(Registration registration, const JoinedModels& join
   return registration;
 }
 
-/// The source registered to the target, its parts separated.
-Registration register_joined(const Problem& problem, const FitOptions& options, const Progress& progress) {
+using Registering = std::function<Registration(const Problem&)>;
+
+/// Finer meshes tell the surface fit nothing: the spacing of its finest layers is that of so many vertices.
+constexpr Eigen::Index enough_vertices = 30'000;
+
+/// Patches name faces of the source.
+bool is_dense(const Problem& problem, const SurfaceFitOptions& options) {
+  return options.method == SurfaceFitMethod::deformation_graph && problem.anchors.patches.empty() &&
+         problem.source.vertices.cols() > enough_vertices;
+}
+
+/// A dense source is registered by some of its vertices, which the others follow.
+Registration register_decimated(const Problem& problem, const Registering& registering,
+                                const Progress& progress) {
+  progress.step("decimate", 0, 0);
+  const DecimatedSource source(problem.source, 2 * static_cast<std::size_t>(enough_vertices));
+  Registration registration = registering({source.mesh(), problem.target, problem.anchors});
+  registration.fitted_vertices = source.followed(registration.fitted_vertices);
+  registration.confidence = source.interpolated(registration.confidence);
+  registration.summary = renumbered(std::move(registration.summary), source.vertices());
+  registration.summary.leading_vertices = source.vertices().size();
+  return registration;
+}
+
+/// The models are joined at their seams for it, and parted again.
+Registration register_joined(const Problem& problem, const FitOptions& options,
+                             const Registering& registering, const Progress& progress) {
   const JoinedModels joined = joined_models(problem, options);
-  Registration registration =
-      register_source({joined.source.mesh, joined.target.mesh, problem.anchors}, options, progress);
-  return parted_at_seams(separated(std::move(registration), joined.source.mesh, options, progress), joined);
+  const Problem of_joined{joined.source.mesh, joined.target.mesh, problem.anchors};
+  return parted_at_seams(is_dense(of_joined, options.surface_fit)
+                             ? register_decimated(of_joined, registering, progress)
+                             : registering(of_joined),
+                         joined);
+}
+
+/// The source registered to the target, its parts separated.
+Registration register_and_separate(const Problem& problem, const FitOptions& options,
+                                   const Progress& progress) {
+  const auto registering = [&](const Problem& joined) {
+    return separated(register_source(joined, options, progress), joined.source, options, progress);
+  };
+  return register_joined(problem, options, registering, progress);
 }
 
 /// Empty where all of the source is registered. Patches may name any of its parts.
@@ -127,7 +165,7 @@ Registration register_parts(RegisteredParts parts, const Problem& problem, const
   for (;;) {
     const auto part = std::make_shared<const PartialMesh>(parts.mesh(problem.source));
     Registration registration =
-        register_joined({part->mesh, problem.target, problem.anchors}, options, progress);
+        register_and_separate({part->mesh, problem.target, problem.anchors}, options, progress);
     registration.part = part;
     if (keep_uncovered(parts, problem.source, problem.target, registered_vertices(registration))) continue;
     if (!parts.is_whole()) registration.summary.parts = {parts.components.count(), loose_parts(parts)};
@@ -201,14 +239,13 @@ Registration register_models(const Problem& problem, const FitOptions& options, 
   require_models(problem, options);
   if (std::optional<RegisteredParts> parts = separable_parts(problem, options))
     return register_parts(std::move(*parts), problem, options, progress);
-  return register_joined(problem, options, progress);
+  return register_and_separate(problem, options, progress);
 }
 
 Registration fit_source_surface(const Problem& problem, const FitOptions& options, const Progress& progress) {
   require_models(problem, options);
-  const JoinedModels joined = joined_models(problem, options);
-  return parted_at_seams(
-      register_source({joined.source.mesh, joined.target.mesh, problem.anchors}, options, progress), joined);
+  const auto registering = [&](const Problem& joined) { return register_source(joined, options, progress); };
+  return register_joined(problem, options, registering, progress);
 }
 
 }  // namespace bespoke

@@ -103,9 +103,12 @@ std::string registration(const FitOutcome& outcome) {
   return text;
 }
 
-std::string distances(const Statistics& found, const Lengths& lengths) {
-  return "half of the registered source lies within " + lengths(found.median) +
-         " of the target, 95 % within " + lengths(found.p95) + ", all within " + lengths(found.max);
+/// leading: vertices that the others follow, 0 for none.
+std::string distances(const Statistics& found, std::size_t leading, const Lengths& lengths) {
+  const std::string what = leading > 0 ? std::to_string(leading) + " vertices that the others follow lie"
+                                       : "registered source lies";
+  return "half of the " + what + " within " + lengths(found.median) + " of the target, 95 % within " +
+         lengths(found.p95) + ", all within " + lengths(found.max);
 }
 
 std::string counterparts(const TriangleMesh& source, const std::vector<double>& confidence,
@@ -204,7 +207,7 @@ std::string fit_text(const FitOutcome& outcome) {
   if (!certificate.is_bijection()) add("NOT PROVED", unproved(certificate));
   add("registered", registration(outcome));
   if (summary.surface) {
-    add("surfaces", distances(summary.surface->after, lengths));
+    add("surfaces", distances(summary.surface->after, summary.leading_vertices, lengths));
     add("counterparts", counterparts(outcome.input.source, outcome.made.fit->confidence, lengths));
   }
   if (summary.uncovered && summary.uncovered->is_notable()) add("uncovered", to_string(*summary.uncovered));

@@ -63,7 +63,7 @@ struct BendingSettings {
   double slope_penalty = 1e-3;
   /// Bounds a local scale over the median one, either way, where the surface has collapsed. A node bends by
   /// its area at rest times the squared scale: a grown area counts as it is now, except where a pose grew it.
-  double max_growth = 10;
+  double max_growth = 2;
 };
 
 /// How much the surface keeps its shape, node by node (node_system.h): an as-similar-as-possible term

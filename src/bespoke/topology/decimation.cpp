@@ -1,9 +1,9 @@
 #include "bespoke/topology/decimation.h"
 
-#include <OpenMesh/Tools/Decimater/DecimaterT.hh>
-#include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
-#include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <meshoptimizer.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "bespoke/topology/half_edge_mesh.h"
 #include "bespoke/topology/seams.h"
@@ -11,128 +11,119 @@
 namespace bespoke {
 namespace {
 
-namespace decimater = OpenMesh::Decimater;
-using Quadric = OpenMesh::Geometry::Quadricd;
+/// 3×n, of unit diagonal about the origin: the library takes floats.
+Eigen::Matrix3Xf normalised(const Points& vertices) {
+  const Box box = bounding_box(vertices);
+  const double extent = box.diagonal().norm();
+  return ((vertices.colwise() - box.center()) / (extent > 0 ? extent : 1)).cast<float>();
+}
 
-/// OpenMesh's quadrics are of faces alone, so that a flat sheet would lose its outline: here every boundary
-/// edge adds the plane through it that is perpendicular to its face.
-template <class MeshT>
-class BoundedQuadrics : public decimater::ModQuadricT<MeshT> {
- public:
-  DECIMATING_MODULE(BoundedQuadrics, MeshT, BoundedQuadrics)
-  using OfFaces = decimater::ModQuadricT<MeshT>;
+std::vector<unsigned> corners_without_repeated_vertices(const Faces& faces) {
+  std::vector<unsigned> corners;
+  for (const auto& face : faces.colwise())
+    if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0])
+      for (const int vertex : face) corners.push_back(static_cast<unsigned>(vertex));
+  return corners;
+}
 
-  explicit BoundedQuadrics(Mesh& mesh) : OfFaces(mesh) { mesh.add_property(of_boundary_); }
-  ~BoundedQuadrics() override { OfFaces::mesh().remove_property(of_boundary_); }
+using Corner = OpenMesh::Vec3d;
 
-  void initialize() override {
-    OfFaces::initialize();
-    Mesh& mesh = OfFaces::mesh();
-    for (const auto vertex : mesh.vertices()) mesh.property(of_boundary_, vertex).clear();
-    for (const auto edge : mesh.halfedges()) {
-      if (!mesh.is_boundary(edge)) continue;
-      const OpenMesh::Vec3d along = mesh.calc_edge_vector(edge);
-      const OpenMesh::Vec3d normal = along % mesh.normal(mesh.opposite_face_handle(edge));
-      // Of this length squared: the plane's weight is that of a face as wide as the edge is long.
-      const double offset = -(normal | mesh.point(mesh.from_vertex_handle(edge)));
-      const Quadric plane(normal[0], normal[1], normal[2], offset);
-      mesh.property(of_boundary_, mesh.from_vertex_handle(edge)) += plane;
-      mesh.property(of_boundary_, mesh.to_vertex_handle(edge)) += plane;
-    }
-  }
-
-  float collapse_priority(const CollapseInfo& collapse) override {
-    Quadric boundary = OfFaces::mesh().property(of_boundary_, collapse.v0);
-    boundary += OfFaces::mesh().property(of_boundary_, collapse.v1);
-    const float faces = OfFaces::collapse_priority(collapse);
-    // Rounding makes the error of a flat place negative, which would forbid the collapse.
-    return std::max(0.0f, faces + static_cast<float>(boundary(collapse.p1)));
-  }
-
-  void postprocess_collapse(const CollapseInfo& collapse) override {
-    OfFaces::postprocess_collapse(collapse);
-    OfFaces::mesh().property(of_boundary_, collapse.v1) +=
-        OfFaces::mesh().property(of_boundary_, collapse.v0);
-  }
-
- private:
-  OpenMesh::VPropHandleT<Quadric> of_boundary_;
+/// Cosine and sine, times the same length, of the angle at `apex`.
+struct Angle {
+  double cosine, sine;
+  Angle(const Corner& apex, const Corner& a, const Corner& b)
+      : cosine((a - apex) | (b - apex)), sine(((a - apex) % (b - apex)).norm()) {}
 };
 
-/// Of unit diagonal about the origin: priorities are floats.
-TriangleMesh normalised(const TriangleMesh& mesh) {
-  TriangleMesh result = mesh;
-  const Box box = bounding_box(mesh.vertices);
-  const double extent = box.diagonal().norm();
-  result.vertices.colwise() -= box.center();
-  if (extent > 0) result.vertices /= extent;
-  return result;
-}
+/// The four corners around an edge between a and b; c and d are opposite.
+struct Quad {
+  Corner a, b, c, d;
 
-TriangleMesh without_repeated_vertices(const TriangleMesh& mesh) {
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index f = 0; f < mesh.faces.cols(); ++f) {
-    const auto face = mesh.faces.col(f);
-    if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) kept.push_back(f);
+  Quad(const HalfEdgeMesh& mesh, OpenMesh::EdgeHandle edge) {
+    const auto half = mesh.halfedge_handle(edge, 0), other = mesh.halfedge_handle(edge, 1);
+    a = mesh.point(mesh.from_vertex_handle(half));
+    b = mesh.point(mesh.to_vertex_handle(half));
+    c = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(half)));
+    d = mesh.point(mesh.to_vertex_handle(mesh.next_halfedge_handle(other)));
   }
-  return {mesh.vertices, mesh.faces(Eigen::all, kept)};
+  /// Whether the angles at c and d are more than half a turn together: the other diagonal is Delaunay's.
+  bool is_long() const {
+    const Angle at_c(c, a, b), at_d(d, b, a);
+    return at_c.sine * at_d.cosine + at_c.cosine * at_d.sine <
+           -1e-9 * (at_c.sine + at_d.sine) * (std::abs(at_c.cosine) + std::abs(at_d.cosine));
+  }
+  /// Whether all four faces that may lie between the corners face one way, slivers apart.
+  bool is_flat() const {
+    constexpr double least_cosine = 0.98, sliver = 0.01;
+    const double squared_length = (b - a).sqrnorm();
+    const Corner normals[] = {(b - a) % (c - a), (a - b) % (d - b), (d - c) % (b - c), (c - d) % (a - d)};
+    const Corner mean = normals[0] + normals[1];
+    for (const Corner& normal : normals)
+      if (normal.norm() > sliver * squared_length &&
+          (normal | mean) < least_cosine * normal.norm() * mean.norm())
+        return false;
+    return true;
+  }
+};
+
+/// Without slivers where the surface is flat, on which quadrics tell no place from another.
+void flip_to_delaunay(HalfEdgeMesh& mesh) {
+  std::vector<OpenMesh::EdgeHandle> waiting(mesh.edges_begin(), mesh.edges_end());
+  std::size_t left = 20 * waiting.size();  // rounding must not flip for ever
+  while (!waiting.empty() && left-- > 0) {
+    const auto edge = waiting.back();
+    waiting.pop_back();
+    if (mesh.is_boundary(edge)) continue;
+    const Quad quad(mesh, edge);
+    if (!quad.is_long() || !quad.is_flat() || !mesh.is_flip_ok(edge)) continue;
+    mesh.flip(edge);
+    for (const auto half : {mesh.halfedge_handle(edge, 0), mesh.halfedge_handle(edge, 1)})
+      for (const auto side : {mesh.next_halfedge_handle(half), mesh.prev_halfedge_handle(half)})
+        waiting.push_back(mesh.edge_handle(side));
+  }
 }
 
-/// `whole[v]`: the number of vertex v in the whole, several v may have the same.
-DecimatedMesh renumbered(const TriangleMesh& whole_mesh, Faces faces, const std::vector<int>& whole) {
+/// The faces of the mesh, whose vertices keep their numbers, with flipped edges.
+Faces delaunay(const TriangleMesh& mesh) {
+  const SplitMesh split = split_to_manifold(mesh);
+  HalfEdgeMesh topology = half_edge_mesh(split.mesh);
+  flip_to_delaunay(topology);
+  Faces faces = triangle_mesh(topology).faces;
+  for (int& vertex : faces.reshaped()) vertex = split.origins[static_cast<std::size_t>(vertex)];
+  return faces;
+}
+
+/// The mesh of these faces, whose corners are numbers of `whole`'s vertices.
+DecimatedMesh part_of(const TriangleMesh& whole, std::vector<int> corners) {
   DecimatedMesh result;
-  for (int& vertex : faces.reshaped()) {
-    vertex = whole[static_cast<std::size_t>(vertex)];
-    result.vertices.push_back(vertex);
-  }
+  result.vertices = corners;
   std::sort(result.vertices.begin(), result.vertices.end());
   result.vertices.erase(std::unique(result.vertices.begin(), result.vertices.end()), result.vertices.end());
-  for (int& vertex : faces.reshaped())
+  for (int& vertex : corners)
     vertex = static_cast<int>(std::lower_bound(result.vertices.begin(), result.vertices.end(), vertex) -
                               result.vertices.begin());
-  result.mesh = {whole_mesh.vertices(Eigen::all, result.vertices), std::move(faces)};
+  result.mesh.vertices = whole.vertices(Eigen::all, result.vertices);
+  result.mesh.faces =
+      Eigen::Map<const Faces>(corners.data(), 3, static_cast<Eigen::Index>(corners.size()) / 3);
   return result;
-}
-
-void collapse_edges(HalfEdgeMesh& mesh, const DecimationOptions& options) {
-  mesh.request_face_normals();
-  mesh.update_face_normals();
-  decimater::DecimaterT<HalfEdgeMesh> collapsing(mesh);
-  BoundedQuadrics<HalfEdgeMesh>::Handle quadrics;
-  decimater::ModNormalFlippingT<HalfEdgeMesh>::Handle flipping;
-  collapsing.add(quadrics);
-  collapsing.add(flipping);
-  collapsing.initialize();
-  collapsing.decimate_to_faces(options.max_vertices, options.max_faces);
 }
 
 }  // namespace
 
-DecimatedMesh decimated(const TriangleMesh& mesh, const DecimationOptions& options) {
+DecimatedMesh decimated(const TriangleMesh& mesh, std::size_t max_faces) {
+  constexpr float max_error = 0.05F;  // of the extent: larger parts do not vanish
   const JoinedMesh joined = joined_at_seams(mesh);
-  const SplitMesh split = split_to_manifold(without_repeated_vertices(joined.mesh));
-  HalfEdgeMesh topology = half_edge_mesh(normalised(split.mesh));
-  topology.request_vertex_status();
-  topology.request_edge_status();
-  topology.request_face_status();
-  std::vector<int> copies(static_cast<std::size_t>(joined.mesh.vertices.cols()), 0);
-  for (const int origin : split.origins) ++copies[static_cast<std::size_t>(origin)];
-  for (const auto vertex : topology.vertices()) {
-    const int origin = split.origins[static_cast<std::size_t>(vertex.idx())];
-    topology.status(vertex).set_locked(copies[static_cast<std::size_t>(origin)] > 1);
-  }
-  collapse_edges(topology, options);
-
+  const Eigen::Matrix3Xf places = normalised(joined.mesh.vertices);
+  std::vector<unsigned> corners = corners_without_repeated_vertices(joined.mesh.faces);
+  if (corners.size() > 3 * max_faces)
+    corners.resize(meshopt_simplify(corners.data(), corners.data(), corners.size(), places.data(),
+                                    static_cast<std::size_t>(places.cols()), 3 * sizeof(float), 3 * max_faces,
+                                    max_error));
   std::vector<int> whole;
-  for (const int origin : split.origins) whole.push_back(joined.first[static_cast<std::size_t>(origin)]);
-  Faces faces(3, std::distance(topology.faces_sbegin(), topology.faces_end()));
-  Eigen::Index next = 0;
-  for (const auto face : topology.faces()) {  // deleted ones are skipped
-    int corner = 0;
-    for (const auto vertex : topology.fv_range(face)) faces(corner++, next) = vertex.idx();
-    ++next;
-  }
-  return renumbered(mesh, std::move(faces), whole);
+  for (const unsigned corner : corners) whole.push_back(joined.first[corner]);
+  DecimatedMesh fewer = part_of(mesh, std::move(whole));
+  fewer.mesh.faces = delaunay(fewer.mesh);
+  return fewer;
 }
 
 }  // namespace bespoke

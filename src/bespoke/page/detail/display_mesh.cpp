@@ -107,7 +107,7 @@ DisplayMesh display_mesh(const TriangleMesh& mesh, std::size_t max_faces) {
     return whole;
   }
   if (has_faces)
-    if (const DecimatedMesh fewer = decimated(mesh, {.max_faces = max_faces});
+    if (const DecimatedMesh fewer = decimated(mesh, max_faces);
         static_cast<std::size_t>(fewer.mesh.faces.cols()) <= max_faces)
       return {fewer.vertices, fewer.mesh.faces, false};
   // Points, or triangles that share too few edges to collapse. A surface of n triangles crosses about n / 2
