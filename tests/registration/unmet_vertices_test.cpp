@@ -115,7 +115,7 @@ TEST(UnmetVertices, AreTouchingWhereTheTargetTouchesItself) {
   const auto two_balls = [&](double apart) {
     return shapes::joined(ball, shapes::moved(ball, {Matrix3::Identity(), Vector3(apart, 0.13, -0.07)}));
   };
-  const TriangleMesh source = two_balls(4), touching = two_balls(1.95);
+  const TriangleMesh source = two_balls(2.3), touching = two_balls(1.95);
   FitOptions options;
   options.lambda = 0.4;
   options.fit_tolerance = satisfied_within;

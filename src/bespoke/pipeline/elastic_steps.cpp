@@ -51,34 +51,54 @@ class StepFitter {
   Points moved_by(const ElasticMap& map) const { return map(with_loose(vertices_, places_, loose_)); }
 
   /// Along the plan, from one time to another, to where the path is then or to `next`: vertices and loose
-  /// points. Does nothing and says false where finite elements are held up and are to give up.
-  bool fit_to(const StepPlan& plan, double from, double to, bool give_up = false) {
-    return fit_to(plan, from, to, plan.surface(to), give_up);
+  /// points.
+  void fit_to(const StepPlan& plan, double from, double to) { fit_to(plan, from, to, plan.surface(to)); }
+  void fit_to(const StepPlan& plan, double from, double to, const Points& next) {
+    add(fit(plan, from, to, next, options_));
   }
-  bool fit_to(const StepPlan& plan, double from, double to, const Points& next, bool give_up = false) {
-    const auto loose = static_cast<Eigen::Index>(loose_);
-    const Points fitted = next.leftCols(vertices_.cols());
-    const TriangleMesh here{vertices_, source_.faces};
-    Points targets = places_;
-    targets.leftCols(places_.cols() - loose) = elastic_pairs(source_, fitted).targets;
-    targets.rightCols(loose) = next.rightCols(loose);
+
+  /// The same to where the path is, by a step of a chain: only the last need meet the tolerance, as every
+  /// step starts where those before have brought the points. Does nothing and says false where finite
+  /// elements are held up and are to give up.
+  bool fit_step(const StepPlan& plan, double from, double to, bool give_up) {
+    constexpr double rough = 10;  // tolerances
     ElasticOptions options = options_;
-    options.lambda *= plan.size(from);
-    options.growth = plan.size(to) / plan.size(from);
-    options.fit_tolerance *= plan.size(to) / plan.size(1);
+    if (to < plan.times.back()) {
+      options.fit_tolerance *= rough;
+      // A chain has as many nodes as two maps of one step.
+      options.max_nodes /= plan.steps() - 1;
+    }
     options.give_up_blocked = give_up;
-    ElasticFit fit = method_.fit({here, fitted, places_, targets}, options, progress_);
-    if (give_up && is_blocked(fit.found)) return false;
-    steps_.sources.push_back(vertices_);
-    steps_.found.push_back(std::move(fit.found));
-    move_by(*fit.map);
-    steps_.maps.push_back(std::move(fit.map));
+    ElasticFit found = fit(plan, from, to, plan.surface(to), options);
+    if (give_up && is_blocked(found.found)) return false;
+    add(std::move(found));
     return true;
   }
 
   ElasticSteps steps() && { return std::move(steps_); }
 
  private:
+  ElasticFit fit(const StepPlan& plan, double from, double to, const Points& next,
+                 ElasticOptions options) const {
+    const auto loose = static_cast<Eigen::Index>(loose_);
+    const Points fitted = next.leftCols(vertices_.cols());
+    const TriangleMesh here{vertices_, source_.faces};
+    Points targets = places_;
+    targets.leftCols(places_.cols() - loose) = elastic_pairs(source_, fitted).targets;
+    targets.rightCols(loose) = next.rightCols(loose);
+    options.lambda *= plan.size(from);
+    options.growth = plan.size(to) / plan.size(from);
+    options.fit_tolerance *= plan.size(to) / plan.size(1);
+    return method_.fit({here, fitted, places_, targets}, options, progress_);
+  }
+
+  void add(ElasticFit fit) {
+    steps_.sources.push_back(vertices_);
+    steps_.found.push_back(std::move(fit.found));
+    move_by(*fit.map);
+    steps_.maps.push_back(std::move(fit.map));
+  }
+
   const TriangleMesh& source_;
   Points vertices_;
   Points places_;
@@ -136,16 +156,13 @@ StepPlan halved(const StepPlan& plan, std::size_t step) {
 
 ElasticSteps fit_elastic_steps(const TriangleMesh& source, const ElasticPairs& pairs, const StepPlan& plan,
                                const StepMethod& method, const Progress& progress) {
-  // A chain has as many nodes as two maps of one step.
-  StepMethod of_a_step = method;
-  if (plan.steps() > 1) of_a_step.options.max_nodes = 2 * method.options.max_nodes / plan.steps();
-  StepFitter fitter(source, pairs, of_a_step, progress);
+  StepFitter fitter(source, pairs, method, progress);
   std::vector<double> times = plan.times;
   std::vector<bool> is_whole(plan.steps(), true);  // no half of a step
   for (std::size_t k = 0; k < is_whole.size();) {
     progress.step("elastic", k, is_whole.size());
     const bool may_halve = method.halve_blocked && is_whole[k] && is_whole.size() < max_useful_steps;
-    if (fitter.fit_to(plan, times[k], times[k + 1], may_halve)) {
+    if (fitter.fit_step(plan, times[k], times[k + 1], may_halve)) {
       ++k;
       continue;
     }
