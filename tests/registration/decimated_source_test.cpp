@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bespoke/mesh/closest_point.h"
@@ -59,6 +60,23 @@ TEST(DecimatedSource, KeepsVerticesOnTheirSideOfAThinGap) {
   const Points followed = fewer.followed(moved);
   for (Eigen::Index i = 0; i < followed.cols(); ++i)
     EXPECT_NEAR(followed(2, i), i < below.vertices.cols() ? 0 : 1.0001, 1e-6) << i;
+}
+
+TEST(DecimatedSource, KnowsWhatFollowsAVertex) {
+  const TriangleMesh ball = shapes::icosphere(4);
+  const DecimatedSource fewer(ball, 500);
+  Points moved = fewer.mesh().vertices;
+  moved.col(7) *= 2;
+  const Points before = fewer.followed(fewer.mesh().vertices), after = fewer.followed(moved);
+  const std::vector<int> followers = fewer.followers({7});
+  EXPECT_TRUE(std::binary_search(followers.begin(), followers.end(), fewer.vertices()[7]));
+  const double gone = after.col(fewer.vertices()[7]).norm() - 1;
+  for (int vertex = 0; vertex < ball.vertices.cols(); ++vertex) {
+    if (!std::binary_search(followers.begin(), followers.end(), vertex)) {
+      // Corners nearby take part by their gradients alone.
+      EXPECT_LT((after.col(vertex) - before.col(vertex)).norm(), 0.2 * gone);
+    }
+  }
 }
 
 // Flat faces of edge h would be off by h² / 8 at a curvature of 1; equilateral ones have h² = 4 / √3 of their

@@ -115,15 +115,33 @@ bool is_dense(const Problem& problem, const SurfaceFitOptions& options) {
          problem.source.vertices.cols() > enough_vertices;
 }
 
+/// The whole's vertices that were parted, where those that they follow were.
+std::vector<ReleasedVertex> released_followers(const DecimatedSource& source, Points fitted,
+                                               const std::vector<ReleasedVertex>& released) {
+  std::vector<int> leading;
+  for (const ReleasedVertex& vertex : released) {
+    leading.push_back(vertex.vertex);
+    fitted.col(vertex.vertex) = vertex.place;
+  }
+  const Points before = source.followed(fitted);
+  std::vector<ReleasedVertex> result;
+  for (const int vertex : source.followers(leading)) result.push_back({vertex, before.col(vertex)});
+  return result;
+}
+
 /// A dense source is registered by some of its vertices, which the others follow.
 Registration register_decimated(const Problem& problem, const Registering& registering,
                                 const Progress& progress) {
   progress.step("decimate", 0, 0);
   const DecimatedSource source(problem.source, 2 * static_cast<std::size_t>(enough_vertices));
   Registration registration = registering({source.mesh(), problem.target, problem.anchors});
+  std::vector<ReleasedVertex> released;
+  if (const std::optional<ContactSummary>& contact = registration.summary.contact)
+    released = released_followers(source, registration.fitted_vertices, contact->released);
   registration.fitted_vertices = source.followed(registration.fitted_vertices);
   registration.confidence = source.interpolated(registration.confidence);
   registration.summary = renumbered(std::move(registration.summary), source.vertices());
+  if (registration.summary.contact) registration.summary.contact->released = std::move(released);
   registration.summary.leading_vertices = source.vertices().size();
   return registration;
 }

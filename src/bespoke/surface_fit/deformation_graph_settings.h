@@ -61,9 +61,10 @@ struct BendingSettings {
   double weight_floor = 1e-2;  ///< couples distant components, where the exponential vanishes
   /// Added to a Gram matrix of order 1: fixes slopes across a flat neighbourhood, which no node determines.
   double slope_penalty = 1e-3;
-  /// Bounds a local scale over the median one, either way, where the surface has collapsed. A node bends by
-  /// its area at rest times the squared scale: a grown area counts as it is now, except where a pose grew it.
-  double max_growth = 2;
+  /// Bounds a local scale over the median one, either way. A node bends by its area at rest times the squared
+  /// scale: a grown area counts as it is now, except where a pose grew it. What shrinks gets softer, which
+  /// without a narrow bound lets parts without pairs shrink until they are thrown out of their place.
+  double max_growth = 3;
 };
 
 /// How much the surface keeps its shape, node by node (node_system.h): an as-similar-as-possible term

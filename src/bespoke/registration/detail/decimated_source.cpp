@@ -103,6 +103,19 @@ Points DecimatedSource::followed(const Points& moved) const {
   return result;
 }
 
+std::vector<int> DecimatedSource::followers(const std::vector<int>& leading) const {
+  std::vector<char> leads(decimated_.vertices.size(), 0);
+  for (const int vertex : leading) leads[static_cast<std::size_t>(vertex)] = 1;
+  std::vector<int> result;
+  for (std::size_t k = 0; k < feet_.size(); ++k) {
+    const auto corners = decimated_.mesh.faces.col(feet_[k].face);
+    if (std::any_of(corners.begin(), corners.end(),
+                    [&](int corner) { return leads[static_cast<std::size_t>(corner)] != 0; }))
+      result.push_back(static_cast<int>(k));
+  }
+  return result;
+}
+
 std::vector<double> DecimatedSource::interpolated(const std::vector<double>& values) const {
   std::vector<double> result(feet_.size(), 0.0);
   for (std::size_t k = 0; k < feet_.size(); ++k)

@@ -29,6 +29,8 @@ class DecimatedSource {
   /// corners and gradients interpolate with opposite errors. A
   /// similarity of mesh() moves all alike.
   Points followed(const Points& moved) const;
+  /// Of the whole's vertices those that go with a face at one of these vertices of mesh(), ascending.
+  std::vector<int> followers(const std::vector<int>& leading) const;
   /// n: a value of every vertex of mesh() (m), interpolated in the faces.
   std::vector<double> interpolated(const std::vector<double>& values) const;
 
