@@ -106,13 +106,18 @@ Registration parted_at_seams(Registration registration, const JoinedModels& join
 
 using Registering = std::function<Registration(const Problem&)>;
 
-/// Finer meshes tell the surface fit nothing: the spacing of its finest layers is that of so many vertices.
-constexpr Eigen::Index enough_vertices = 30'000;
+/// Triangles of the least spacing that the finest layers of the surface fit resolve.
+double enough_faces(const TriangleMesh& source) {
+  constexpr double spacing = 0.004;  // of the diagonal: the last λ is 0.47 % (DetailSettings)
+  const double edge = spacing * diagonal(source.vertices);
+  return vertex_areas(source).sum() / (std::sqrt(3.0) / 4 * edge * edge);
+}
 
 /// Patches name faces of the source.
 bool is_dense(const Problem& problem, const SurfaceFitOptions& options) {
+  constexpr double worth = 1.5;
   return options.method == SurfaceFitMethod::deformation_graph && problem.anchors.patches.empty() &&
-         problem.source.vertices.cols() > enough_vertices;
+         static_cast<double>(problem.source.faces.cols()) > worth * enough_faces(problem.source);
 }
 
 /// The whole's vertices that were parted, where those that they follow were.
@@ -133,7 +138,7 @@ std::vector<ReleasedVertex> released_followers(const DecimatedSource& source, Po
 Registration register_decimated(const Problem& problem, const Registering& registering,
                                 const Progress& progress) {
   progress.step("decimate", 0, 0);
-  const DecimatedSource source(problem.source, 2 * static_cast<std::size_t>(enough_vertices));
+  const DecimatedSource source(problem.source, static_cast<std::size_t>(enough_faces(problem.source)));
   Registration registration = registering({source.mesh(), problem.target, problem.anchors});
   std::vector<ReleasedVertex> released;
   if (const std::optional<ContactSummary>& contact = registration.summary.contact)
