@@ -1,5 +1,6 @@
 #include "bespoke/registration/registration.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -106,11 +107,12 @@ Registration parted_at_seams(Registration registration, const JoinedModels& join
 
 using Registering = std::function<Registration(const Problem&)>;
 
-/// Triangles of the least spacing that the finest layers of the surface fit resolve.
+/// Triangles of the least spacing that the finest layers of the surface fit resolve. Thin models take more.
 double enough_faces(const TriangleMesh& source) {
   constexpr double spacing = 0.004;  // of the diagonal: the last λ is 0.47 % (DetailSettings)
+  constexpr double min_faces = 20'000;
   const double edge = spacing * diagonal(source.vertices);
-  return vertex_areas(source).sum() / (std::sqrt(3.0) / 4 * edge * edge);
+  return std::max(min_faces, vertex_areas(source).sum() / (std::sqrt(3.0) / 4 * edge * edge));
 }
 
 /// Patches name faces of the source.
@@ -144,7 +146,8 @@ Registration register_decimated(const Problem& problem, const Registering& regis
   if (const std::optional<ContactSummary>& contact = registration.summary.contact)
     released = released_followers(source, registration.fitted_vertices, contact->released);
   registration.fitted_vertices = source.followed(registration.fitted_vertices);
-  registration.confidence = source.interpolated(registration.confidence);
+  if (!registration.confidence.empty())
+    registration.confidence = source.interpolated(registration.confidence);
   registration.summary = renumbered(std::move(registration.summary), source.vertices());
   if (registration.summary.contact) registration.summary.contact->released = std::move(released);
   registration.summary.leading_vertices = source.vertices().size();

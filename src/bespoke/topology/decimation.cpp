@@ -54,13 +54,13 @@ struct Quad {
   }
   /// Whether all four faces that may lie between the corners face one way, slivers apart.
   bool is_flat() const {
-    constexpr double least_cosine = 0.98, sliver = 0.01;
+    constexpr double min_cosine = 0.98, sliver = 0.01;
     const double squared_length = (b - a).sqrnorm();
     const Corner normals[] = {(b - a) % (c - a), (a - b) % (d - b), (d - c) % (b - c), (c - d) % (a - d)};
     const Corner mean = normals[0] + normals[1];
     for (const Corner& normal : normals)
       if (normal.norm() > sliver * squared_length &&
-          (normal | mean) < least_cosine * normal.norm() * mean.norm())
+          (normal | mean) < min_cosine * normal.norm() * mean.norm())
         return false;
     return true;
   }

@@ -67,14 +67,13 @@ DecimatedSource::DecimatedSource(const TriangleMesh& whole, std::size_t max_face
   const ClosestPointTree tree(decimated_.mesh);
   const Points normals = vertex_normals(whole);
   // Of two sheets that nearly touch, the one that faces alike.
-  const double normal_length = std::sqrt(vertex_areas(decimated_.mesh).mean());
+  const double edge = std::sqrt(vertex_areas(decimated_.mesh).mean());
   parallel_for(feet_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vector3 x = whole.vertices.col(static_cast<Eigen::Index>(k));
       const Vector3 normal = normals.col(static_cast<Eigen::Index>(k));
       std::optional<SurfacePoint> foot;
-      if (normal.squaredNorm() > 0)
-        foot = tree.closest(x, {.normal = normal, .normal_length = normal_length});
+      if (normal.squaredNorm() > 0) foot = tree.closest(x, {.normal = normal, .normal_length = edge});
       if (!foot) foot = tree.closest(x);
       feet_[k] = {foot->face, foot->barycentric};
     }

@@ -12,8 +12,7 @@ namespace bespoke {
 /// its finest layers needs no more.
 class DecimatedSource {
  public:
-  /// Of at most `max_faces` triangles (decimated()). Refers to `whole`, which must
-  /// be usable (require_valid).
+  /// Of at most `max_faces` triangles (decimated()). Refers to `whole`, which must be usable (require_valid).
   DecimatedSource(const TriangleMesh& whole, std::size_t max_faces);
 
   const TriangleMesh& mesh() const { return decimated_.mesh; }
@@ -26,8 +25,7 @@ class DecimatedSource {
   ///     φ(x) = Σ bₖ (qₖ + Fₖ ((f − pₖ) / 2 + x − f)),
   ///
   /// where Fₖ is the linear map nearest to what moved the edges and the normals around corner k. Halves, as
-  /// corners and gradients interpolate with opposite errors. A
-  /// similarity of mesh() moves all alike.
+  /// corners and gradients interpolate with opposite errors. A similarity of mesh() moves all alike.
   Points followed(const Points& moved) const;
   /// Of the whole's vertices those that go with a face at one of these vertices of mesh(), ascending.
   std::vector<int> followers(const std::vector<int>& leading) const;
