@@ -63,7 +63,7 @@ struct BendingSettings {
   double slope_penalty = 1e-3;
   /// Bounds a local scale over the median one, either way. A node bends by its area at rest times the squared
   /// scale: a grown area counts as it is now, except where a pose grew it. What shrinks gets softer, which
-  /// without a narrow bound lets parts without pairs shrink until they are thrown out of their place.
+  /// without a narrow bound lets parts without pairs shrink and drift away.
   double max_growth = 3;
 };
 
