@@ -102,7 +102,7 @@ inline bool has_any(const SeamSummary& summary) { return summary.source + summar
 /// What the registration of the source found.
 struct RegistrationSummary {
   SeamSummary seams;
-  std::optional<LoosePartsSummary> parts;       ///< empty where all parts of the source are registered
+  std::optional<LoosePartsSummary> parts;  ///< empty where all parts of the source are registered
   /// Of a dense source, those that were registered: what is said of the surface fit is said of them, and the
   /// others follow (decimated_source.h). 0 where all were.
   std::size_t leading_vertices = 0;
