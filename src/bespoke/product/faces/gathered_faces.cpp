@@ -33,10 +33,6 @@ void require_countable(std::uint64_t vertices, const std::filesystem::path& path
                       " vertices are more than a reference model can number");
 }
 
-void add(DegenerateFaces& faces, std::string face) {
-  if (faces.count++ == 0) faces.first = std::move(face);
-}
-
 void FaceFaults::add(const std::vector<std::uint32_t>& faces) {
   std::vector<int> corners;
   for (std::size_t at = 0; at < faces.size(); ++faces_) {

@@ -60,8 +60,12 @@ std::vector<std::size_t> kept_triangles(const Points& corners);
 /// Empty when nothing is.
 std::string face_fault(const int* corners, std::size_t count, int first);
 
-/// Counts one more, for messages a "path:line: what".
-void add(DegenerateFaces& faces, std::string face);
+/// Counts one more; `text()`, a "path:line: what", is asked for the first one only, since lines are counted
+/// from the beginning of a block.
+template <class Text>
+void add(DegenerateFaces& faces, const Text& text) {
+  if (faces.count++ == 0) faces.first = text();
+}
 
 /// Throws FormatError, naming the file, for more than `int` can number.
 void require_countable(std::uint64_t vertices, const std::filesystem::path& path);

@@ -73,7 +73,7 @@ class FaceReader {
     }
     faces_.sizes.push_back(static_cast<int>(faces_.corners.size() - begin));
     const std::string fault = face_fault(faces_.corners.data() + begin, faces_.corners.size() - begin, 1);
-    if (!fault.empty()) add(faces_.degenerate, words_.place() + ": " + fault);
+    if (!fault.empty()) add(faces_.degenerate, [&] { return words_.place() + ": " + fault; });
   }
 
   void read_line() {
