@@ -41,8 +41,7 @@ class MeasuredSurface {
   Eigen::VectorXd distances(const std::vector<SurfacePoint>& points) const {
     std::vector<PathStart> starts;
     for (const SurfacePoint& point : points)
-      for (const int vertex : mesh_.faces.col(point.face))
-        starts.push_back({vertex, (place(vertex) - point.point).norm()});
+      for (const PathStart& corner : path_starts(mesh_, point)) starts.push_back(corner);
     return path_lengths(graph_, starts);
   }
 

@@ -99,6 +99,15 @@ SurfaceGraph edge_and_crossing_graph(const TriangleMesh& mesh) {
   return graph_of(static_cast<std::size_t>(mesh.vertices.cols()), links);
 }
 
+std::array<PathStart, 3> path_starts(const TriangleMesh& mesh, const SurfacePoint& point) {
+  std::array<PathStart, 3> starts;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const int corner = mesh.faces(k, point.face);
+    starts[static_cast<std::size_t>(k)] = {corner, (mesh.vertices.col(corner) - point.point).norm()};
+  }
+  return starts;
+}
+
 Eigen::VectorXd path_lengths(const SurfaceGraph& graph, std::span<const PathStart> starts) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Eigen::VectorXd lengths =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <queue>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bespoke/mesh/closest_point.h"
 #include "bespoke/mesh/triangle_mesh.h"
 
 namespace bespoke {
@@ -76,6 +78,9 @@ class ShortestPaths {
   std::vector<int> touched_;
   std::priority_queue<Near, std::vector<Near>, std::greater<>> queue_;
 };
+
+/// Paths from a point of a face begin at its corners: two points of one face are farther apart by them.
+std::array<PathStart, 3> path_starts(const TriangleMesh& mesh, const SurfacePoint& point);
 
 /// n: the lengths of the shortest paths to all vertices, mesh units; infinite where none leads.
 Eigen::VectorXd path_lengths(const SurfaceGraph& graph, std::span<const PathStart> starts);

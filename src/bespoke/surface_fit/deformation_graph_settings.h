@@ -98,6 +98,19 @@ struct OutlierAnchorSettings {
   int min_tested = 7;           ///< with fewer the others do not tell
 };
 
+/// Places by their distances along the surfaces from the anchors (anchor_geodesics.h).
+struct GeodesicSettings {
+  int count = 400;           ///< places of the source that a counterpart is looked for
+  int min_anchors = 4;       ///< fewer name no place
+  int max_anchors = 32;      ///< measured from, those farthest apart
+  int min_vertices = 4000;   ///< over the whole surface: longer edges are halved
+  int max_vertices = 20000;  ///< that are described
+  double softening = 3e-3;   ///< ε, of the largest distance
+  double max_return = 0.03;  ///< diagonals: a counterpart's counterpart may be so far off
+  double elsewhere = 0.1;    ///< diagonals: farther from the counterpart is another place
+  double max_ratio = 0.5;    ///< of the misfits there and elsewhere
+};
+
 /// The source posed by its anchors alone (anchor_pose.h), as in as-rigid-as-possible modelling.
 struct PoseSettings {
   /// Over the whole surface, coarse and fine as in the fit. Coarse nodes alone bend fingers at wrong places.
@@ -118,7 +131,9 @@ struct PoseSettings {
   /// pose.
   double min_rigid_turn = 15;
   NodeSettings node_settings;
-  OutlierAnchorSettings outliers;
+  GeodesicSettings geodesics;
+  OutlierAnchorSettings outliers{.min_deviation = 0.04};  ///< as distances along the surfaces tell them
+  double pair_sigma = 0.01;  ///< diagonals: σ of what distances along the surfaces tell
 };
 
 /// Cavities of the source that the target lacks (cavities.h).

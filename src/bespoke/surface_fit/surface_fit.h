@@ -90,10 +90,6 @@ struct SurfaceFitInput {
   FacePatches source_patches = {};
   FacePatches target_patches = {};
   std::vector<char> anchor_tested = {};  ///< k: whether it may be an outlier; empty: none may
-  /// Whether outliers are told before anchors may pose the source, by how little the source would have to
-  /// bend without them; else in the pose.
-  bool tests_before_pose = false;
-
   /// How many times as large the target is (power_of_two_scale, length.h), by the warp.
   double size_scale() const;
 };

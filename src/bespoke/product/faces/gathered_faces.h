@@ -60,8 +60,8 @@ std::vector<std::size_t> kept_triangles(const Points& corners);
 /// Empty when nothing is.
 std::string face_fault(const int* corners, std::size_t count, int first);
 
-/// Counts one more; `text()`, a "path:line: what", is asked for the first one only, since lines are counted
-/// from the beginning of a block.
+/// Counts one more; `text()`, a "path:line: what", is called for the first one only, since it counts the
+/// lines of a block.
 template <class Text>
 void add(DegenerateFaces& faces, const Text& text) {
   if (faces.count++ == 0) faces.first = text();

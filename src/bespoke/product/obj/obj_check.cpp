@@ -100,9 +100,8 @@ class BlockCheck {
     std::sort(vertices_.begin(), vertices_.end());
     const auto twice = std::adjacent_find(vertices_.begin(), vertices_.end());
     if (twice != vertices_.end())
-      add(findings_.degenerate, [&] {
-        return words_.place() + ": a face names vertex " + std::to_string(*twice) + " twice";
-      });
+      add(findings_.degenerate,
+          [&] { return words_.place() + ": a face names vertex " + std::to_string(*twice) + " twice"; });
   }
 
   // Elements may name what comes later in the file, so an upper limit is known only once the file is read.

@@ -20,8 +20,8 @@ struct RegistrationByAnchors {
   std::vector<std::size_t> numbers;  // of the fit's anchors, among those given
 };
 
-/// Whether outliers among pairs are told before a pose, in it, or not at all (SurfaceFitInput).
-enum class OutlierTest { before_pose, in_pose, none };
+/// Whether the fit may leave out pairs (SurfaceFitInput).
+enum class OutlierTest { fit, none };
 
 /// One flag a pair: whether the fit may leave it out. Pairs with a given accuracy are taken as they are,
 /// those of curves and counterparts are no anchors.
@@ -59,10 +59,10 @@ RegistrationByAnchors register_by_pairs(const RegistrationTask& task, EstimatedA
   std::vector<char> tested;
   if (test != OutlierTest::none)
     tested = tested_pairs(task, estimated, static_cast<std::size_t>(pairs.sources.cols()));
-  SurfaceFit fit = fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources,
-                                pairs.targets, pairs.weights, pairs.sigmas, task.patches.source,
-                                task.patches.target, std::move(tested), test == OutlierTest::before_pose},
-                               task.options, progress);
+  SurfaceFit fit =
+      fit_surface({task.problem.source, aligned.warped, aligned.target, pairs.sources, pairs.targets,
+                   pairs.weights, pairs.sigmas, task.patches.source, task.patches.target, std::move(tested)},
+                  task.options, progress);
   Registration registration;
   registration.target_from_source = aligned.target_from_source;
   registration.fitted_vertices = std::move(fit.vertices);
@@ -132,35 +132,28 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
 
 /// As if the outliers that it finds had not been given: anew without them, until it finds no more.
 RegistrationByAnchors register_without_outliers(const RegistrationTask& task,
-                                                const EstimatedAnchors& estimated, OutlierTest test,
-                                                const Progress& progress) {
+                                                const EstimatedAnchors& estimated, const Progress& progress) {
   constexpr int max_rounds = 3;
-  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, test, progress);
+  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, OutlierTest::fit, progress);
   for (int round = 0; round < max_rounds; ++round) {
     if (fit.registration.summary.surface->outlier_anchors.empty()) break;
-    fit = register_by_pairs(task, fit.estimated, {}, test, progress);
+    fit = register_by_pairs(task, fit.estimated, {}, OutlierTest::fit, progress);
   }
   return fit;
 }
 
-/// Without outliers. The result is suspect where an outlier has posed the source, or where in a pose a right
-/// pair looks like an outlier: then the source is also fitted without those that a nearly affine fit leaves
-/// out, and with all pairs; the fit that explains the target best is kept.
+/// Without outliers. Where that leaves a suspect result, right pairs may have looked like outliers: then the
+/// source is also fitted by all pairs, and the fit that explains the target better is kept.
 RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
                                           const Progress& progress) {
-  RegistrationByAnchors best = register_without_outliers(task, estimated, OutlierTest::in_pose, progress);
+  RegistrationByAnchors best = register_without_outliers(task, estimated, progress);
   if (best.estimated.kept.size() == estimated.kept.size()) return best;
   const PlacementScore placement(task.problem.source, task.problem.target);
-  PlacementFigures figures = placement(registered_vertices(best.registration));
-  for (const OutlierTest test : {OutlierTest::before_pose, OutlierTest::none}) {
-    if (!is_suspect(figures)) break;
-    RegistrationByAnchors other = register_without_outliers(task, estimated, test, progress);
-    const PlacementFigures of_other = placement(registered_vertices(other.registration));
-    if (!(of_other.misfit() < figures.misfit())) continue;
-    best = std::move(other);
-    figures = of_other;
-  }
-  return best;
+  const PlacementFigures figures = placement(registered_vertices(best.registration));
+  if (!is_suspect(figures)) return best;
+  RegistrationByAnchors by_all = register_by_pairs(task, estimated, {}, OutlierTest::none, progress);
+  const bool is_better = placement(registered_vertices(by_all.registration)).misfit() < figures.misfit();
+  return is_better ? std::move(by_all) : std::move(best);
 }
 
 /// Fitted again where exact pairs that the fit kept contradict each other: by what they differ they need not
@@ -168,7 +161,9 @@ RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const Es
 RegistrationByAnchors with_shared_contradictions(const RegistrationTask& task, RegistrationByAnchors fit,
                                                  const Progress& progress) {
   EstimatedAnchors shared = fit.estimated;
-  let_contradicting_share(shared, task.problem.anchors.pairs.size(), task.options.max_stretch);
+  const Problem& problem = task.problem;
+  let_contradicting_share(shared, problem.anchors.pairs.size(), problem.source, problem.target,
+                          task.options.max_stretch);
   if (shared.accuracy.given_way.size() == fit.estimated.accuracy.given_way.size()) return fit;
   return register_by_pairs(task, std::move(shared), {}, OutlierTest::none, progress);
 }

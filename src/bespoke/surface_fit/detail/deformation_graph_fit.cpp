@@ -15,7 +15,9 @@
 #include "bespoke/surface_fit/detail/anchor_meeting.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
 #include "bespoke/surface_fit/detail/misoriented_faces.h"
+#include "bespoke/surface_fit/graph/anchor_geodesics.h"
 #include "bespoke/surface_fit/graph/anchor_pose.h"
+#include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
 #include "bespoke/surface_fit/graph/node_fit.h"
 #include "bespoke/surface_fit/graph/similarity_fit.h"
@@ -32,7 +34,6 @@ struct SurfaceAnchors {
   std::vector<Eigen::Index> exact;  // columns of those with infinite weight and σ = 0
   std::vector<Eigen::Index> given;  // k: columns among all anchors of the fit
   std::vector<char> tested;         // k, or empty
-  bool tests_before_pose = false;
 
   Points exact_sources() const { return sources(Eigen::all, exact); }
   Points exact_targets() const { return targets(Eigen::all, exact); }
@@ -66,8 +67,7 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
                          sigmas(near),
                          {},
                          near,
-                         {},
-                         input.tests_before_pose};
+                         {}};
   if (!input.anchor_tested.empty())
     for (const Eigen::Index k : near)
       anchors.tested.push_back(input.anchor_tested[static_cast<std::size_t>(k)]);
@@ -220,46 +220,114 @@ struct Deforming {
   const Progress& progress;
 };
 
+/// The source's anchors in a pose, and what distances along the surfaces tell of them and of the places
+/// between.
+class GeodesicPose {
+ public:
+  /// What these refer to must outlive it. sigmas: k, accuracies of the anchors.
+  GeodesicPose(const Scene& scene, const Points& anchors, const Eigen::VectorXd& sigmas,
+               const PoseSettings& settings)
+      : scene_(scene),
+        anchors_(anchors),
+        settings_(settings),
+        geodesics_(without_excluded(scene.surface, scene.patches).mesh, scene.target.mesh(), anchors,
+                   scene.anchors.targets, settings.geodesics),
+        posterior_(
+            {scene.anchors.tested, scene.anchors.sigmas, vertex_areas(scene.surface).sum(), scene.diagonal},
+            settings.outliers),
+        sigmas_(sigmas) {
+    tell_outliers();
+    for (const Eigen::Index k : posterior_.outliers()) sigmas_[k] = anywhere * scene_.diagonal;
+  }
+
+  bool has_tested() const { return posterior_.is_active(); }
+  std::vector<Eigen::Index> outliers() const { return posterior_.outliers(); }
+
+  /// By the anchors alone.
+  double turn_degrees() const {
+    const PosingByAnchors posing({scene_.surface, anchors_, scene_.anchors.targets, sigmas_, scene_.diagonal},
+                                 settings_);
+    return posing.rotation_spread() * 180 / std::numbers::pi;
+  }
+
+  /// Outliers are carried along.
+  AnchorPose bent() const {
+    const GeodesicPairs between = geodesics_.pairs(inliers());
+    const Eigen::Index given = anchors_.cols(), added = between.sources.cols();
+    Points sources(3, given + added), targets(3, given + added);
+    sources << anchors_, between.sources;
+    targets << scene_.anchors.targets, between.targets;
+    Eigen::VectorXd sigmas(given + added);
+    sigmas << sigmas_, Eigen::VectorXd::Constant(added, settings_.pair_sigma * scene_.diagonal);
+    AnchorPose pose =
+        PosingByAnchors({scene_.surface, sources, targets, sigmas, scene_.diagonal}, settings_).bent();
+    pose.anchor_sources = pose.anchor_sources.leftCols(given).eval();
+    return pose;
+  }
+
+ private:
+  static constexpr double anywhere = 100;  // diagonals: an anchor of this σ poses nothing
+
+  /// k: probabilities of anchors that are not tested are 1.
+  std::vector<double> inliers() const {
+    return posterior_.is_active() ? posterior_.inliers()
+                                  : std::vector<double>(static_cast<std::size_t>(anchors_.cols()), 1);
+  }
+
+  void tell_outliers() {
+    constexpr int max_rounds = 5;
+    for (int round = 0; posterior_.is_active() && round < max_rounds; ++round) {
+      const std::vector<Eigen::Index> before = posterior_.outliers();
+      posterior_.update(geodesics_.left_out(posterior_.inliers()));
+      if (posterior_.outliers() == before) break;
+    }
+  }
+
+  const Scene& scene_;
+  const Points& anchors_;
+  const PoseSettings& settings_;
+  AnchorGeodesics geodesics_;
+  AnchorPosterior posterior_;
+  Eigen::VectorXd sigmas_;
+};
+
 /// The nodes' fit, from the aligned source or from one that the anchors have bent: that where anchors are
 /// far from their targets, or a part turns some way and the models keep their shape.
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& how,
                   SurfaceFitSummary& summary) {
   const DeformationGraphSettings& settings = how.settings;
-  Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
-  std::optional<PosingByAnchors> posing;
-  const auto degrees_by_anchors = [&] {
-    posing.emplace(AnchorPoseInput{scene.surface, anchors, scene.anchors.targets, sigmas, scene.diagonal,
-                                   scene.anchors.tested},
-                   settings.pose);
-    summary.anchor_turn_degrees = posing->rotation_spread() * 180 / std::numbers::pi;
-    return summary.anchor_turn_degrees;
-  };
-  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors, bool is_posed) {
+  const Eigen::VectorXd sigmas = pose_sigmas(scene, settings.pose);
+  const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors,
+                           const std::vector<char>& tested, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
                         scene.anchors.weights, scene.diagonal, how.options.boundaries, scene.anchors.sigmas,
-                        scene.patches, is_posed, scene.anchors.tested},
+                        scene.patches, is_posed, tested},
                        settings.nodes, how.progress);
   };
-  std::vector<Eigen::Index> outliers;
-  if (scene.anchors.tests_before_pose) outliers = fitting(scene.surface, anchors, false).outliers_at_rest();
-  constexpr double anywhere = 100;  // diagonals: an anchor of this σ poses nothing
-  for (const Eigen::Index k : outliers) sigmas[k] = anywhere * scene.diagonal;
-  bool is_posed = are_out_of_reach(scene, anchors, outliers, settings);
+  std::optional<GeodesicPose> geodesic;
+  const auto pose = [&]() -> const GeodesicPose& {
+    if (!geodesic) geodesic.emplace(scene, anchors, sigmas, settings.pose);
+    return *geodesic;
+  };
+  const auto turn_degrees = [&] { return summary.anchor_turn_degrees = pose().turn_degrees(); };
+  const bool is_posed = are_out_of_reach(scene, anchors, {}, settings) &&
+                        are_out_of_reach(scene, anchors, pose().outliers(), settings);
   if (is_posed) {
-    degrees_by_anchors();
-    is_posed = are_out_of_reach(scene, anchors, posing->outliers(), settings);
-  }
-  if (!is_posed) {
-    NodeFitting straight = fitting(scene.surface, anchors, false);
-    if (!(straight.fit_coarse() > 1 && degrees_by_anchors() > settings.pose.min_rigid_turn))
+    turn_degrees();
+  } else {
+    NodeFitting straight = fitting(scene.surface, anchors, scene.anchors.tested, false);
+    if (!(straight.fit_coarse() > 1 && turn_degrees() > settings.pose.min_rigid_turn))
       return straight.fit_fine();
   }
   summary.posed_by_anchors = true;
-  const AnchorPose pose = posing->bent();
-  const TriangleMesh bent{pose.vertices, scene.surface.faces};
-  NodeFitting posed = fitting(bent, pose.anchor_sources, true);
+  const AnchorPose by_anchors = pose().bent();
+  const TriangleMesh bent{by_anchors.vertices, scene.surface.faces};
+  NodeFitting posed = fitting(bent, by_anchors.anchor_sources, {}, true);
   posed.fit_coarse();
-  return posed.fit_fine();
+  NodeFit fit = posed.fit_fine();
+  fit.tested_anchors = pose().has_tested();
+  fit.outliers = pose().outliers();
+  return fit;
 }
 
 /// Pose, nodes, layers of space, repair. Returns what the summary says of them.

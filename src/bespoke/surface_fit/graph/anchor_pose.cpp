@@ -12,7 +12,6 @@
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/parallel.h"
 #include "bespoke/rigid/nearest_rotation.h"
-#include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
 #include "bespoke/surface_fit/matching/target_surface.h"
 
@@ -56,22 +55,8 @@ class PosingByAnchors::Nodes {
     const double least = settings.min_sigma * input.diagonal;
     const double edge_sigma = settings.edge_misfit * nodes_.spacing;
     for (const double sigma : input.sigmas)
-      full_weights_.push_back(std::pow(edge_sigma / std::hypot(sigma, least), 2));
-    anchor_weights_ = full_weights_;
+      anchor_weights_.push_back(std::pow(edge_sigma / std::hypot(sigma, least), 2));
     factorise();
-  }
-
-  /// inliers: k, by which the anchors' weights are multiplied.
-  void weigh(const std::vector<double>& inliers) {
-    for (std::size_t k = 0; k < inliers.size(); ++k) anchor_weights_[k] = inliers[k] * full_weights_[k];
-    factorise();
-  }
-
-  /// At rest, with these weights.
-  void restart(const std::vector<double>& inliers) {
-    places_ = nodes_.rest;
-    std::fill(shapes_.begin(), shapes_.end(), Matrix3::Identity());
-    weigh(inliers);
   }
 
   /// As fewer nodes have bent the surface.
@@ -112,22 +97,6 @@ class PosingByAnchors::Nodes {
 
   const std::vector<Follower>& anchors() const { return anchors_; }
   double spacing() const { return nodes_.spacing; }
-
-  LeftOutAnchors left_out() const {
-    const auto count = static_cast<Eigen::Index>(anchors_.size());
-    LeftOutAnchors result{Eigen::VectorXd(count), Eigen::VectorXd(count)};
-    for (std::size_t i = 0; i < anchors_.size(); ++i) {
-      Eigen::VectorXd force = Eigen::VectorXd::Zero(nodes_.size());
-      for (std::size_t k = 0; k < anchors_[i].nodes.size(); ++k)
-        force[anchors_[i].nodes[k]] = anchors_[i].weights[static_cast<Eigen::Index>(k)];
-      const double compliance = force.dot(Eigen::VectorXd(factor_.solve(force)));
-      const double freedom = 1 - anchor_weights_[i] * compliance;
-      const auto column = static_cast<Eigen::Index>(i);
-      result.distances[column] = (carried(anchors_[i]) - targets_.row(column).transpose()).norm() / freedom;
-      result.compliances[column] = compliance / freedom;
-    }
-    return result;
-  }
 
   double rotation_spread() const {
     Matrix3 sum = Matrix3::Zero();
@@ -238,7 +207,7 @@ class PosingByAnchors::Nodes {
   std::vector<Matrix3> shapes_;
   std::vector<Follower> anchors_;
   Columns targets_;
-  std::vector<double> anchor_weights_, full_weights_;
+  std::vector<double> anchor_weights_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
@@ -246,22 +215,6 @@ PosingByAnchors::PosingByAnchors(const AnchorPoseInput& input, const PoseSetting
     : input_(input), settings_(settings) {
   if (input.anchor_sources.cols() == 0) return;
   coarse_ = std::make_unique<Nodes>(input, settings, settings.nodes[0]);
-  posterior_ = std::make_unique<AnchorPosterior>(
-      TestedAnchors{input.tested, input.sigmas, vertex_areas(input.rest).sum(), input.diagonal},
-      settings.outliers);
-  pose();
-  // Only a pose that has come to rest tells: on the way every tip of a limb is far from its target.
-  constexpr int max_rounds = 5;
-  for (int round = 0; posterior_->is_active() && round < max_rounds; ++round) {
-    const std::vector<Eigen::Index> before = posterior_->outliers();
-    posterior_->update(coarse_->left_out());
-    if (posterior_->outliers() == before) break;
-    coarse_->restart(posterior_->inliers());
-    pose();
-  }
-}
-
-void PosingByAnchors::pose() {
   for (int iteration = 0; iteration < settings_.iterations[0]; ++iteration) {
     // A large β first spreads a rotation over a whole limb; a small one later lets it gather at the joint.
     const double share = double(iteration) / std::max(1, settings_.iterations[0] - 1);
@@ -274,16 +227,11 @@ PosingByAnchors::~PosingByAnchors() = default;
 
 double PosingByAnchors::rotation_spread() const { return coarse_ ? coarse_->rotation_spread() : 0; }
 
-std::vector<Eigen::Index> PosingByAnchors::outliers() const {
-  return posterior_ ? posterior_->outliers() : std::vector<Eigen::Index>();
-}
-
 AnchorPose PosingByAnchors::bent() const {
   AnchorPose result{input_.rest.vertices, input_.anchor_sources};
   if (!coarse_) return result;
   Nodes many(input_, settings_, settings_.nodes[1]);
   many.start_from(*coarse_);
-  if (posterior_->is_active()) many.weigh(posterior_->inliers());
   // A surface resists bending by β h².
   const double smoothness = settings_.last_smoothness * std::pow(coarse_->spacing() / many.spacing(), 2);
   for (int iteration = 0; iteration < settings_.iterations[1]; ++iteration) many.iterate(smoothness);

@@ -7,8 +7,6 @@
 
 namespace bespoke {
 
-class AnchorPosterior;
-
 /// A surface bent by its anchors alone.
 struct AnchorPose {
   Points vertices;        ///< 3×n, mesh units
@@ -21,15 +19,13 @@ struct AnchorPoseInput {
   const Points& anchor_targets;   ///< 3×k
   const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
   double diagonal = 0;            ///< of `rest`
-  std::vector<char> tested = {};  ///< k: whether an anchor may be an outlier; empty: none may
 };
 
 /// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets
 /// with
 ///   min Σᵢⱼ |(x'ⱼ − x'ᵢ) − Mᵢ (xⱼ − xᵢ)|² + β h² Σᵢⱼ |Mᵢ − Mⱼ|² + anchors / σ²,  Mᵢ = sᵢ Rᵢ,
 /// h the spacing of the nodes, before any closest point is queried. Alternates between similarities and
-/// places, coarse nodes first, anew from rest without the outliers that AnchorPosterior finds. Without
-/// anchors nothing moves. Same bytes at any thread count.
+/// places, coarse nodes first. Without anchors nothing moves. Same bytes at any thread count.
 class PosingByAnchors {
  public:
   /// Poses the few nodes. What `input` refers to must outlive it. Throws SolverError.
@@ -39,20 +35,14 @@ class PosingByAnchors {
   /// Largest angle between a node's rotation and the mean one, radians.
   double rotation_spread() const;
 
-  /// The anchors that the pose leaves out, ascending.
-  std::vector<Eigen::Index> outliers() const;
-
   /// As many nodes pose it. Throws SolverError.
   AnchorPose bent() const;
 
  private:
   class Nodes;
-  void pose();
-
   AnchorPoseInput input_;
   PoseSettings settings_;
   std::unique_ptr<Nodes> coarse_;  // null without anchors
-  std::unique_ptr<AnchorPosterior> posterior_;
 };
 
 }  // namespace bespoke

@@ -167,19 +167,6 @@ NodeGoals NodeFitting::goals(const std::vector<PlanePair>& planes, const std::ve
           posterior_.inliers()};
 }
 
-std::vector<Eigen::Index> NodeFitting::outliers_at_rest() {
-  if (!posterior_.is_active()) return {};
-  const NodeLevel& level = settings_.levels.front();
-  const std::unique_ptr<NodeSystem> few = system(level);
-  const std::vector<PlanePair> planes = plane_pairs(level);
-  const std::vector<BoundaryMatch> no_cuts;
-  NodeGoals at_rest = goals(planes, no_cuts, 0);
-  at_rest.anchor_limits = next_limits(at_rest);
-  few->solve(at_rest);
-  solved_without_outliers(*few, at_rest);
-  return posterior_.outliers();
-}
-
 /// Non-rigid iterative closest points (Amberg, Romdhani, Vetter 2007).
 void NodeFitting::iterate(NodeSystem& system, const NodeLevel& level) {
   for (int iteration = 0; iteration < level.iterations; ++iteration, ++fit_.iterations) {

@@ -59,9 +59,6 @@ class NodeFitting {
   /// The input's references and the progress must outlive it.
   NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress);
 
-  /// The anchors that a nearly affine fit of the rest surface leaves out. Throws SolverError.
-  std::vector<Eigen::Index> outliers_at_rest();
-
   /// The first level. Returns the rigidity g ≥ 1 of the pair (NodeGoals), 1 where bodies differ as they
   /// mostly do. Throws SolverError.
   double fit_coarse();
