@@ -6,7 +6,9 @@
 #include "bespoke/alignment/geodesic_counterparts.h"
 #include "bespoke/mesh/cavities.h"
 #include "bespoke/mesh/closest_point.h"
+#include "bespoke/mesh/spread_points.h"
 #include "bespoke/quality/uncovered_area.h"
+#include "bespoke/surface_fit/graph/anchor_geodesics.h"
 #include "bespoke/surface_fit/surface_fit.h"
 #include "support/pocketed_ball.h"
 #include "support/shapes.h"
@@ -71,6 +73,26 @@ void cavities(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(mesh.vertices.cols());
 }
 BENCHMARK(cavities)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+/// What a pose asks of distances along both surfaces: their walks, the test of twenty or a hundred anchors,
+/// and the pairs between them.
+void anchor_geodesics(benchmark::State& state) {
+  const auto levels = static_cast<int>(state.range(0));
+  const TriangleMesh source = shapes::icosphere(levels), target = bumpy_sphere(levels);
+  const std::vector<int> marked = spread_points(source.vertices, static_cast<std::size_t>(state.range(1)));
+  const Points anchors = source.vertices(Eigen::all, marked), goals = target.vertices(Eigen::all, marked);
+  const std::vector<double> inliers(marked.size(), 1);
+  for (auto _ : state) {
+    const AnchorGeodesics geodesics(source, target, anchors, goals, {});
+    benchmark::DoNotOptimize(geodesics.left_out(inliers));
+    benchmark::DoNotOptimize(geodesics.pairs(inliers));
+  }
+}
+BENCHMARK(anchor_geodesics)
+    ->ArgsProduct({{5, 6}, {20, 100}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 /// Counterparts of places far from five pairs; and, with 36 pairs and nothing far from them, the one walk
 /// over the source that every fit takes.
