@@ -57,17 +57,12 @@ class StepFitter {
     add(fit(plan, from, to, next, options_));
   }
 
-  /// The same to where the path is, by a step of a chain: only the last need meet the tolerance, as every
-  /// step starts where those before have brought the points. Does nothing and says false where finite
-  /// elements are held up and are to give up.
+  /// The same to where the path is, by a step of a chain. Does nothing and says false where finite elements
+  /// are held up and are to give up.
   bool fit_step(const StepPlan& plan, double from, double to, bool give_up) {
-    constexpr double rough = 10;  // tolerances
     ElasticOptions options = options_;
-    if (to < plan.times.back()) {
-      options.fit_tolerance *= rough;
-      // A chain has as many nodes as two maps of one step.
-      options.max_nodes /= plan.steps() - 1;
-    }
+    // A chain has as many nodes as two maps of one step.
+    if (to < plan.times.back()) options.max_nodes /= plan.steps() - 1;
     options.give_up_blocked = give_up;
     ElasticFit found = fit(plan, from, to, plan.surface(to), options);
     if (give_up && is_blocked(found.found)) return false;
