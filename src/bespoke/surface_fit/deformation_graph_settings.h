@@ -176,8 +176,7 @@ struct NodeLevel {
   int iterations = 0;            ///< each searches the correspondences anew
   std::size_t samples = 0;       ///< source vertices with a correspondence
   std::size_t back_samples = 0;  ///< target vertices with one
-  /// ReciprocitySettings, where the target is open. Not at the coarse level: distances say little there.
-  bool reciprocity = true;
+  bool reciprocity = true;  ///< ReciprocitySettings. Not at the coarse level: distances say little there.
   bool outside_residuals = true;  ///< OutsideResidualSettings
 };
 

@@ -71,11 +71,8 @@ void set_zero(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
     if (vertices[i]) areas[static_cast<Eigen::Index>(i)] = 0;
 }
 
-/// With as many iterations as the anchors require. Where a target ends nowhere, reciprocity would
-/// tell of no part that it lacks.
+/// With as many iterations as the anchors require.
 NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
-  if (input.target.boundary_edges().cols() == 0)
-    for (NodeLevel& level : settings.levels) level.reciprocity = false;
   if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
   return settings;
 }
