@@ -15,8 +15,9 @@ struct TestedAnchors {
   double diagonal = 0;       ///< mesh units
 };
 
-/// Each anchor against the fit without it, one Gauss-Newton step from the fit with all: the residual over one
-/// less its leverage (Cook, Weisberg 1982).
+/// Each anchor against what the others say of its place. In a fit, one Gauss-Newton step from that with all:
+/// the residual over one less its leverage (Cook, Weisberg 1982). In a pose, by distances along the surfaces
+/// (anchor_geodesics.h).
 struct LeftOutAnchors {
   Eigen::VectorXd distances;    ///< k: of the target from where the others put the source, mesh units
   Eigen::VectorXd compliances;  ///< k, > 0: how freely the source moves there without it; of any one unit
