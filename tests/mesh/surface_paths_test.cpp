@@ -119,5 +119,15 @@ TEST(ShortestPaths, VisitsTheNearestFirstUpToTheLimitAndForgets) {
   EXPECT_EQ(count, static_cast<std::size_t>(grid.vertices.cols()));
 }
 
+TEST(PathStarts, LeadFromAPointOfAFaceToAnother) {
+  const TriangleMesh grid = shapes::square_grid(squares);
+  const ClosestPointTree tree(grid);
+  const double edge = 1.0 / squares;
+  // Along a row of edges, from the middle of one to the middle of another.
+  const auto starts = path_starts(grid, *tree.closest(Vector3(0.5 * edge, 0, 0)));
+  const auto ends = path_starts(grid, *tree.closest(Vector3(6.5 * edge, 0, 0)));
+  EXPECT_NEAR(length_to(path_lengths(edge_graph(grid), starts), ends), 6 * edge, 1e-9);
+}
+
 }  // namespace
 }  // namespace bespoke

@@ -62,10 +62,7 @@ class MeasuredSurface {
   const Eigen::VectorXd& from(std::size_t point) const { return from_[point]; }
   /// Between two of the points, not vertices, measured from.
   double between(std::size_t i, std::size_t j) const {
-    double least = infinity;
-    for (const int vertex : mesh_.faces.col(feet_[j].face))
-      least = std::min(least, from_[i][vertex] + (place(vertex) - feet_[j].point).norm());
-    return least;
+    return length_to(from_[i], path_starts(mesh_, feet_[j]));
   }
 
  private:

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -31,10 +30,8 @@ class PathDistances {
     const Foot& from = foot(i);
     const Foot& to = foot(j);
     if (from.lengths.size() == 0) feet_.at(i).lengths = path_lengths(*graph_, from.corners);
-    double path = std::numeric_limits<double>::infinity();
-    for (const PathStart& corner : to.corners)
-      path = std::min(path, from.lengths[corner.vertex] + corner.distance);
-    return std::max((points_.col(j) - points_.col(i)).norm(), path - from.edge - to.edge);
+    const double path = length_to(from.lengths, to.corners) - from.edge - to.edge;
+    return std::max((points_.col(j) - points_.col(i)).norm(), path);
   }
 
  private:

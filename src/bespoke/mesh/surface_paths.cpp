@@ -1,6 +1,7 @@
 #include "bespoke/mesh/surface_paths.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -106,6 +107,12 @@ std::array<PathStart, 3> path_starts(const TriangleMesh& mesh, const SurfacePoin
     starts[static_cast<std::size_t>(k)] = {corner, (mesh.vertices.col(corner) - point.point).norm()};
   }
   return starts;
+}
+
+double length_to(const Eigen::VectorXd& lengths, std::span<const PathStart> point) {
+  double length = std::numeric_limits<double>::infinity();
+  for (const PathStart& corner : point) length = std::min(length, lengths[corner.vertex] + corner.distance);
+  return length;
 }
 
 Eigen::VectorXd path_lengths(const SurfaceGraph& graph, std::span<const PathStart> starts) {

@@ -82,6 +82,9 @@ class ShortestPaths {
 /// Paths from a point of a face begin at its corners: two points of one face are farther apart by them.
 std::array<PathStart, 3> path_starts(const TriangleMesh& mesh, const SurfacePoint& point);
 
+/// Of the paths whose `lengths` (n) to all vertices are known, on to a point that starts there.
+double length_to(const Eigen::VectorXd& lengths, std::span<const PathStart> point);
+
 /// n: the lengths of the shortest paths to all vertices, mesh units; infinite where none leads.
 Eigen::VectorXd path_lengths(const SurfaceGraph& graph, std::span<const PathStart> starts);
 

@@ -15,10 +15,8 @@
 #include "bespoke/surface_fit/detail/anchor_meeting.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
 #include "bespoke/surface_fit/detail/misoriented_faces.h"
-#include "bespoke/surface_fit/graph/anchor_geodesics.h"
-#include "bespoke/surface_fit/graph/anchor_pose.h"
-#include "bespoke/surface_fit/graph/anchor_posterior.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
+#include "bespoke/surface_fit/graph/geodesic_pose.h"
 #include "bespoke/surface_fit/graph/node_fit.h"
 #include "bespoke/surface_fit/graph/similarity_fit.h"
 #include "bespoke/surface_fit/matching/unmatched_cavities.h"
@@ -220,77 +218,6 @@ struct Deforming {
   const Progress& progress;
 };
 
-/// The source's anchors in a pose, and what distances along the surfaces tell of them and of the places
-/// between.
-class GeodesicPose {
- public:
-  /// What these refer to must outlive it. sigmas: k, accuracies of the anchors.
-  GeodesicPose(const Scene& scene, const Points& anchors, const Eigen::VectorXd& sigmas,
-               const PoseSettings& settings)
-      : scene_(scene),
-        anchors_(anchors),
-        settings_(settings),
-        geodesics_(without_excluded(scene.surface, scene.patches).mesh, scene.target.mesh(), anchors,
-                   scene.anchors.targets, settings.geodesics),
-        posterior_(
-            {scene.anchors.tested, scene.anchors.sigmas, vertex_areas(scene.surface).sum(), scene.diagonal},
-            settings.outliers),
-        sigmas_(sigmas) {
-    tell_outliers();
-    for (const Eigen::Index k : posterior_.outliers()) sigmas_[k] = anywhere * scene_.diagonal;
-  }
-
-  bool has_tested() const { return posterior_.is_active(); }
-  std::vector<Eigen::Index> outliers() const { return posterior_.outliers(); }
-
-  /// By the anchors alone.
-  double turn_degrees() const {
-    const PosingByAnchors posing({scene_.surface, anchors_, scene_.anchors.targets, sigmas_, scene_.diagonal},
-                                 settings_);
-    return posing.rotation_spread() * 180 / std::numbers::pi;
-  }
-
-  /// Outliers are carried along.
-  AnchorPose bent() const {
-    const GeodesicPairs between = geodesics_.pairs(inliers());
-    const Eigen::Index given = anchors_.cols(), added = between.sources.cols();
-    Points sources(3, given + added), targets(3, given + added);
-    sources << anchors_, between.sources;
-    targets << scene_.anchors.targets, between.targets;
-    Eigen::VectorXd sigmas(given + added);
-    sigmas << sigmas_, Eigen::VectorXd::Constant(added, settings_.pair_sigma * scene_.diagonal);
-    AnchorPose pose =
-        PosingByAnchors({scene_.surface, sources, targets, sigmas, scene_.diagonal}, settings_).bent();
-    pose.anchor_sources = pose.anchor_sources.leftCols(given).eval();
-    return pose;
-  }
-
- private:
-  static constexpr double anywhere = 100;  // diagonals: an anchor of this σ poses nothing
-
-  /// k: probabilities of anchors that are not tested are 1.
-  std::vector<double> inliers() const {
-    return posterior_.is_active() ? posterior_.inliers()
-                                  : std::vector<double>(static_cast<std::size_t>(anchors_.cols()), 1);
-  }
-
-  void tell_outliers() {
-    constexpr int max_rounds = 5;
-    for (int round = 0; posterior_.is_active() && round < max_rounds; ++round) {
-      const std::vector<Eigen::Index> before = posterior_.outliers();
-      posterior_.update(geodesics_.left_out(posterior_.inliers()));
-      if (posterior_.outliers() == before) break;
-    }
-  }
-
-  const Scene& scene_;
-  const Points& anchors_;
-  const PoseSettings& settings_;
-  AnchorGeodesics geodesics_;
-  AnchorPosterior posterior_;
-  Eigen::VectorXd sigmas_;
-};
-
 /// The nodes' fit, from the aligned source or from one that the anchors have bent: that where anchors are
 /// far from their targets, or a part turns some way and the models keep their shape.
 NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& how,
@@ -306,7 +233,11 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   };
   std::optional<GeodesicPose> geodesic;
   const auto pose = [&]() -> const GeodesicPose& {
-    if (!geodesic) geodesic.emplace(scene, anchors, sigmas, settings.pose);
+    if (!geodesic)
+      geodesic.emplace(
+          GeodesicPoseInput{scene.surface, scene.patches, scene.target.mesh(), anchors, scene.anchors.targets,
+                            sigmas, scene.anchors.sigmas, scene.anchors.tested, scene.diagonal},
+          settings.pose);
     return *geodesic;
   };
   const auto turn_degrees = [&] { return summary.anchor_turn_degrees = pose().turn_degrees(); };
