@@ -21,6 +21,8 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 import public_pairs
@@ -221,6 +223,32 @@ def changes(case, garment, carried):
     return round(float(100 * np.percentile(np.abs(after - scale * before[near]), 95) / diagonal(case["target"])), 3)
 
 
+SAMPLES = [(i / 6, j / 6) for i in range(7) for j in range(7 - i)]  # shares of two corners: 28 places a face, its edges with them
+TOLERANCE = 1e-4  # of the diagonal: by which the program lets a place miss what is required
+
+
+def bystanders(case, garment, plain, dressed):
+    """Of vertices of no face that the map brought too near: how far one was moved, in per cent of the target's diagonal,
+    and how far along edges the farthest one that moved is from a face that was, in mean lengths of edges."""
+    faces = garment[1]
+    scale = 2.0**round(np.log2(diagonal(case["target"]) / diagonal(case["source"])))
+    too_near = np.zeros(len(garment[0]), bool)
+    for i, j in SAMPLES:
+        shares = np.array([i, j, 1 - i - j])
+        places = [np.einsum("fkc,k->fc", points[faces], shares) for points in (garment[0], plain)]
+        missing = scale * clearance(places[0], case["source"]) - clearance(places[1], case["target"])
+        too_near[faces[missing > TOLERANCE * diagonal(case["target"])].ravel()] = True
+    moved = np.linalg.norm(dressed - plain, axis=1) / diagonal(case["target"])
+    edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    lengths = np.linalg.norm(plain[edges[:, 0]] - plain[edges[:, 1]], axis=1)
+    graph = coo_matrix((np.maximum(lengths, 1e-12), edges.T), [len(plain)] * 2)
+    away = (dijkstra(graph, directed=False, indices=np.flatnonzero(too_near), min_only=True) if too_near.any() else
+            np.full(len(plain), np.inf))
+    others = ~too_near & (moved > TOLERANCE)
+    return (round(float(100 * moved[~too_near].max(initial=0)), 3),
+            round(float(away[others].max(initial=0) / lengths.mean()), 1))
+
+
 def farther_out(case, garment):
     """The garment along the normals of its vertices, by 1 % of the source's diagonal."""
     corners = garment[0][garment[1]]
@@ -266,8 +294,9 @@ def dress(case, options, folder):
         products = json.loads(report.read_text())["products"]
         found = products[0]["clearance"]
         read = lambda path: parse_obj(path.read_bytes())[0]
-        row["change_before"] = changes(case, garment, read(folder / "plain.obj"))
-        row["change_after"] = changes(case, garment, read(folder / "dressed" / file.name))
+        plain, dressed = read(folder / "plain.obj"), read(folder / "dressed" / file.name)
+        row["change_before"], row["change_after"] = changes(case, garment, plain), changes(case, garment, dressed)
+        row["bystanders"] = bystanders(case, garment, plain, dressed)
         if options.second_layer:
             over = products[1]["clearance"]
             row["layers"] = {**over["layers"][0], "inside_before": over["missed_before"]["inside"],
@@ -280,8 +309,8 @@ def dress(case, options, folder):
 
 def table(rows):
     yield ("| bodies | garment | vertices | places | inside: as carried, corrected | new pairs through itself | new pairs "
-           "of layers | change of clearance, p95, %: as carried, corrected | fit, CPU s | apply, s |")
-    yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+           "of layers | change of clearance, p95, %: as carried, corrected | bystanders: moved by, %, edges away | fit, CPU s | apply, s |")
+    yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for row in rows:
         start = f"| {row['case']} | {row['garment']} | {row['vertices']} "
         if "failure" in row:
@@ -291,6 +320,7 @@ def table(rows):
             between = f"{layers['new_intersections']} ({layers['intersections_on_source']} on the source)" if layers else "–"
             yield (f"{start}| {row['samples']} | {row['inside_before']}, {row['inside_after']} | "
                    f"{row['self_intersections']} | {between} | {row['change_before']}, {row['change_after']} | "
+                   f"{row['bystanders'][0]}, {row['bystanders'][1]} | "
                    f"{row['fit_seconds']} | {row['apply_seconds']} |")
 
 

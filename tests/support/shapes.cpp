@@ -94,6 +94,11 @@ TriangleMesh soup(const TriangleMesh& mesh) {
   return result;
 }
 
+TriangleMesh of_unit_diagonal(TriangleMesh mesh) {
+  mesh.vertices /= diagonal(mesh.vertices);
+  return mesh;
+}
+
 TriangleMesh moved(TriangleMesh mesh, const AffineMap& map) {
   mesh.vertices = map * mesh.vertices;
   return mesh;

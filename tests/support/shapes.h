@@ -26,6 +26,9 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 /// Every corner of a face a vertex of its own: face k has the vertices 3k, 3k + 1, 3k + 2.
 TriangleMesh soup(const TriangleMesh& mesh);
 
+/// Scaled about the origin so that the diagonal of its bounding box is 1.
+TriangleMesh of_unit_diagonal(TriangleMesh mesh);
+
 /// The mesh with all vertices mapped.
 TriangleMesh moved(TriangleMesh mesh, const AffineMap& map);
 

@@ -19,15 +19,16 @@ std::vector<int> all_around() {
   return marks;
 }
 
-/// A tube and the same one, bent.
+/// A tube of diagonal 1 and the same one, bent.
 struct DescribedTube {
   explicit DescribedTube(const std::vector<int>& marks = all_around())
       : anchors(source.vertices(Eigen::all, marks)) {
-    for (auto&& x : target.vertices.colwise()) x = shapes::bent(x, turned_degrees);
+    for (auto&& x : target.vertices.colwise()) x = bent(x);
     anchor_targets = target.vertices(Eigen::all, marks);
   }
 
-  TriangleMesh source = shapes::tube();
+  double unit = 1 / diagonal(shapes::tube().vertices);
+  TriangleMesh source = shapes::of_unit_diagonal(shapes::tube());
   TriangleMesh target = source;
   Points anchors, anchor_targets;
   GeodesicSettings settings;
@@ -37,7 +38,7 @@ struct DescribedTube {
     return std::vector<double>(static_cast<std::size_t>(anchors.cols()), 1);
   }
   GeodesicPairs pairs() const { return geodesics().pairs(all_right()); }
-  double size() const { return diagonal(source.vertices); }
+  Vector3 bent(const Vector3& x) const { return unit * shapes::bent(x / unit, turned_degrees); }
 };
 
 TEST(AnchorGeodesics, PairPlacesOfABentTube) {
@@ -46,18 +47,17 @@ TEST(AnchorGeodesics, PairPlacesOfABentTube) {
   ASSERT_GT(pairs.sources.cols(), models.settings.count / 4);
   Eigen::Index off = 0;
   for (Eigen::Index i = 0; i < pairs.sources.cols(); ++i)
-    off += (shapes::bent(pairs.sources.col(i), turned_degrees) - pairs.targets.col(i)).norm() >
-           0.05 * models.size();
+    off += (models.bent(pairs.sources.col(i)) - pairs.targets.col(i)).norm() > 0.05;
   EXPECT_LT(off, pairs.sources.cols() / 20);
 }
 
-TEST(AnchorGeodesics, PairPlacesOfACopyWhateverItsSize) {
+TEST(AnchorGeodesics, PairPlacesOfACopyWithThemselves) {
   DescribedTube models;
-  models.target = {3 * models.source.vertices, models.source.faces};
-  models.anchor_targets = 3 * models.anchors;
+  models.target = models.source;
+  models.anchor_targets = models.anchors;
   const GeodesicPairs pairs = models.pairs();
   ASSERT_GT(pairs.sources.cols(), models.settings.count / 4);
-  EXPECT_LT((3 * pairs.sources - pairs.targets).cwiseAbs().maxCoeff(), 1e-9 * models.size());
+  EXPECT_LT((pairs.sources - pairs.targets).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(AnchorGeodesics, HaveNoPairsWhereTheTargetEnds) {
@@ -78,7 +78,7 @@ TEST(AnchorGeodesics, HaveNoPairsWhereTheTargetEnds) {
   const GeodesicPairs pairs = models.pairs();
   EXPECT_GT(pairs.sources.cols(), 0);
   for (Eigen::Index i = 0; i < pairs.sources.cols(); ++i) {
-    EXPECT_LT(pairs.sources(0, i), end + 2 * models.settings.max_return * models.size());
+    EXPECT_LT(pairs.sources(0, i), end + 2 * models.settings.max_return);
   }
 }
 
@@ -86,7 +86,7 @@ TEST(AnchorGeodesics, HaveNoPairsWhereAnchorsDoNotTellTwoSidesApart) {
   const DescribedTube models(shapes::tube_marks());  // of which all lie in the plane z = 0
   const GeodesicPairs pairs = models.pairs();
   for (Eigen::Index i = 0; i < pairs.sources.cols(); ++i) {
-    EXPECT_LT(std::abs(pairs.sources(2, i)), models.settings.elsewhere * models.size());
+    EXPECT_LT(std::abs(pairs.sources(2, i)), models.settings.elsewhere);
   }
 }
 
@@ -112,7 +112,7 @@ TEST(AnchorGeodesics, NeedFourAnchorsAndAComponentThatHasSome) {
 TEST(AnchorGeodesics, PutAnAnchorWhereItsTargetIsByTheOthers) {
   const DescribedTube models;
   const LeftOutAnchors left_out = models.geodesics().left_out(models.all_right());
-  EXPECT_LT(left_out.distances.maxCoeff(), 0.05 * models.size());
+  EXPECT_LT(left_out.distances.maxCoeff(), 0.05);
   EXPECT_GT(left_out.compliances.minCoeff(), 0);
 }
 
@@ -128,10 +128,10 @@ TEST(AnchorGeodesics, PutAWrongAnchorFarFromItsTargetAndForgetIt) {
   EXPECT_EQ(worst, 2);
   inliers[2] = 0;
   const LeftOutAnchors without = geodesics.left_out(inliers);
-  EXPECT_NEAR(without.distances[2], off, 0.1 * models.size());
+  EXPECT_NEAR(without.distances[2], off, 0.1);
   for (Eigen::Index k = 0; k < without.distances.size(); ++k)
     if (k != 2) {
-      EXPECT_LT(without.distances[k], 0.05 * models.size()) << k;
+      EXPECT_LT(without.distances[k], 0.05) << k;
     }
 }
 

@@ -7,11 +7,11 @@
 namespace bespoke {
 namespace {
 
-constexpr double model_area = 3, diagonal_length = 2, pair_distance = 0.05, smoothness = 0.2;
+constexpr double model_area = 3, pair_distance = 0.05, smoothness = 0.2;
 
 Eigen::VectorXd all(double value) { return Eigen::VectorXd::Constant(3, value); }
 
-AnchorLimits limits_of(const Eigen::VectorXd& sigmas) { return {sigmas, model_area, diagonal_length, {}}; }
+AnchorLimits limits_of(const Eigen::VectorXd& sigmas) { return {sigmas, model_area, {}}; }
 
 TEST(AnchorLimits, AreNoneForExactAnchorsAndBeforeThePairs) {
   const Eigen::VectorXd none = all(0);
@@ -23,7 +23,7 @@ TEST(AnchorLimits, AreNoneForExactAnchorsAndBeforeThePairs) {
 
 TEST(AnchorLimits, AreTheRatioOfTheVariances) {
   const Eigen::VectorXd none = all(0);
-  const double along = AnchorSettings{}.along_surface * diagonal_length;
+  const double along = AnchorSettings{}.along_surface;
   AnchorLimits limits = limits_of(Vector3(0.1, 0.2, 0.4));
   const std::vector<double> found = limits.next({none, pair_distance, smoothness});
   const double variance = pair_distance * pair_distance + along * along;

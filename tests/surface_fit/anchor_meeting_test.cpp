@@ -19,8 +19,7 @@ struct MeetingScene {
   MeetingScene(const Points& at, const Points& moves) : sources(at), targets(at + moves) {}
 
   AnchorMeeting meet() const {
-    return meet_anchors_within({surface, target, sources, targets, diagonal(surface.vertices)},
-                               surface.vertices, bound);
+    return meet_anchors_within({surface, target, sources, targets}, surface.vertices, bound);
   }
 };
 
@@ -62,9 +61,8 @@ TEST(MeetAnchorsWithin, MeetsAnchorsThatAgree) {
                            columns({{0.02, 0, 0}, {0, 0.02, 0}}));
   const AnchorMeeting meeting = scene.meet();
   EXPECT_EQ(meeting.anchor_sigmas, Eigen::VectorXd::Zero(2));
-  EXPECT_EQ(meeting.vertices, meet_anchors({scene.surface, scene.target, scene.sources, scene.targets,
-                                            diagonal(scene.surface.vertices)})
-                                  .vertices);
+  EXPECT_EQ(meeting.vertices,
+            meet_anchors({scene.surface, scene.target, scene.sources, scene.targets}).vertices);
 }
 
 }  // namespace

@@ -25,9 +25,7 @@ struct BentTube {
   BentTube() {
     for (auto&& x : targets.colwise()) x = bent(x);
   }
-  PosingByAnchors posing() const {
-    return PosingByAnchors({rest, sources, targets, sigmas, diagonal(rest.vertices)});
-  }
+  PosingByAnchors posing() const { return PosingByAnchors({rest, sources, targets, sigmas}); }
 };
 
 TEST(PosingByAnchors, MovesNothingWithoutAnchorsOrWithAnchorsInPlace) {
@@ -36,7 +34,7 @@ TEST(PosingByAnchors, MovesNothingWithoutAnchorsOrWithAnchorsInPlace) {
   EXPECT_LT((scene.posing().bent().vertices - scene.rest.vertices).cwiseAbs().maxCoeff(), 1e-9);
   const Points none(3, 0);
   const Eigen::VectorXd no_sigmas(0);
-  const AnchorPose still = PosingByAnchors({scene.rest, none, none, no_sigmas, 4}).bent();
+  const AnchorPose still = PosingByAnchors({scene.rest, none, none, no_sigmas}).bent();
   EXPECT_EQ(still.vertices, scene.rest.vertices);
 }
 

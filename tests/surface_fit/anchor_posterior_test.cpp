@@ -19,7 +19,7 @@ struct TestedScene {
   explicit TestedScene(int count = 12) {
     anchors.tested.assign(static_cast<std::size_t>(count), 1);
     anchors.sigmas = Eigen::VectorXd::Zero(count);
-    anchors.area = anchors.diagonal = 1;
+    anchors.area = 1;
     left_out = {Eigen::VectorXd::Constant(count, 0.02), Eigen::VectorXd::Ones(count)};
   }
 

@@ -7,7 +7,7 @@
 namespace bespoke {
 namespace {
 
-constexpr double model_diagonal = 100;  // so that ℓ is 1
+constexpr AreaSettings unit_length{.length = 1};
 
 TriangleMesh sphere(double radius) {
   return shapes::moved(shapes::icosphere(4), {radius * Matrix3::Identity(), Vector3(5 * radius, 0, 0)});
@@ -16,7 +16,7 @@ TriangleMesh sphere(double radius) {
 TEST(InformativeAreas, AreTheAreasWhereAllIsBentAlike) {
   for (const TriangleMesh& mesh : {shapes::square_grid(5), sphere(1), sphere(0.1)}) {
     const Eigen::VectorXd areas = vertex_areas(mesh);
-    const Eigen::VectorXd informative = informative_areas(TargetSurface(mesh), model_diagonal);
+    const Eigen::VectorXd informative = informative_areas(TargetSurface(mesh), unit_length);
     EXPECT_NEAR(informative.sum(), areas.sum(), 1e-12 * areas.sum());
     EXPECT_LT((informative.cwiseQuotient(areas).array() - 1).abs().maxCoeff(), 0.02);
   }
@@ -27,7 +27,7 @@ TEST(InformativeAreas, GrowWithTheSquaredCurvatureUpToALimit) {
     const TriangleMesh bent = sphere(radius), flat = shapes::square_grid(5);
     const TriangleMesh both = shapes::joined(bent, flat);
     const Eigen::VectorXd ratio =
-        informative_areas(TargetSurface(both), model_diagonal).cwiseQuotient(vertex_areas(both));
+        informative_areas(TargetSurface(both), unit_length).cwiseQuotient(vertex_areas(both));
     const double of_flat = ratio.tail(flat.vertices.cols()).mean();
     EXPECT_NEAR(ratio.head(bent.vertices.cols()).mean() / of_flat, factor, 0.02 * factor) << radius;
   }
@@ -37,12 +37,11 @@ TEST(InformativeAreas, GiveNothingToLooseVerticesAndToFacesWithoutArea) {
   TriangleMesh mesh = shapes::square_grid(2);
   mesh.vertices.conservativeResize(3, mesh.vertices.cols() + 1);
   mesh.vertices.rightCols(1) = Vector3(9, 9, 9);
-  const Eigen::VectorXd informative = informative_areas(TargetSurface(mesh), model_diagonal);
+  const Eigen::VectorXd informative = informative_areas(TargetSurface(mesh), unit_length);
   EXPECT_TRUE(informative.allFinite());
   EXPECT_EQ(informative[informative.size() - 1], 0);
   mesh.vertices.bottomRows(2).setZero();  // all on one line
-  EXPECT_EQ(informative_areas(TargetSurface(mesh), model_diagonal),
-            Eigen::VectorXd::Zero(mesh.vertices.cols()));
+  EXPECT_EQ(informative_areas(TargetSurface(mesh), unit_length), Eigen::VectorXd::Zero(mesh.vertices.cols()));
 }
 
 }  // namespace

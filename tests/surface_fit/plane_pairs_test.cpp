@@ -15,7 +15,7 @@ constexpr NodeLevel every_vertex{1, 1, 100000, 100000};
 std::vector<PlanePair> pairs_between(const TriangleMesh& source, const TriangleMesh& target,
                                      const NodeLevel& level = every_vertex) {
   const TargetSurface from(source), to(target);
-  return find_plane_pairs({from, to, from.areas(), to.areas(), diagonal(source.vertices)}, level, {});
+  return find_plane_pairs({from, to, from.areas(), to.areas()}, level, {});
 }
 
 double total_weight(const std::vector<PlanePair>& pairs) {
@@ -98,7 +98,7 @@ std::vector<double> scale_gains(double source_height, double certainty) {
   const Eigen::VectorXd certainties = Eigen::VectorXd::Constant(plate.vertices.cols(), certainty);
   std::vector<double> found;
   for (const PlanePair& pair :
-       find_plane_pairs({from, to, from.areas(), to.areas(), 1.5, &certainties}, every_vertex, {}))
+       find_plane_pairs({from, to, from.areas(), to.areas(), &certainties}, every_vertex, {}))
     found.push_back(pair.outlier_scale_gain);
   return found;
 }
@@ -122,7 +122,7 @@ TEST(PlanePairs, StayWithinTheirPatches) {
   patches.of_face.assign(static_cast<std::size_t>(2 * sheet.faces.cols()), 0);
   std::fill(patches.of_face.begin() + sheet.faces.cols(), patches.of_face.end(), FacePatches::none);
   const TargetSurface from(sheets(0, 0.05), patches), to(sheets(0.05, 0), patches);
-  const auto pairs = find_plane_pairs({from, to, from.areas(), to.areas(), 1.5}, every_vertex, {});
+  const auto pairs = find_plane_pairs({from, to, from.areas(), to.areas()}, every_vertex, {});
   EXPECT_EQ(pairs.size(), 2 * 2 * 25u);  // the inner vertices of both, both ways
   for (const PlanePair& pair : pairs) {
     const Vector3 x = from.mesh().vertices.col(pair.vertex);

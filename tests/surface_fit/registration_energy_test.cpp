@@ -62,7 +62,7 @@ class RegistrationEnergyTest : public testing::Test {
 
   TriangleMesh sphere_ = shapes::icosphere(3);
   Points vertices_ = sphere_.vertices;
-  NodeSurface surface_{sphere_, sphere_.vertices, vertex_areas(sphere_).sum(), diagonal(sphere_.vertices)};
+  NodeSurface surface_{sphere_, sphere_.vertices, vertex_areas(sphere_).sum()};
   DeformationNodes nodes_;
   Points shape_, now_;
   std::vector<FollowedAnchor> anchors_;

@@ -107,7 +107,7 @@ struct GeodesicSettings {
   int max_vertices = 20000;  ///< that are described
   double softening = 3e-3;   ///< ε, of the largest distance
   double max_return = 0.03;  ///< diagonals: a counterpart's counterpart may be so far off
-  double elsewhere = 0.1;    ///< diagonals: farther from the counterpart is another place
+  double elsewhere = 0.1;    ///< diagonals of the target: farther from the counterpart is another place
   double max_ratio = 0.5;    ///< of the misfits there and elsewhere
 };
 

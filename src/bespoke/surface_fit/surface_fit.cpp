@@ -2,8 +2,6 @@
 
 #include <cstdio>
 
-#include "bespoke/length.h"
-
 namespace bespoke {
 
 const char* to_string(StopReason reason) {
@@ -61,7 +59,5 @@ std::string to_string(const SurfaceFitSummary& summary) {
     line += ", " + std::to_string(summary.repaired_vertices) + " over-stretched vertices reset";
   return line;
 }
-
-double SurfaceFitInput::size_scale() const { return power_of_two_scale(growth(source, warped_vertices)); }
 
 }  // namespace bespoke

@@ -90,8 +90,6 @@ struct SurfaceFitInput {
   FacePatches source_patches = {};
   FacePatches target_patches = {};
   std::vector<char> anchor_tested = {};  ///< k: whether it may be an outlier; empty: none may
-  /// How many times as large the target is (power_of_two_scale, length.h), by the warp.
-  double size_scale() const;
 };
 
 /// A target whose faces are oriented against the source's, as of a file that is inside out, is flipped

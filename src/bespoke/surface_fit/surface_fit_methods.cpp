@@ -82,10 +82,10 @@ SurfaceFit fit_surface(const SurfaceFitInput& input, const SurfaceFitOptions& op
   if (away) require_unmirrored(input);
   if (!away || !options.repair_models) return entry.fit(input, options, progress);
   const TriangleMesh target = flipped(input.target);
-  SurfaceFit fit =
-      entry.fit({input.source, input.warped_vertices, target, input.anchor_sources, input.anchor_targets,
-                 input.anchor_weights, input.anchor_sigmas, input.source_patches, input.target_patches},
-                options, progress);
+  SurfaceFit fit = entry.fit({input.source, input.warped_vertices, target, input.anchor_sources,
+                              input.anchor_targets, input.anchor_weights, input.anchor_sigmas,
+                              input.source_patches, input.target_patches, input.anchor_tested},
+                             options, progress);
   fit.summary.target_flipped = true;
   return fit;
 }

@@ -47,8 +47,7 @@ struct SurfaceFitOptions {
   /// inside out is flipped. Not part of the printed method.
   bool repair_models = true;
   int max_iterations = 100;  ///< laplacian only: deformation-graph runs a fixed schedule
-  /// ε of the paper, a fraction of the source's bounding-box diagonal, in powers of two as large as the
-  /// target.
+  /// ε of the paper, a fraction of the source's bounding-box diagonal, scaled as the warp scales it.
   double epsilon = 1e-5;
   /// s of Eq. 11 as DisplacementSmoother writes it, ≥ 0, no unit, instead of the printed or the scaled one:
   /// how much smoothness counts against reaching the target in one step (laplacian only).

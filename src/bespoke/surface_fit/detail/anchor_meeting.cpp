@@ -81,7 +81,7 @@ Points smoothed(const Points& anchors, const Points& moves, double radius, const
 AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse, double max_stretch,
                                   const DetailSettings& settings) {
   const Points& anchors = input.anchor_sources;
-  const double radius = settings.anchor_radius * input.diagonal;
+  const double radius = settings.anchor_radius;
   DetailFit fit = meet_anchors(input, settings);
   Eigen::VectorXd variances = Eigen::VectorXd::Zero(anchors.cols());
   if (anchors.cols() == 0) return {fit.vertices, variances};
@@ -90,14 +90,13 @@ AnchorMeeting meet_anchors_within(const DetailInput& input, const Points& coarse
   for (int round = 0; round < max_doublings; ++round) {
     std::vector<Vector3> places = overstretched(input.surface, fit.vertices, coarse, max_stretch);
     const double missed = (targets - fit.anchor_sources).colwise().norm().maxCoeff();
-    if (places.empty() && missed > settings.tolerance * input.diagonal)
+    if (places.empty() && missed > settings.tolerance)
       places = contradicting(anchors, targets - anchors, radius, settings.max_gradient);
     if (places.empty() || !raise_around(places, anchors, radius, variances)) break;
     targets = anchors + smoothed(anchors, moves, radius, variances);
     for (Eigen::Index k = 0; k < anchors.cols(); ++k)
       if (variances[k] == 0) targets.col(k) = input.anchor_targets.col(k);
-    const DetailInput relaxed{input.surface,  input.target, anchors,      targets,
-                              input.diagonal, input.hidden, input.patches};
+    const DetailInput relaxed{input.surface, input.target, anchors, targets, input.hidden, input.patches};
     fit = meet_anchors(relaxed, settings);
   }
   const double largest = moves.colwise().norm().maxCoeff();

@@ -38,15 +38,13 @@ struct SurfaceAnchors {
 };
 
 /// Inaccurate targets without the part of their error that the surfaces show: as far from the target as
-/// their anchors are from the source, were that `size_scale` times as large.
-void register_by_similarity(const TriangleMesh& source, const TriangleMesh& target, double size_scale,
-                            SurfaceAnchors& anchors) {
+/// their anchors are from the source.
+void register_by_similarity(const TriangleMesh& source, const TriangleMesh& target, SurfaceAnchors& anchors) {
   if (!(anchors.sigmas.array() > 0).any()) return;
   const ClosestPointTree source_surface(source), target_surface(target);
   for (Eigen::Index k = 0; k < anchors.sigmas.size(); ++k) {
     if (!(anchors.sigmas[k] > 0)) continue;
-    const double wanted =
-        size_scale * size_scale * source_surface.closest(anchors.sources.col(k))->squared_distance;
+    const double wanted = source_surface.closest(anchors.sources.col(k))->squared_distance;
     const SurfacePoint foot = *target_surface.closest(anchors.targets.col(k));
     if (foot.squared_distance > wanted)
       anchors.targets.col(k) =
@@ -75,7 +73,7 @@ SurfaceAnchors anchors_of(const SurfaceFitInput& input, const NodeFitSettings& s
     else if (std::isinf(anchors.weights[k]))
       anchors.exact.push_back(k);
   }
-  register_by_similarity(input.source, input.target, input.size_scale(), anchors);
+  register_by_similarity(input.source, input.target, anchors);
   return anchors;
 }
 
@@ -93,8 +91,7 @@ PatchedMesh refined_source(const SurfaceFitInput& input, double edges_per_area) 
 
 /// 1 where a vertex has a counterpart at its place that faces the same way, 0 where it has none.
 std::vector<double> confidences(const TriangleMesh& fitted, const FacePatches& patches,
-                                const TargetSurface& target, double diagonal,
-                                const ConfidenceSettings& settings) {
+                                const TargetSurface& target, const ConfidenceSettings& settings) {
   const std::vector<std::optional<int>> own = vertex_patches(fitted, patches);
   std::vector<double> all(static_cast<std::size_t>(fitted.vertices.cols()), 0.0);
   const Points normals = vertex_normals(fitted);
@@ -102,11 +99,11 @@ std::vector<double> confidences(const TriangleMesh& fitted, const FacePatches& p
   parallel_for(all.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      MatchLimits limits{0, settings.reach * diagonal};
+      MatchLimits limits{0, settings.reach};
       if (!own.empty()) limits.patch = own[k];
       const auto found = target.match(fitted.vertices.col(i), normals.col(i), limits);
       if (!found) continue;
-      const double offset = (found->point - fitted.vertices.col(i)).norm() / (settings.near * diagonal);
+      const double offset = (found->point - fitted.vertices.col(i)).norm() / settings.near;
       all[k] = found->agreement * std::exp(-offset * offset);
     }
   });
@@ -135,35 +132,35 @@ struct Alignment {
   bool suffices = false;
 };
 
+/// The similarity nearest to the warp.
+Similarity similarity_of_warp(const SurfaceFitInput& input) {
+  return align_similarly(input.source.vertices, input.warped_vertices,
+                         Eigen::VectorXd::Ones(input.source.vertices.cols()));
+}
+
 /// The similarity nearest to the warp, refined on the surfaces where that explains the target.
 Alignment align(const SurfaceFitInput& input, const TriangleMesh& surface, const TargetSurface& target,
                 const SurfaceAnchors& anchors, const SimilaritySettings& settings) {
-  const Similarity of_warp = align_similarly(input.source.vertices, input.warped_vertices,
-                                             Eigen::VectorXd::Ones(input.source.vertices.cols()));
+  const Similarity of_warp = similarity_of_warp(input);
   const SimilarityFit refined = fit_similarity(surface, target, of_warp, settings);
   const double anchors_off =
       largest_distance(refined.target_from_source * anchors.exact_sources(), anchors.exact_targets());
-  const bool suffices = refined.suffices && anchors_off <= settings.anchor_tolerance * settings.tolerance *
-                                                               of_warp.scale *
-                                                               diagonal(input.source.vertices);
+  const bool suffices = refined.suffices && anchors_off <= settings.anchor_tolerance * settings.tolerance;
   return {suffices ? refined.target_from_source : of_warp, suffices};
 }
 
-/// What is deformed, all aligned with the target, mesh units.
+/// What is deformed, all aligned with the target.
 struct Scene {
   TriangleMesh surface;
   const TargetSurface& target;
   SurfaceAnchors& anchors;
-  Points exact_sources;  // 3×k, carried with the surface
-  Points exact_targets;  // 3×k
-  double diagonal;
+  Points exact_sources;      // 3×k, carried with the surface
+  Points exact_targets;      // 3×k
   FacePatches patches;       // of the surface
   std::vector<char> hidden;  // n: in a cavity that the target lacks
   Points coarse_vertices;    // 3×n: as the coarse deformation left the surface
 
-  DetailInput details() const {
-    return {surface, target, exact_sources, exact_targets, diagonal, hidden, patches};
-  }
+  DetailInput details() const { return {surface, target, exact_sources, exact_targets, hidden, patches}; }
 };
 
 /// Vertices of the source that an excluded patch leaves without counterpart: those in one, and those that
@@ -198,7 +195,7 @@ void measure_distances(const SurfaceFitInput& input, const TargetSurface& target
 
 /// Accuracies that the pose takes the anchors for; a soft anchor's weight stands for one too.
 Eigen::VectorXd pose_sigmas(const Scene& scene, const PoseSettings& settings) {
-  return (settings.sigma_of_weight_one * scene.diagonal * scene.anchors.weights.cwiseSqrt().cwiseInverse())
+  return (settings.sigma_of_weight_one * scene.anchors.weights.cwiseSqrt().cwiseInverse())
       .cwiseMax(scene.anchors.sigmas);
 }
 
@@ -206,11 +203,56 @@ Eigen::VectorXd pose_sigmas(const Scene& scene, const PoseSettings& settings) {
 /// farther from their targets than closest points reach.
 bool are_out_of_reach(const Scene& scene, const Points& anchors, const std::vector<Eigen::Index>& outliers,
                       const DeformationGraphSettings& settings) {
-  const double reach = settings.nodes.max_distance * scene.diagonal;
+  const double reach = settings.nodes.max_distance;
   Eigen::VectorXd distances = (anchors - scene.anchors.targets).colwise().norm();
   for (const Eigen::Index k : outliers) distances[k] = 0;
   return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).count() > 1;
 }
+
+/// The models, scaled so that the source's diagonal is 1, and that of the source aligned with the target as
+/// well: lengths are then fractions of it.
+class UnitModels {
+ public:
+  explicit UnitModels(const SurfaceFitInput& input)
+      : given_(input),
+        source_size_(diagonal(input.source.vertices)),
+        target_size_(source_size_ * similarity_of_warp(input).scale),
+        source_{input.source.vertices / source_size_, input.source.faces},
+        target_{input.target.vertices / target_size_, input.target.faces},
+        warped_(input.warped_vertices / target_size_),
+        anchor_sources_(input.anchor_sources / source_size_),
+        anchor_targets_(input.anchor_targets / target_size_) {}
+
+  /// Refers to this and to what this was made of.
+  SurfaceFitInput input() const {
+    return {source_,
+            warped_,
+            target_,
+            anchor_sources_,
+            anchor_targets_,
+            given_.anchor_weights,
+            given_.anchor_sigmas / target_size_,
+            given_.source_patches,
+            given_.target_patches,
+            given_.anchor_tested};
+  }
+
+  /// Back in mesh units.
+  SurfaceFit restored(SurfaceFit fit) const {
+    fit.vertices *= target_size_;
+    for (Statistics* each : {&fit.summary.before, &fit.summary.after})
+      for (double* value : {&each->min, &each->median, &each->p95, &each->p99, &each->max})
+        *value *= target_size_;
+    for (AnchorGivenWay& anchor : fit.summary.anchors_given_way) anchor.sigma *= target_size_;
+    return fit;
+  }
+
+ private:
+  const SurfaceFitInput& given_;
+  double source_size_, target_size_;  // mesh units: what becomes 1
+  TriangleMesh source_, target_;
+  Points warped_, anchor_sources_, anchor_targets_;
+};
 
 struct Deforming {
   const SurfaceFitOptions& options;
@@ -227,8 +269,8 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
   const auto fitting = [&](const TriangleMesh& rest, const Points& carried_anchors,
                            const std::vector<char>& tested, bool is_posed) {
     return NodeFitting({rest, scene.surface.vertices, scene.target, carried_anchors, scene.anchors.targets,
-                        scene.anchors.weights, scene.diagonal, how.options.boundaries, scene.anchors.sigmas,
-                        scene.patches, is_posed, tested},
+                        scene.anchors.weights, how.options.boundaries, scene.anchors.sigmas, scene.patches,
+                        is_posed, tested},
                        settings.nodes, how.progress);
   };
   std::optional<GeodesicPose> geodesic;
@@ -236,7 +278,7 @@ NodeFit fit_nodes(const Scene& scene, const Points& anchors, const Deforming& ho
     if (!geodesic)
       geodesic.emplace(
           GeodesicPoseInput{scene.surface, scene.patches, scene.target.mesh(), anchors, scene.anchors.targets,
-                            sigmas, scene.anchors.sigmas, scene.anchors.tested, scene.diagonal},
+                            sigmas, scene.anchors.sigmas, scene.anchors.tested},
           settings.pose);
     return *geodesic;
   };
@@ -296,8 +338,8 @@ SurfaceFitSummary deform(Scene& scene, const Points& aligned_anchors, const Defo
   summary.iterations = nodes.iterations + details.layers;
   summary.rigidity = nodes.rigidity;
   summary.matched_boundaries = nodes.matched_boundaries;
-  summary.stop_reason = details.last_step <= options.epsilon * scene.diagonal ? StopReason::converged
-                                                                              : StopReason::iteration_cap;
+  summary.stop_reason =
+      details.last_step <= options.epsilon ? StopReason::converged : StopReason::iteration_cap;
   return summary;
 }
 
@@ -315,13 +357,15 @@ std::vector<Eigen::Index> anchors_near(const TriangleMesh& surface, const Points
   return near;
 }
 
-SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const SurfaceFitOptions& options,
+SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& given, const SurfaceFitOptions& options,
                                          const Progress& progress) {
   progress.check();
   const Stopwatch watch;
   if (!(options.max_stretch > 1))
     throw InvalidInput("a largest stretch of " + std::to_string(options.max_stretch) +
                        "; it must be above 1");
+  const UnitModels models(given);
+  const SurfaceFitInput input = models.input();
   DeformationGraphSettings settings;
   if (!options.tell_rigidity) settings.nodes.shape.max_rigid = 1;
   PatchedMesh source = refined_source(input, settings.edges_per_area);
@@ -331,15 +375,9 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   const auto [aligned, suffices] =
       align(input, without_excluded(source.mesh, source.patches).mesh, target, anchors, settings.similarity);
   source.mesh.vertices = aligned * source.mesh.vertices;
-  Scene scene{std::move(source.mesh),
-              target,
-              anchors,
-              aligned * anchors.exact_sources(),
-              anchors.exact_targets(),
-              aligned.scale * diagonal(input.source.vertices),
-              std::move(source.patches),
-              {},
-              {}};
+  Scene scene{
+      std::move(source.mesh),    target, anchors, aligned * anchors.exact_sources(), anchors.exact_targets(),
+      std::move(source.patches), {},     {}};
   scene.coarse_vertices = scene.surface.vertices;
 
   SurfaceFit fit;
@@ -354,8 +392,8 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
     if (meeting.anchor_sigmas[k] > 0)
       fit.summary.anchors_given_way.push_back(
           {static_cast<std::size_t>(anchors.given[anchors.exact[k]]), meeting.anchor_sigmas[k]});
-  fit.confidence = confidences({fit.vertices, input.source.faces}, input.source_patches, target,
-                               scene.diagonal, settings.confidence);
+  fit.confidence =
+      confidences({fit.vertices, input.source.faces}, input.source_patches, target, settings.confidence);
   for (std::size_t i = 0; i < std::min(scene.hidden.size(), fit.confidence.size()); ++i)
     if (scene.hidden[i]) {
       fit.confidence[i] = 0;
@@ -372,7 +410,7 @@ SurfaceFit fit_surface_deformation_graph(const SurfaceFitInput& input, const Sur
   measure_distances(input, target, fit);
   for (const double confidence : fit.confidence) fit.summary.unmatched_vertices += confidence > 0 ? 0 : 1;
   fit.summary.seconds = watch.seconds();
-  return fit;
+  return models.restored(std::move(fit));
 }
 
 }  // namespace bespoke

@@ -72,8 +72,7 @@ std::vector<Residual> residuals(const DetailStep& step) {
   const Points& vertices = step.moved.mesh().vertices;
   const Points& normals = step.moved.normals();
   std::vector<Residual> all(static_cast<std::size_t>(vertices.cols()));
-  const MatchLimits limits{step.settings.min_cosine,
-                           std::max(step.lambda, step.settings.min_reach * step.input.diagonal)};
+  const MatchLimits limits{step.settings.min_cosine, std::max(step.lambda, step.settings.min_reach)};
   parallel_for(all.size(), layer_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
@@ -175,7 +174,7 @@ DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, 
   DetailFit fit;
   fit.vertices = input.surface.vertices;
   fit.anchor_sources = input.anchor_sources;
-  double lambda = settings.coarsest * input.diagonal;
+  double lambda = settings.coarsest;
   for (int scale = 0; scale < settings.scales; ++scale, lambda *= settings.ratio)
     for (int step = 0; step < settings.steps_per_scale; ++step, ++fit.layers) {
       progress.step("surface-fit details", static_cast<std::size_t>(fit.layers),
@@ -193,12 +192,11 @@ DetailFit meet_anchors(const DetailInput& input, const DetailSettings& settings)
   if (fit.anchor_sources.cols() == 0) return fit;
   Points moves = input.anchor_targets - fit.anchor_sources;
   do {
-    Layer layer(settings.anchor_radius * input.diagonal, fit.anchor_sources, moves, settings);
+    Layer layer(settings.anchor_radius, fit.anchor_sources, moves, settings);
     fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
     ++fit.layers;
     moves = input.anchor_targets - fit.anchor_sources;
-  } while (fit.layers < settings.max_anchor_passes &&
-           moves.colwise().norm().maxCoeff() > settings.tolerance * input.diagonal);
+  } while (fit.layers < settings.max_anchor_passes && moves.colwise().norm().maxCoeff() > settings.tolerance);
   return fit;
 }
 

@@ -14,7 +14,6 @@ struct DetailInput {
   const TargetSurface& target;
   const Points& anchor_sources;   ///< 3×k: exact anchors, where they are now
   const Points& anchor_targets;   ///< 3×k
-  double diagonal = 0;            ///< of the aligned source
   std::vector<char> hidden = {};  ///< n: vertices without counterpart; empty where all may have one
   FacePatches patches = {};       ///< of the faces of `surface`; excluded ones have no counterparts
 };

@@ -15,8 +15,8 @@ namespace bespoke {
 namespace {
 
 /// Anchors count only where both ends lie on their surfaces to this fraction of the source's bounding-box
-/// diagonal, in powers of two as large on the target: farther off, the surface point beneath them is not what
-/// the user paired.
+/// diagonal, as many times as large on the target as the target is: farther off, the surface point beneath
+/// them is not what the user paired.
 constexpr double on_surface = 1e-3;
 
 /// s of Eq. 11. With scaled_stiffness s grows with the vertices: displacements then spread over some 0.08 of
@@ -78,7 +78,7 @@ SnappedAnchors anchors_on_surfaces(const SurfaceFitInput& input, double stiffnes
   const ClosestPointTree target(input.target);
   ClosestPointQuery near_source, near_target;
   near_source.max_distance = on_surface * diagonal(input.source.vertices);
-  near_target.max_distance = input.size_scale() * near_source.max_distance;
+  near_target.max_distance = growth(input.source, input.warped_vertices) * near_source.max_distance;
   SnappedAnchors result;
   std::vector<Vector3> targets;
   for (Eigen::Index k = 0; k < input.anchor_sources.cols(); ++k) {
@@ -175,7 +175,8 @@ SurfaceFit fit_surface_laplacian(const SurfaceFitInput& input, const SurfaceFitO
                                  const Progress& progress) {
   const Stopwatch watch;
   const LaplacianAdditions& additions = options.laplacian;
-  const double epsilon = options.epsilon * input.size_scale() * diagonal(input.source.vertices);
+  const double epsilon =
+      options.epsilon * growth(input.source, input.warped_vertices) * diagonal(input.source.vertices);
   SurfaceFit fit;
   SurfaceFitSummary& summary = fit.summary;
   summary.stiffness = stiffness_of(options, input.source.vertices.cols());

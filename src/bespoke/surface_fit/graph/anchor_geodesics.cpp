@@ -98,7 +98,7 @@ GeodesicPairs AnchorGeodesics::pairs(const std::vector<double>& inliers) const {
   const Eigen::VectorXd of_anchors = weights(inliers);
   if ((of_anchors.array() > 0.5).count() < settings_.min_anchors) return pairs;
   const Points &here = source_.places, &there = target_.places;
-  const double max_return = settings_.max_return * diagonal(here);
+  const double max_return = settings_.max_return;
   const double elsewhere = settings_.elsewhere * diagonal(there);
   const auto counterpart = [&](Eigen::Index place) -> std::optional<Eigen::Index> {
     const Misfits found(source_.described.col(place), of_anchors, target_.described);
@@ -138,7 +138,7 @@ LeftOutAnchors AnchorGeodesics::left_out(const std::vector<double>& inliers) con
         of_others[own - from_.begin()] = 0;
       const Eigen::VectorXd place = source_.at_anchors.col(at);
       const double squared = of_others.dot(place.cwiseAbs2());
-      result.compliances[at] = squared > 0 ? 1 / squared : std::pow(diagonal(source_.places), 2);
+      result.compliances[at] = squared > 0 ? 1 / squared : 1.0;
       if (!(squared > 0)) continue;  // alone on its component, where nothing contradicts it
       const Misfits found(place, of_others, target_.described);
       result.distances[at] = (target_.places.col(found.best) - anchor_targets_.col(at)).norm();

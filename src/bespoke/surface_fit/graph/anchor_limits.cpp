@@ -9,12 +9,8 @@
 
 namespace bespoke {
 
-AnchorLimits::AnchorLimits(Eigen::VectorXd sigmas, double area, double diagonal,
-                           const AnchorSettings& settings)
-    : sigmas_(std::move(sigmas)),
-      area_(area),
-      along_surface_(settings.along_surface * diagonal),
-      settings_(settings) {}
+AnchorLimits::AnchorLimits(Eigen::VectorXd sigmas, double area, const AnchorSettings& settings)
+    : sigmas_(std::move(sigmas)), area_(area), settings_(settings) {}
 
 std::vector<double> AnchorLimits::next(const FitState& state) {
   std::vector<double> limits(static_cast<std::size_t>(sigmas_.size()),
@@ -22,8 +18,8 @@ std::vector<double> AnchorLimits::next(const FitState& state) {
   if (!(state.pair_distance > 0)) return limits;
   reinforce(state.anchor_residuals);
   const double patch = state.smoothing * state.smoothing / area_;
-  const double variance =
-      reinforcement_ * state.pair_distance * state.pair_distance + along_surface_ * along_surface_;
+  const double variance = reinforcement_ * state.pair_distance * state.pair_distance +
+                          settings_.along_surface * settings_.along_surface;
   for (Eigen::Index k = 0; k < sigmas_.size(); ++k)
     if (sigmas_[k] > 0) limits[static_cast<std::size_t>(k)] = patch * variance / (sigmas_[k] * sigmas_[k]);
   return limits;

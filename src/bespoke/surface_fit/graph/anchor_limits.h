@@ -21,8 +21,8 @@ struct FitState {
 /// deviation σ: the surface has slid farther than m shows. Not thread-safe.
 class AnchorLimits {
  public:
-  /// sigmas: k, ≥ 0, mesh units; area: mesh units squared; diagonal: mesh units.
-  AnchorLimits(Eigen::VectorXd sigmas, double area, double diagonal, const AnchorSettings& settings);
+  /// sigmas: k, ≥ 0, diagonals; area: of the surface, diagonals squared.
+  AnchorLimits(Eigen::VectorXd sigmas, double area, const AnchorSettings& settings);
 
   /// k: the largest weight of each anchor, beside that of the whole surface; infinite where σ is 0 and while
   /// there are no pairs.
@@ -32,7 +32,7 @@ class AnchorLimits {
   void reinforce(const Eigen::VectorXd& residuals);
 
   Eigen::VectorXd sigmas_;
-  double area_, along_surface_;
+  double area_;
   AnchorSettings settings_;
   double reinforcement_ = 1;  // κ
 };

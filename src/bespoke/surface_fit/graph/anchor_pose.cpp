@@ -52,10 +52,9 @@ class PosingByAnchors::Nodes {
     for (const auto& anchor : input.anchor_sources.colwise())
       anchors_.push_back(follower(input.rest, *tree.closest(anchor), anchor));
     targets_ = input.anchor_targets.transpose();
-    const double least = settings.min_sigma * input.diagonal;
     const double edge_sigma = settings.edge_misfit * nodes_.spacing;
     for (const double sigma : input.sigmas)
-      anchor_weights_.push_back(std::pow(edge_sigma / std::hypot(sigma, least), 2));
+      anchor_weights_.push_back(std::pow(edge_sigma / std::hypot(sigma, settings.min_sigma), 2));
     factorise();
   }
 

@@ -18,7 +18,6 @@ struct AnchorPoseInput {
   const Points& anchor_sources;   ///< 3×k, aligned like `rest`; need not lie on it
   const Points& anchor_targets;   ///< 3×k
   const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
-  double diagonal = 0;            ///< of `rest`
 };
 
 /// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets

@@ -27,7 +27,7 @@ void AnchorPosterior::update(const LeftOutAnchors& left_out) {
     }
   const double count = static_cast<double>(all.size());
   const double scale = median(std::move(all)) / median_of_normal;
-  const double floor = std::pow(settings_.min_deviation * anchors_.diagonal, 2);
+  const double floor = std::pow(settings_.min_deviation, 2);
   std::size_t outliers = 0;
   for (std::size_t k = 0; k < inliers_.size(); ++k) {
     if (!anchors_.tested[k]) continue;

@@ -7,19 +7,18 @@
 
 namespace bespoke {
 
-/// Which anchors are to be tested, and against what.
+/// Which anchors are to be tested, and against what. Lengths in diagonals.
 struct TestedAnchors {
   std::vector<char> tested;  ///< k: whether it may be an outlier; empty: none may
-  Eigen::VectorXd sigmas;    ///< k, ≥ 0, mesh units; empty is 0 for all
-  double area = 0;           ///< of the surface, mesh units squared
-  double diagonal = 0;       ///< mesh units
+  Eigen::VectorXd sigmas;    ///< k, ≥ 0; empty is 0 for all
+  double area = 0;           ///< of the surface
 };
 
 /// Each anchor against what the others say of its place. In a fit, one Gauss-Newton step from that with all:
 /// the residual over one less its leverage (Cook, Weisberg 1982). In a pose, by distances along the surfaces
 /// (anchor_geodesics.h).
 struct LeftOutAnchors {
-  Eigen::VectorXd distances;    ///< k: of the target from where the others put the source, mesh units
+  Eigen::VectorXd distances;    ///< k: of the target from where the others put the source, diagonals
   Eigen::VectorXd compliances;  ///< k, > 0: how freely the source moves there without it; of any one unit
 };
 

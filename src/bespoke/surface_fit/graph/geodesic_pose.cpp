@@ -14,16 +14,15 @@ GeodesicPose::GeodesicPose(const GeodesicPoseInput& input, const PoseSettings& s
       settings_(settings),
       geodesics_(without_excluded(input.rest, input.patches).mesh, input.target, input.anchor_sources,
                  input.anchor_targets, settings.geodesics),
-      posterior_({input.tested, input.given_sigmas, vertex_areas(input.rest).sum(), input.diagonal},
-                 settings.outliers),
+      posterior_({input.tested, input.given_sigmas, vertex_areas(input.rest).sum()}, settings.outliers),
       sigmas_(input.sigmas) {
   tell_outliers();
-  for (const Eigen::Index k : posterior_.outliers()) sigmas_[k] = anywhere * input.diagonal;
+  for (const Eigen::Index k : posterior_.outliers()) sigmas_[k] = anywhere;
 }
 
 double GeodesicPose::turn_degrees() const {
-  const PosingByAnchors posing(
-      {input_.rest, input_.anchor_sources, input_.anchor_targets, sigmas_, input_.diagonal}, settings_);
+  const PosingByAnchors posing({input_.rest, input_.anchor_sources, input_.anchor_targets, sigmas_},
+                               settings_);
   return posing.rotation_spread() * 180 / std::numbers::pi;
 }
 
@@ -34,9 +33,8 @@ AnchorPose GeodesicPose::bent() const {
   sources << input_.anchor_sources, between.sources;
   targets << input_.anchor_targets, between.targets;
   Eigen::VectorXd sigmas(given + added);
-  sigmas << sigmas_, Eigen::VectorXd::Constant(added, settings_.pair_sigma * input_.diagonal);
-  AnchorPose pose =
-      PosingByAnchors({input_.rest, sources, targets, sigmas, input_.diagonal}, settings_).bent();
+  sigmas << sigmas_, Eigen::VectorXd::Constant(added, settings_.pair_sigma);
+  AnchorPose pose = PosingByAnchors({input_.rest, sources, targets, sigmas}, settings_).bent();
   pose.anchor_sources = pose.anchor_sources.leftCols(given).eval();
   return pose;
 }

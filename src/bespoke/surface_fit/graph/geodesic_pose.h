@@ -19,7 +19,6 @@ struct GeodesicPoseInput {
   const Eigen::VectorXd& sigmas;    ///< k, ≥ 0: accuracies that the pose takes the anchors for
   Eigen::VectorXd given_sigmas;     ///< k, ≥ 0: their own, by which outliers are told
   const std::vector<char>& tested;  ///< k: whether an anchor may be an outlier; empty: none may
-  double diagonal = 0;              ///< of `rest`
 };
 
 /// A source in a pose (PosingByAnchors), by its anchors and the pairs between them, without the outliers that

@@ -30,10 +30,10 @@ int total_iterations(const NodeFitSettings& settings) {
 }
 
 /// ℓ, mesh units: from the coarsest to the finest by equal factors.
-double smoothing_length(const NodeFitSettings& settings, int iteration, double diagonal) {
+double smoothing_length(const NodeFitSettings& settings, int iteration) {
   const double share = double(iteration) / (total_iterations(settings) - 1);
   return settings.coarsest_smoothing *
-         std::pow(settings.finest_smoothing / settings.coarsest_smoothing, share) * diagonal;
+         std::pow(settings.finest_smoothing / settings.coarsest_smoothing, share);
 }
 
 /// Points (3×k) on the rest surface, moved with it.
@@ -57,9 +57,8 @@ double median_distance(const std::vector<PlanePair>& planes, const Points& verti
 }
 
 /// Of the rest surface, without what is excluded.
-Eigen::VectorXd included_areas(const TargetSurface& rest, const NodeFitInput& input,
-                               const NodeFitSettings& settings) {
-  Eigen::VectorXd areas = informative_areas(rest, input.diagonal, settings.areas);
+Eigen::VectorXd included_areas(const TargetSurface& rest, const NodeFitSettings& settings) {
+  Eigen::VectorXd areas = informative_areas(rest, settings.areas);
   for (Eigen::Index i = 0; i < areas.size(); ++i)
     if (rest.is_excluded(i)) areas[i] = 0;
   return areas;
@@ -84,17 +83,16 @@ NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& setti
       settings_(settings_for(input, settings)),
       progress_(progress),
       rest_(input.rest, input.patches),
-      areas_(included_areas(rest_, input, settings)),
-      target_areas_(informative_areas(input.target, input.diagonal, settings.areas)),
+      areas_(included_areas(rest_, settings)),
+      target_areas_(informative_areas(input.target, settings.areas)),
       pose_certainty_(input.is_posed ? pose_certainty(input.rest.vertices, input.anchor_sources,
-                                                      settings.outside_residuals.reach * input.diagonal)
+                                                      settings.outside_residuals.reach)
                                      : Eigen::VectorXd()),
       anchors_(node_anchors(input, rest_)),
       boundaries_({rest_, input.anchor_sources, input.target, input.boundaries}, settings.boundaries),
-      surface_{input.rest, input.shape, rest_.areas().sum(), input.diagonal},
-      limits_(input.anchor_sigmas, surface_.area, input.diagonal, settings.anchors),
-      posterior_({input.anchor_tested, input.anchor_sigmas, surface_.area, input.diagonal},
-                 settings.outliers) {
+      surface_{input.rest, input.shape, rest_.areas().sum()},
+      limits_(input.anchor_sigmas, surface_.area, settings.anchors),
+      posterior_({input.anchor_tested, input.anchor_sigmas, surface_.area}, settings.outliers) {
   fit_.vertices = input.rest.vertices;
 }
 
@@ -126,7 +124,7 @@ void NodeFitting::find_unmatched_cavities() {
 NodeFit NodeFitting::fit_fine() {
   find_unmatched_cavities();
   const TargetSurface now = rest_.moved(fit_.vertices);
-  fit_.hidden = vertices_in_unmatched_cavities(now, input_.target, input_.diagonal, settings_.cavities);
+  fit_.hidden = vertices_in_unmatched_cavities(now, input_.target, settings_.cavities);
   fit_.unmatched = unmatched_cavities(fit_.unmatched_cavities.parts, now.mesh(), input_.target.mesh(),
                                       target_in_cavity_, settings_.unmatched_cavities);
   for (const Cavity& cavity : fit_.unmatched)
@@ -149,7 +147,7 @@ std::unique_ptr<NodeSystem> NodeFitting::system(const NodeLevel& level) const {
 }
 
 std::vector<PlanePair> NodeFitting::plane_pairs(const NodeLevel& level) const {
-  return find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_, input_.diagonal,
+  return find_plane_pairs({rest_.moved(fit_.vertices), input_.target, areas_, target_areas_,
                            input_.is_posed && level.outside_residuals ? &pose_certainty_ : nullptr},
                           level, settings_);
 }
@@ -160,7 +158,7 @@ NodeGoals NodeFitting::goals(const std::vector<PlanePair>& planes, const std::ve
   return {fit_.vertices,
           planes,
           cuts,
-          smoothing_length(settings_, fit_.iterations, input_.diagonal),
+          smoothing_length(settings_, fit_.iterations),
           settings_.anchor_growth * (iteration + 1),
           {},
           fit_.rigidity,

@@ -25,7 +25,6 @@ struct NodeFitInput {
   const Points& anchor_targets;  ///< 3×k
   /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
   const Eigen::VectorXd& anchor_weights;
-  double diagonal = 0;  ///< of the aligned source
   BoundaryRule boundaries = BoundaryRule::automatic;
   /// k, ≥ 0, mesh units: accuracies of anchors of infinite weight; empty is 0 for all.
   Eigen::VectorXd anchor_sigmas = {};

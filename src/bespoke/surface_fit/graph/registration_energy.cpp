@@ -81,8 +81,7 @@ RegistrationEnergy::RegistrationEnergy(const EnergyInput& input, const NodeGoals
   }
   for (const PlanePair& plane : goals.planes) distances.push_back(distance(plane, goals));
   if (!distances.empty())
-    outlier_scale_ = settings.outlier_medians * median(std::move(distances)) +
-                     settings.outlier_floor * input_.surface.diagonal;
+    outlier_scale_ = settings.outlier_medians * median(std::move(distances)) + settings.outlier_floor;
 }
 
 template <class Visitor>

@@ -37,8 +37,7 @@ struct NodeSurface {
   const TriangleMesh& rest;  ///< must outlive the energy
   /// 3×n, aligned like `rest`: the shape to keep, which is that of `rest` unless a pose has bent it.
   const Points& shape;
-  double area = 0;      ///< mesh units squared
-  double diagonal = 0;  ///< mesh units
+  double area = 0;
 };
 
 /// An anchor's foot as a combination of nodes.

@@ -83,9 +83,8 @@ Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale
 SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& target, const Similarity& start,
                              const SimilaritySettings& settings) {
   const Eigen::VectorXd areas = vertex_areas(source);
-  const double source_diagonal = diagonal(source.vertices);
-  const double tolerance = settings.tolerance * start.scale * source_diagonal;
-  const double within = settings.max_distance * start.scale * source_diagonal;
+  const double tolerance = settings.tolerance;
+  const double within = settings.max_distance;
   const MatchLimits limits{settings.min_cosine, within};
   SimilarityFit fit;
   fit.target_from_source = start;

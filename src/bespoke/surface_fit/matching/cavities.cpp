@@ -7,8 +7,8 @@
 namespace bespoke {
 
 std::vector<char> vertices_in_unmatched_cavities(const TargetSurface& source, const TargetSurface& target,
-                                                 double diagonal, const CavitySettings& settings) {
-  const MatchLimits limits{settings.min_cosine, settings.reach * diagonal};
+                                                 const CavitySettings& settings) {
+  const MatchLimits limits{settings.min_cosine, settings.reach};
   const VisibilityQuery source_visibility(source.mesh()), target_visibility(target.mesh());
   const auto faces = [&](const VisibilityQuery& visibility, const Vector3& x, const Vector3& normal) {
     return visibility.is_blocked(x, normal, FaceSides::front, limits.max_distance);

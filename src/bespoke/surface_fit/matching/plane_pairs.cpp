@@ -23,8 +23,8 @@ struct Search {
   double share() const { return from_source ? 1 : settings.back_share; }
   MatchLimits limits(Eigen::Index vertex) const {
     return {.min_cosine = settings.min_cosine,
-            .max_distance = settings.max_distance * surfaces.diagonal,
-            .normal_length = settings.normal_length * surfaces.diagonal,
+            .max_distance = settings.max_distance,
+            .normal_length = settings.normal_length,
             .patch = from().patch(vertex)};
   }
 };

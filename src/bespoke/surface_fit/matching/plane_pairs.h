@@ -28,7 +28,6 @@ struct PairSurfaces {
   /// n: what each vertex represents, mesh units squared; 0 leaves it out, as a counterpart too
   const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
-  double diagonal = 0;  ///< of the aligned source, mesh units
   /// n, of a source that anchors have bent (pose_certainty.h); null of another.
   const Eigen::VectorXd* pose_certainty = nullptr;
 };
