@@ -61,6 +61,7 @@ def by_value(name, group, **values):
 RULES = [
     by_value("weights by curvature", "pairs", AreaSettings__max_weight=0),
     by_value("one similarity may suffice", "similarity", SimilaritySettings__tolerance=0),
+    by_value("residuals may be noise", "similarity", SimilaritySettings__noise_correlation=-2),
     by_value("normals in the distance", "pairs", NodeFitSettings__normal_length=0),
     by_value("target-to-source pairs", "pairs", NodeFitSettings__back_share=0),
     by_value("reciprocity, nodes", "pairs", NodeLevel__reciprocity=0),
@@ -111,7 +112,7 @@ RULES = [
     by_value("pairs by distances along the surfaces", "pose", GeodesicSettings__min_anchors=1000000),
     by_value("outliers among anchors", "outliers", OutlierAnchorSettings__min_tested=1000000),
     Rule("fitted by all pairs where the result is suspect", "outliers", file="registration/detail/register_by_anchors.cpp",
-         old="if (!is_suspect(figures)) return best;", new="if (is_suspect(figures) || true) return best;"),
+         old="if (!is_suspect(figures)) return fit;", new="if (is_suspect(figures) || true) return fit;"),
     Rule("counterparts along the surfaces", "outliers", file="registration/detail/register_by_anchors.cpp",
          old="if (counterparts.sources.cols() == 0) return by_anchors;",
          new="if (counterparts.sources.cols() >= 0) return by_anchors;"),

@@ -79,6 +79,23 @@ TEST(FitSurfaceDeformationGraph, RecoversASimilarity) {
             1e-9 * diagonal(scene.source.vertices));
 }
 
+TEST(FitSurfaceDeformationGraph, TakesTheSimilarityOfANoisyCopyFromExactAnchors) {
+  const AffineMap truth{1.1 * Eigen::AngleAxisd(0.06, Vector3(1, 2, 2) / 3).toRotationMatrix(),
+                        Vector3(0.02, 0.01, -0.03)};
+  Scene scene{potato(4), shapes::moved(potato(4), truth)};
+  scene.target.vertices += 2e-3 * test::random_points(scene.target.vertices.cols(), 7);
+  const auto off = [&](Eigen::Index anchors) {
+    scene.anchor_sources = scene.source.vertices.leftCols(anchors);
+    scene.anchor_targets = truth * scene.anchor_sources;
+    scene.anchor_weights = Eigen::VectorXd::Constant(anchors, infinity);
+    const SurfaceFit fit = scene.fit();
+    EXPECT_TRUE(fit.summary.similarity_suffices);
+    return (fit.vertices - truth * scene.source.vertices).colwise().norm().maxCoeff();
+  };
+  EXPECT_LT(off(6), 1e-9);
+  EXPECT_LT(off(0), 2e-3);
+}
+
 TEST(FitSurfaceDeformationGraph, FollowsASmoothBendWithoutFlipsAndMeetsExactAnchors) {
   const Scene scene = bent_scene();
   const SurfaceFit fit = scene.fit();

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -80,33 +80,6 @@ Registration separated(Registration registration, const TriangleMesh& source, co
   return registration;
 }
 
-/// The models as the surface fitting takes them: along a seam a surface does not end.
-struct JoinedModels {
-  JoinedMesh source, target;
-};
-
-JoinedModels joined_models(const Problem& problem, const FitOptions& options) {
-  const auto join = options.surface_fit.repair_models ? joined_at_seams : left_open;
-  return {join(problem.source), join(problem.target)};
-}
-
-/// From the vertices of the joined source to those of the source.
-Registration parted_at_seams(Registration registration, const JoinedModels& joined) {
-  const JoinedMesh& source = joined.source;
-  registration.fitted_vertices = registration.fitted_vertices(Eigen::all, source.of_vertex).eval();
-  if (!registration.confidence.empty()) {
-    std::vector<double> confidence;
-    for (const int vertex : source.of_vertex)
-      confidence.push_back(registration.confidence[static_cast<std::size_t>(vertex)]);
-    registration.confidence = std::move(confidence);
-  }
-  registration.summary = renumbered(std::move(registration.summary), source.first);
-  registration.summary.seams = {source.joined(), joined.target.joined()};
-  return registration;
-}
-
-using Registering = std::function<Registration(const Problem&)>;
-
 /// Triangles of the least spacing that the finest layers of the surface fit resolve. Thin models take more.
 double enough_faces(const TriangleMesh& source) {
   constexpr double spacing = 0.004;  // of the diagonal: the last λ is 0.47 % (DetailSettings)
@@ -136,43 +109,55 @@ std::vector<ReleasedVertex> released_followers(const DecimatedSource& source, Po
   return result;
 }
 
-/// A dense source is registered by some of its vertices, which the others follow.
-Registration register_decimated(const Problem& problem, const Registering& registering,
-                                const Progress& progress) {
-  progress.step("decimate", 0, 0);
-  const DecimatedSource source(problem.source, static_cast<std::size_t>(enough_faces(problem.source)));
-  Registration registration = registering({source.mesh(), problem.target, problem.anchors});
-  std::vector<ReleasedVertex> released;
-  if (const std::optional<ContactSummary>& contact = registration.summary.contact)
-    released = released_followers(source, registration.fitted_vertices, contact->released);
-  registration.fitted_vertices = source.followed(registration.fitted_vertices);
-  if (!registration.confidence.empty())
-    registration.confidence = source.interpolated(registration.confidence);
-  registration.summary = renumbered(std::move(registration.summary), source.vertices());
-  if (registration.summary.contact) registration.summary.contact->released = std::move(released);
-  registration.summary.leading_vertices = source.vertices().size();
-  return registration;
-}
+/// The models as they are registered: joined at their seams, along which no surface ends, and a dense source
+/// by some of its vertices, which the others follow.
+class PreparedModels {
+ public:
+  PreparedModels(const Problem& problem, const FitOptions& options, const Progress& progress)
+      : anchors_(problem.anchors) {
+    const auto join = options.surface_fit.repair_models ? joined_at_seams : left_open;
+    source_ = join(problem.source);
+    target_ = join(problem.target);
+    if (!is_dense(this->problem(), options.surface_fit)) return;
+    progress.step("decimate", 0, 0);
+    decimated_.emplace(source_.mesh, static_cast<std::size_t>(enough_faces(source_.mesh)));
+  }
 
-/// The models are joined at their seams for it, and parted again.
-Registration register_joined(const Problem& problem, const FitOptions& options,
-                             const Registering& registering, const Progress& progress) {
-  const JoinedModels joined = joined_models(problem, options);
-  const Problem of_joined{joined.source.mesh, joined.target.mesh, problem.anchors};
-  return parted_at_seams(is_dense(of_joined, options.surface_fit)
-                             ? register_decimated(of_joined, registering, progress)
-                             : registering(of_joined),
-                         joined);
-}
+  Problem problem() const { return {decimated_ ? decimated_->mesh() : source_.mesh, target_.mesh, anchors_}; }
 
-/// The source registered to the target, its parts separated.
-Registration register_and_separate(const Problem& problem, const FitOptions& options,
-                                   const Progress& progress) {
-  const auto registering = [&](const Problem& joined) {
-    return separated(register_source(joined, options, progress), joined.source, options, progress);
-  };
-  return register_joined(problem, options, registering, progress);
-}
+  /// Of all vertices of the source.
+  Registration restored(Registration registration) const {
+    if (decimated_) registration = with_followers(std::move(registration), *decimated_);
+    registration.fitted_vertices = registration.fitted_vertices(Eigen::all, source_.of_vertex).eval();
+    if (!registration.confidence.empty()) {
+      std::vector<double> confidence;
+      for (const int vertex : source_.of_vertex)
+        confidence.push_back(registration.confidence[static_cast<std::size_t>(vertex)]);
+      registration.confidence = std::move(confidence);
+    }
+    registration.summary = renumbered(std::move(registration.summary), source_.first);
+    registration.summary.seams = {source_.joined(), target_.joined()};
+    return registration;
+  }
+
+ private:
+  static Registration with_followers(Registration registration, const DecimatedSource& source) {
+    std::vector<ReleasedVertex> released;
+    if (const std::optional<ContactSummary>& contact = registration.summary.contact)
+      released = released_followers(source, registration.fitted_vertices, contact->released);
+    registration.fitted_vertices = source.followed(registration.fitted_vertices);
+    if (!registration.confidence.empty())
+      registration.confidence = source.interpolated(registration.confidence);
+    registration.summary = renumbered(std::move(registration.summary), source.vertices());
+    if (registration.summary.contact) registration.summary.contact->released = std::move(released);
+    registration.summary.leading_vertices = source.vertices().size();
+    return registration;
+  }
+
+  const Anchors& anchors_;
+  JoinedMesh source_, target_;
+  std::optional<DecimatedSource> decimated_;
+};
 
 /// Empty where all of the source is registered. Patches may name any of its parts.
 std::optional<RegisteredParts> separable_parts(const Problem& problem, const FitOptions& options) {
@@ -183,20 +168,6 @@ std::optional<RegisteredParts> separable_parts(const Problem& problem, const Fit
   RegisteredParts parts = parts_to_register(problem.source, problem.target, problem.anchors);
   if (parts.is_whole()) return std::nullopt;
   return parts;
-}
-
-/// The parts that have a counterpart, and those that turn out to have one.
-Registration register_parts(RegisteredParts parts, const Problem& problem, const FitOptions& options,
-                            const Progress& progress) {
-  for (;;) {
-    const auto part = std::make_shared<const PartialMesh>(parts.mesh(problem.source));
-    Registration registration =
-        register_and_separate({part->mesh, problem.target, problem.anchors}, options, progress);
-    registration.part = part;
-    if (keep_uncovered(parts, problem.source, problem.target, registered_vertices(registration))) continue;
-    if (!parts.is_whole()) registration.summary.parts = {parts.components.count(), loose_parts(parts)};
-    return registration;
-  }
 }
 
 void require_fitted(const Problem& problem, const FitOptions& options) {
@@ -263,15 +234,28 @@ void require_same_connectivity(const TriangleMesh& source, const TriangleMesh& f
 Registration register_models(const Problem& problem, const FitOptions& options, const Progress& progress) {
   if (problem.fitted) return align_fitted(problem, options, progress);
   require_models(problem, options);
-  if (std::optional<RegisteredParts> parts = separable_parts(problem, options))
-    return register_parts(std::move(*parts), problem, options, progress);
-  return register_and_separate(problem, options, progress);
+  std::optional<RegisteredParts> parts = separable_parts(problem, options);
+  for (;;) {
+    std::shared_ptr<const PartialMesh> part;
+    if (parts) part = std::make_shared<const PartialMesh>(parts->mesh(problem.source));
+    const PreparedModels models({part ? part->mesh : problem.source, problem.target, problem.anchors},
+                                options, progress);
+    const Problem prepared = models.problem();
+    Registration registration = models.restored(
+        separated(register_source(prepared, options, progress), prepared.source, options, progress));
+    if (!parts) return registration;
+    registration.part = part;
+    // Parts that turn out to have a counterpart come along.
+    if (keep_uncovered(*parts, problem.source, problem.target, registered_vertices(registration))) continue;
+    if (!parts->is_whole()) registration.summary.parts = {parts->components.count(), loose_parts(*parts)};
+    return registration;
+  }
 }
 
 Registration fit_source_surface(const Problem& problem, const FitOptions& options, const Progress& progress) {
   require_models(problem, options);
-  const auto registering = [&](const Problem& joined) { return register_source(joined, options, progress); };
-  return register_joined(problem, options, registering, progress);
+  const PreparedModels models(problem, options, progress);
+  return models.restored(register_source(models.problem(), options, progress));
 }
 
 }  // namespace bespoke

@@ -44,52 +44,24 @@ class ContactSearch {
         source_vertex_normals_(vertex_normals(source)),
         source_face_normals_(face_normals(source)) {}
 
-  /// In the order of the vertices. After the first time only vertices within reach of a face that has moved
-  /// since are looked at: others have the contacts that they had.
+  /// In the order of the vertices.
   std::vector<Contact> operator()(const TriangleMesh& fitted) {
-    const std::vector<char> stale = near_moved_faces(fitted);
     tree_.emplace(tree_ ? tree_->moved(fitted) : ClosestPointTree(fitted));
     const ClosestPointTree& tree = *tree_;
     const Points facing = face_normals(fitted), normals = vertex_normals(fitted, facing);
-    found_.resize(stale.size());
-    parallel_for(found_.size(), vertices_per_task, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::optional<Contact>> found(static_cast<std::size_t>(fitted.vertices.cols()));
+    constexpr std::size_t grain = 256;
+    parallel_for(found.size(), grain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        if (stale[i]) found_[i] = contact_of(static_cast<int>(i), fitted, tree, normals, facing);
+        found[i] = contact_of(static_cast<int>(i), fitted, tree, normals, facing);
     });
-    last_ = fitted.vertices;
     std::vector<Contact> contacts;
-    for (const std::optional<Contact>& contact : found_)
+    for (const std::optional<Contact>& contact : found)
       if (contact) contacts.push_back(*contact);
     return contacts;
   }
 
  private:
-  static constexpr std::size_t vertices_per_task = 256;
-
-  /// Per vertex whether a face that has moved since the last search was or is within reach; all at first.
-  std::vector<char> near_moved_faces(const TriangleMesh& fitted) const {
-    const auto vertices = static_cast<std::size_t>(fitted.vertices.cols());
-    if (!tree_) return std::vector<char>(vertices, 1);
-    std::vector<Eigen::Index> moved;
-    for (Eigen::Index f = 0; f < fitted.faces.cols(); ++f) {
-      const auto corners = fitted.faces.col(f);
-      if (fitted.vertices(Eigen::all, corners) != last_(Eigen::all, corners)) moved.push_back(f);
-    }
-    std::vector<char> near(vertices, 0);
-    if (moved.empty()) return near;
-    const Faces faces = fitted.faces(Eigen::all, moved);
-    for (const Points* at : {&last_, &fitted.vertices}) {
-      const ClosestPointTree tree(TriangleMesh{*at, faces});
-      parallel_for(vertices, vertices_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-          if (!near[i] &&
-              tree.closest(at->col(static_cast<Eigen::Index>(i)), {.max_distance = options_.reach}))
-            near[i] = 1;
-      });
-    }
-    return near;
-  }
-
   std::optional<Contact> contact_of(int vertex, const TriangleMesh& fitted, const ClosestPointTree& tree,
                                     const Points& normals, const Points& facing) const {
     const Vector3 x = fitted.vertices.col(vertex), normal = normals.col(vertex);
@@ -131,10 +103,7 @@ class ContactSearch {
   const ContactOptions& options_;
   double fitted_size_;
   Points source_vertex_normals_, source_face_normals_;
-  // Of the last search.
-  std::optional<ClosestPointTree> tree_;
-  Points last_;
-  std::vector<std::optional<Contact>> found_;
+  std::optional<ClosestPointTree> tree_;  ///< of the last fitted surface
 };
 
 /// Displacements that separate the vertices in contact and fade along the edges around (screened Laplacian):

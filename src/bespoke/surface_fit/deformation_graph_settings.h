@@ -15,6 +15,9 @@ struct SimilaritySettings {
   /// Diagonals: a similarity with smaller plane residuals explains the target. Above the noise of remeshing.
   double tolerance = 5e-4;
   double anchor_tolerance = 2;  ///< tolerances: the largest residual of an exact anchor
+  /// Largest correlation of residuals with the mean of some ten around them that is noise of the surfaces: of
+  /// white noise it is 0, of relief that the vertices resolve about 1.
+  double noise_correlation = 0.3;
   /// Of the residuals, by area, that must be within the tolerance: holes and debris do not decide.
   double quantile = 0.9;
   int max_iterations = 12;       ///< Gauss-Newton steps

@@ -130,30 +130,22 @@ RegistrationByAnchors with_counterparts(const RegistrationTask& task, Registrati
   return result;
 }
 
-/// As if the outliers that it finds had not been given: anew without them, until it finds no more.
-RegistrationByAnchors register_without_outliers(const RegistrationTask& task,
-                                                const EstimatedAnchors& estimated, const Progress& progress) {
+/// As if the outliers that a fit by all found had not been given: anew until it finds no more. Where that
+/// leaves a suspect result, right pairs may have looked like outliers: then the source is also fitted by all
+/// pairs, and the fit that explains the target better is kept.
+RegistrationByAnchors refitted_without_outliers(const RegistrationTask& task, const EstimatedAnchors& all,
+                                                RegistrationByAnchors fit, const Progress& progress) {
   constexpr int max_rounds = 3;
-  RegistrationByAnchors fit = register_by_pairs(task, estimated, {}, OutlierTest::fit, progress);
-  for (int round = 0; round < max_rounds; ++round) {
-    if (fit.registration.summary.surface->outlier_anchors.empty()) break;
+  for (int round = 0; round < max_rounds && !fit.registration.summary.surface->outlier_anchors.empty();
+       ++round)
     fit = register_by_pairs(task, fit.estimated, {}, OutlierTest::fit, progress);
-  }
-  return fit;
-}
-
-/// Without outliers. Where that leaves a suspect result, right pairs may have looked like outliers: then the
-/// source is also fitted by all pairs, and the fit that explains the target better is kept.
-RegistrationByAnchors register_by_inliers(const RegistrationTask& task, const EstimatedAnchors& estimated,
-                                          const Progress& progress) {
-  RegistrationByAnchors best = register_without_outliers(task, estimated, progress);
-  if (best.estimated.kept.size() == estimated.kept.size()) return best;
+  if (fit.estimated.kept.size() == all.kept.size()) return fit;
   const PlacementScore placement(task.problem.source, task.problem.target);
-  const PlacementFigures figures = placement(registered_vertices(best.registration));
-  if (!is_suspect(figures)) return best;
-  RegistrationByAnchors by_all = register_by_pairs(task, estimated, {}, OutlierTest::none, progress);
+  const PlacementFigures figures = placement(registered_vertices(fit.registration));
+  if (!is_suspect(figures)) return fit;
+  RegistrationByAnchors by_all = register_by_pairs(task, all, {}, OutlierTest::none, progress);
   const bool is_better = placement(registered_vertices(by_all.registration)).misfit() < figures.misfit();
-  return is_better ? std::move(by_all) : std::move(best);
+  return is_better ? std::move(by_all) : std::move(fit);
 }
 
 /// Fitted again where exact pairs that the fit kept contradict each other: by what they differ they need not
@@ -213,13 +205,13 @@ Registration register_by_anchors(const RegistrationTask& task, const Anchors& an
                                  const Progress& progress) {
   const Anchors& given = task.problem.anchors;
   EstimatedAnchors estimated = estimate_anchor_sigmas(anchors, task.problem.source, task.problem.target);
-  RegistrationByAnchors best;
-  if (task.options.method == SurfaceFitMethod::deformation_graph) {
-    best = register_by_inliers(task, estimated, progress);
+  const bool is_printed = task.options.method != SurfaceFitMethod::deformation_graph;  // takes all pairs
+  RegistrationByAnchors best =
+      register_by_pairs(task, estimated, {}, is_printed ? OutlierTest::none : OutlierTest::fit, progress);
+  if (!is_printed) {
+    best = refitted_without_outliers(task, estimated, std::move(best), progress);
     best = with_shared_contradictions(task, std::move(best), progress);
     best = with_counterparts(task, std::move(best), progress);
-  } else {  // the printed method takes all pairs
-    best = register_by_pairs(task, estimated, {}, OutlierTest::none, progress);
   }
   Registration result = best.registration;
   CoarseSummary& coarse = *result.summary.coarse;

@@ -138,15 +138,33 @@ Similarity similarity_of_warp(const SurfaceFitInput& input) {
                          Eigen::VectorXd::Ones(input.source.vertices.cols()));
 }
 
-/// The similarity nearest to the warp, refined on the surfaces where that explains the target.
+/// Of a surface that one similarity brings to the target: that of the exact anchors where they tell it more
+/// accurately than the surfaces do, and agree with these.
+Similarity more_accurate(const SimilarityFit& by_surfaces, const Points& surface, const Points& sources,
+                         const Points& targets, double tolerance) {
+  constexpr Eigen::Index min_anchors = 4;
+  const auto count = static_cast<double>(sources.cols());
+  if (sources.cols() < min_anchors) return by_surfaces.target_from_source;
+  const Similarity by_anchors = align_similarly(sources, targets, Eigen::VectorXd::Ones(sources.cols()));
+  const double standard_error = (by_anchors * sources - targets).norm() / count;
+  // Anchors near a line leave a rotation open.
+  const bool agree =
+      largest_distance(by_anchors * surface, by_surfaces.target_from_source * surface) <= tolerance;
+  return agree && standard_error < by_surfaces.standard_error ? by_anchors : by_surfaces.target_from_source;
+}
+
+/// The similarity nearest to the warp, refined on the surfaces or by exact anchors where one explains the
+/// target.
 Alignment align(const SurfaceFitInput& input, const TriangleMesh& surface, const TargetSurface& target,
                 const SurfaceAnchors& anchors, const SimilaritySettings& settings) {
   const Similarity of_warp = similarity_of_warp(input);
   const SimilarityFit refined = fit_similarity(surface, target, of_warp, settings);
-  const double anchors_off =
-      largest_distance(refined.target_from_source * anchors.exact_sources(), anchors.exact_targets());
-  const bool suffices = refined.suffices && anchors_off <= settings.anchor_tolerance * settings.tolerance;
-  return {suffices ? refined.target_from_source : of_warp, suffices};
+  const double tolerance = settings.anchor_tolerance * std::max(settings.tolerance, refined.residual);
+  const Points sources = anchors.exact_sources(), targets = anchors.exact_targets();
+  const bool suffices =
+      refined.suffices && largest_distance(refined.target_from_source * sources, targets) <= tolerance;
+  return {suffices ? more_accurate(refined, surface.vertices, sources, targets, tolerance) : of_warp,
+          suffices};
 }
 
 /// What is deformed, all aligned with the target.

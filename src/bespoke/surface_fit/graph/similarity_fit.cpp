@@ -3,10 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "bespoke/error.h"
 #include "bespoke/parallel.h"
+#include "bespoke/rbf/point_grid.h"
 
 namespace bespoke {
 namespace {
@@ -48,6 +50,40 @@ double quantile(const std::vector<PlaneResidual>& residuals, double fraction) {
   return *nth;
 }
 
+/// Of each residual with the mean of some ten around it that face the same way; those far beyond the others
+/// count as less. area: of the surface.
+double neighbour_correlation(const std::vector<PlaneResidual>& residuals, double area, double min_cosine) {
+  constexpr double neighbours = 10, most = 4;  // the latter in medians
+  const double radius =
+      std::sqrt(neighbours * area / (std::numbers::pi * static_cast<double>(residuals.size())));
+  const double limit = most * quantile(residuals, middle);
+  Points points(3, residuals.size());
+  std::vector<double> clipped(residuals.size()), means(residuals.size(), 0.0);
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    points.col(static_cast<Eigen::Index>(k)) = residuals[k].point;
+    clipped[k] = std::clamp(residuals[k].distance, -limit, limit);
+  }
+  const PointGrid grid(points, radius);
+  parallel_for(residuals.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double sum = 0, count = 0;
+      grid.for_each_within(residuals[k].point, radius, [&](int other, double) {
+        const auto at = static_cast<std::size_t>(other);
+        if (at == k || !(residuals[at].normal.dot(residuals[k].normal) > min_cosine)) return;
+        sum += clipped[at];
+        ++count;
+      });
+      if (count > 0) means[k] = sum / count;
+    }
+  });
+  double product = 0, square = 0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    product += clipped[k] * means[k];
+    square += clipped[k] * clipped[k];
+  }
+  return square > 0 ? product / square : 0;
+}
+
 /// One Gauss-Newton step on rotation, translation and scale about the centroid, iteratively reweighted
 /// (Holland, Welsch 1977).
 Similarity step(const std::vector<PlaneResidual>& residuals, double robust_scale) {
@@ -86,12 +122,13 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
   const double tolerance = settings.tolerance;
   const double within = settings.max_distance;
   const MatchLimits limits{settings.min_cosine, within};
+  std::vector<PlaneResidual> residuals;
   SimilarityFit fit;
   fit.target_from_source = start;
   TriangleMesh moved = source;
   for (int iteration = 0;; ++iteration) {
     moved.vertices = fit.target_from_source * source.vertices;
-    const auto residuals = plane_residuals(moved, areas, target, limits, settings.max_samples);
+    residuals = plane_residuals(moved, areas, target, limits, settings.max_samples);
     if (residuals.empty()) return {start, within, false};
     fit.residual = quantile(residuals, settings.quantile);
     // Most pairs are no similar copies; they must not pay for all iterations.
@@ -102,7 +139,15 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
         settings.outlier_medians * quantile(residuals, middle) + settings.outlier_floor * within;
     fit.target_from_source = step(residuals, robust_scale) * fit.target_from_source;
   }
+  constexpr double deviation_of_median = 1.4826;  // of a normal distribution
+  fit.standard_error =
+      deviation_of_median * quantile(residuals, middle) / std::sqrt(static_cast<double>(residuals.size()));
   fit.suffices = fit.residual <= tolerance;
+  if (!fit.suffices && fit.residual <= settings.early_exit_factor * tolerance) {
+    const auto of_all = plane_residuals(moved, areas, target, limits, static_cast<std::size_t>(areas.size()));
+    fit.suffices =
+        neighbour_correlation(of_all, areas.sum(), settings.min_cosine) <= settings.noise_correlation;
+  }
   return fit;
 }
 
