@@ -21,8 +21,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 import public_pairs
@@ -212,10 +210,15 @@ def diagonal(mesh):
     return np.linalg.norm(mesh[0].max(0) - mesh[0].min(0))
 
 
+def size_scale(case):
+    """The program's: in powers of two, from a twelfth before each on."""
+    ratio = np.log2(diagonal(case["target"]) / diagonal(case["source"]))
+    return 2.0**np.trunc(ratio + np.copysign(0.125, ratio))
+
+
 def changes(case, garment, carried):
-    """p95 of the change of clearance, per cent of the target's diagonal; lengths by the program's power of two."""
-    before = clearance(garment[0], case["source"])
-    scale = 2.0**round(np.log2(diagonal(case["target"]) / diagonal(case["source"])))
+    """p95 of the change of clearance, per cent of the target's diagonal."""
+    before, scale = clearance(garment[0], case["source"]), size_scale(case)
     near = np.abs(before) < 0.02 * diagonal(case["source"])
     if not near.any():
         return None
@@ -224,29 +227,27 @@ def changes(case, garment, carried):
 
 
 SAMPLES = [(i / 6, j / 6) for i in range(7) for j in range(7 - i)]  # shares of two corners: 28 places a face, its edges with them
-TOLERANCE = 1e-4  # of the diagonal: by which the program lets a place miss what is required
+MARGIN = 5e-4  # of the diagonal: distances that the program looks up are as accurate
+TOLERANCE = 1e-4  # of the diagonal: smaller moves count as none
 
 
 def bystanders(case, garment, plain, dressed):
-    """Of vertices of no face that the map brought too near: how far one was moved, in per cent of the target's diagonal,
-    and how far along edges the farthest one that moved is from a face that was, in mean lengths of edges."""
+    """Of vertices of no face that the map brought too near, or nearly: how far one was moved, in per cent of the target's diagonal,
+    and how far the farthest one that moved is from a vertex of a face that it did, in mean lengths of edges."""
     faces = garment[1]
-    scale = 2.0**round(np.log2(diagonal(case["target"]) / diagonal(case["source"])))
+    scale = size_scale(case)
     too_near = np.zeros(len(garment[0]), bool)
     for i, j in SAMPLES:
         shares = np.array([i, j, 1 - i - j])
         places = [np.einsum("fkc,k->fc", points[faces], shares) for points in (garment[0], plain)]
         missing = scale * clearance(places[0], case["source"]) - clearance(places[1], case["target"])
-        too_near[faces[missing > TOLERANCE * diagonal(case["target"])].ravel()] = True
+        too_near[faces[missing > -MARGIN * diagonal(case["target"])].ravel()] = True
     moved = np.linalg.norm(dressed - plain, axis=1) / diagonal(case["target"])
     edges = np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    lengths = np.linalg.norm(plain[edges[:, 0]] - plain[edges[:, 1]], axis=1)
-    graph = coo_matrix((np.maximum(lengths, 1e-12), edges.T), [len(plain)] * 2)
-    away = (dijkstra(graph, directed=False, indices=np.flatnonzero(too_near), min_only=True) if too_near.any() else
-            np.full(len(plain), np.inf))
+    edge = np.linalg.norm(plain[edges[:, 0]] - plain[edges[:, 1]], axis=1).mean()
     others = ~too_near & (moved > TOLERANCE)
-    return (round(float(100 * moved[~too_near].max(initial=0)), 3),
-            round(float(away[others].max(initial=0) / lengths.mean()), 1))
+    away = cKDTree(plain[too_near]).query(plain[others])[0] if too_near.any() and others.any() else np.zeros(1)
+    return round(float(100 * moved[~too_near].max(initial=0)), 3), round(float(away.max() / edge), 1)
 
 
 def farther_out(case, garment):
