@@ -110,7 +110,7 @@ TEST_F(BadAnchors, ThatDoNotFixTheMap) {
   expect_refusal(fit_with("a.json", json_of({o, x, y}, sigma)), 2,
                  "the coarse warp needs 4 anchor pairs; there are 3");
   expect_refusal(fit_with("a.json", json_of({o, x, y, z, x}, sigma)), 2,
-                 "anchor pairs 1 and 4 have the same place on the source; remove one");
+                 "pair 2 and pair 5 have the same place on the source; remove one");
   EXPECT_FALSE(pair_.has("map.vdb"));
 }
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bespoke/anchors/anchor_placement.h"
 #include "bespoke/anchors/anchor_scale.h"
@@ -54,9 +57,26 @@ void require_one_unit(const Problem& problem, const FitOptions& options) {
   require_one_unit(off * ratio, "their anchors, if these lay on both");
 }
 
+/// Two anchors at one place of the source say the same, or contradict each other.
+void require_distinct(const Anchors& anchors) {
+  std::vector<std::size_t> order(anchors.pairs.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto place = [&](std::size_t k) {
+    const Vector3& a = anchors.pairs[k].a;
+    return std::tuple(a.x(), a.y(), a.z(), k);
+  };
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return place(i) < place(j); });
+  if (order.empty() || anchors.pairs[order.front()].a == anchors.pairs[order.back()].a) return;  // told later
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (anchors.pairs[order[k]].a == anchors.pairs[order[k - 1]].a)
+      throw InvalidInput(label(anchors, order[k - 1]) + " and " + label(anchors, order[k]) +
+                         " have the same place on the source; remove one");
+}
+
 void require_models(const Problem& problem, const FitOptions& options) {
   const Anchors& anchors = problem.anchors;
   require_usable(problem.source, anchors, options);
+  require_distinct(anchors);
   require_valid(problem.target, "target");
   if (const std::string mistake = exchanged_sides(anchors, problem.source, problem.target); !mistake.empty())
     throw InvalidInput(mistake);

@@ -8,8 +8,8 @@ namespace bespoke {
 
 /// A surface whose exact anchors have been met as far as that does not stretch it too much.
 struct AnchorMeeting {
-  Points vertices;                ///< 3×n, mesh units
-  Eigen::VectorXd anchor_sigmas;  ///< k, mesh units: 0 for anchors that are met, else how far they gave way
+  Points vertices;                ///< 3×n, diagonals
+  Eigen::VectorXd anchor_sigmas;  ///< k, diagonals: 0 for anchors that are met, else how far they gave way
 };
 
 /// meet_anchors, but where it stretches or squeezes a face against `coarse` (3×n) beyond the factor

@@ -65,7 +65,7 @@ struct DetailStep {
   const TargetSurface& moved;
   const Points& anchors;         // 3×k, where they are now
   const Eigen::VectorXd& areas;  // of the vertices
-  double lambda;                 // mesh units
+  double lambda;                 // diagonals
 };
 
 std::vector<Residual> residuals(const DetailStep& step) {

@@ -8,7 +8,7 @@
 
 namespace bespoke {
 
-/// What the layers move. Lengths in mesh units.
+/// What the layers move. Lengths in diagonals.
 struct DetailInput {
   const TriangleMesh& surface;  ///< the source as fitted so far
   const TargetSurface& target;
@@ -22,7 +22,7 @@ struct DetailFit {
   Points vertices;        ///< 3×n
   Points anchor_sources;  ///< 3×k
   int layers = 0;
-  double last_step = 0;  ///< root mean square of the last layer's displacements, mesh units
+  double last_step = 0;  ///< root mean square of the last layer's displacements, diagonals
 };
 
 /// Small deformations of space, coarse to fine, from a few per cent of the diagonal down to the spacing of

@@ -10,7 +10,7 @@ namespace bespoke {
 
 /// Places of the source and the vertices of the target that lie alike among the anchors.
 struct GeodesicPairs {
-  Points sources;  ///< 3×m, vertices of the source, mesh units
+  Points sources;  ///< 3×m, vertices of the source, diagonals
   Points targets;  ///< 3×m, on the target
 };
 

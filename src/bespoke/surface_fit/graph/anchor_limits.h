@@ -7,7 +7,7 @@
 
 namespace bespoke {
 
-/// What the nodes' fit knows of its accuracy before a solve, mesh units.
+/// What the nodes' fit knows of its accuracy before a solve, diagonals.
 struct FitState {
   const Eigen::VectorXd& anchor_residuals;  ///< k: of the anchors from their targets now
   double pair_distance = 0;                 ///< median of the surface's pairs; 0: none were found

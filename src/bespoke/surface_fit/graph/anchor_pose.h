@@ -9,7 +9,7 @@ namespace bespoke {
 
 /// A surface bent by its anchors alone.
 struct AnchorPose {
-  Points vertices;        ///< 3×n, mesh units
+  Points vertices;        ///< 3×n, diagonals
   Points anchor_sources;  ///< 3×k, carried along
 };
 
@@ -17,7 +17,7 @@ struct AnchorPoseInput {
   const TriangleMesh& rest;       ///< aligned with the targets by one similarity
   const Points& anchor_sources;   ///< 3×k, aligned like `rest`; need not lie on it
   const Points& anchor_targets;   ///< 3×k
-  const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, mesh units
+  const Eigen::VectorXd& sigmas;  ///< k, accuracies of the anchors, ≥ 0, diagonals
 };
 
 /// As-similar-as-possible modelling (Sorkine, Alexa 2007; Igarashi 2005): takes the anchors to their targets

@@ -9,7 +9,7 @@
 
 namespace bespoke {
 
-/// What a source is posed by. Lengths in mesh units.
+/// What a source is posed by. Lengths in diagonals.
 struct GeodesicPoseInput {
   const TriangleMesh& rest;         ///< aligned with the target by one similarity
   const FacePatches& patches;       ///< of its faces: excluded ones have no places

@@ -29,7 +29,7 @@ int total_iterations(const NodeFitSettings& settings) {
   return total;
 }
 
-/// ℓ, mesh units: from the coarsest to the finest by equal factors.
+/// ℓ, diagonals: from the coarsest to the finest by equal factors.
 double smoothing_length(const NodeFitSettings& settings, int iteration) {
   const double share = double(iteration) / (total_iterations(settings) - 1);
   return settings.coarsest_smoothing *

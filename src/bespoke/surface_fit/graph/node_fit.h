@@ -16,7 +16,7 @@
 
 namespace bespoke {
 
-/// What the deformation of a surface by nodes works on. Lengths in mesh units.
+/// What the deformation of a surface by nodes works on. Lengths in diagonals.
 struct NodeFitInput {
   const TriangleMesh& rest;  ///< the source, aligned with the target, and perhaps bent by its anchors
   const Points& shape;       ///< 3×n: the same before it was bent, whose shape is kept
@@ -26,7 +26,7 @@ struct NodeFitInput {
   /// k: infinite, or the percentage of the surface's area that a soft anchor counts like.
   const Eigen::VectorXd& anchor_weights;
   BoundaryRule boundaries = BoundaryRule::automatic;
-  /// k, ≥ 0, mesh units: accuracies of anchors of infinite weight; empty is 0 for all.
+  /// k, ≥ 0, diagonals: accuracies of anchors of infinite weight; empty is 0 for all.
   Eigen::VectorXd anchor_sigmas = {};
   /// Of the faces of `rest`; those of the target it knows itself. Excluded ones have no pairs.
   FacePatches patches = {};

@@ -14,11 +14,11 @@ namespace bespoke {
 /// An anchor as the nodes see it.
 struct NodeAnchor {
   SurfacePoint foot;     ///< the nearest point of the rest surface, which the anchor moves
-  Vector3 displacement;  ///< from the anchor to its target, mesh units
+  Vector3 displacement;  ///< from the anchor to its target, diagonals
   double weight = 0;     ///< infinite, or the percentage of the surface's area that a soft anchor counts like
 };
 
-/// What the nodes are to be solved for. Lengths in mesh units.
+/// What the nodes are to be solved for. Lengths in diagonals.
 struct NodeGoals {
   const Points& vertices;  ///< 3×n, where the pairs were found
   const std::vector<PlanePair>& planes;
@@ -120,7 +120,7 @@ class RegistrationEnergy {
   const EnergyInput input_;
   const NodeGoals& goals_;
   double smoothing_;                           // ℓ, spacings
-  double outlier_scale_ = 0;                   // mesh units
+  double outlier_scale_ = 0;                   // diagonals
   std::vector<BendingStencil> stencils_;       // of each node
   std::vector<double> bending_weights_;        // of each node
   std::vector<LocalSimilarity> similarities_;  // of each node: c and R

@@ -9,9 +9,9 @@ namespace bespoke {
 struct SimilarityFit {
   Similarity target_from_source;
   double residual =
-      0;  ///< a high quantile (settings) of the distances to the target's tangent planes, mesh units
+      0;  ///< a high quantile (settings) of the distances to the target's tangent planes, diagonals
   bool suffices = false;
-  /// About that of its translation: the residuals' deviation over the root of their number, mesh units.
+  /// About that of its translation: the residuals' deviation over the root of their number, diagonals.
   double standard_error = 0;
 };
 

@@ -5,7 +5,7 @@
 
 namespace bespoke {
 
-/// n, mesh units squared: how much of the surface each vertex represents in a fit of planes. A plane says
+/// n, diagonals squared: how much of the surface each vertex represents in a fit of planes. A plane says
 /// nothing about places along it, so bent places, which few vertices share, count more: the area around the
 /// vertex times 1 + min(most, (ℓκ)²), with κ the root mean square over its edges of the turn of the normal a
 /// length and ℓ a length, both of the settings. Scaled to the sum of the areas.

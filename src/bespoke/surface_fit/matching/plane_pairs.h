@@ -11,9 +11,9 @@ namespace bespoke {
 /// A vertex of the source should lie in a plane.
 struct PlanePair {
   int vertex = 0;
-  Vector3 point;      ///< of the plane, mesh units
+  Vector3 point;      ///< of the plane, diagonals
   Vector3 normal;     ///< unit, halfway between both surfaces' (symmetric point to plane)
-  double weight = 0;  ///< mesh units squared: the area that the pair represents, times the squared agreement
+  double weight = 0;  ///< diagonals squared: the area that the pair represents, times the squared agreement
                       ///< of the normals, times its direction's share
   /// 0 to 1: how much it counts also from far off. The pair's reciprocity (reciprocity.h), times how sharply
   /// the searching surface is creased there (crease.h) or, where the source lies outside the target, how
@@ -25,7 +25,7 @@ struct PlanePair {
 struct PairSurfaces {
   const TargetSurface& source;  ///< where the source is now
   const TargetSurface& target;
-  /// n: what each vertex represents, mesh units squared; 0 leaves it out, as a counterpart too
+  /// n: what each vertex represents, diagonals squared; 0 leaves it out, as a counterpart too
   const Eigen::VectorXd& source_areas;
   const Eigen::VectorXd& target_areas;
   /// n, of a source that anchors have bent (pose_certainty.h); null of another.
