@@ -18,6 +18,7 @@ struct SimilaritySettings {
   /// Largest correlation of residuals with the mean of some ten around them that is noise of the surfaces: of
   /// white noise it is 0, of relief that the vertices resolve about 1.
   double noise_correlation = 0.3;
+  double max_noise = 3;  ///< tolerances: a larger residual is no noise, however the vertices see it
   /// Of the residuals, by area, that must be within the tolerance: holes and debris do not decide.
   double quantile = 0.9;
   int max_iterations = 12;       ///< Gauss-Newton steps

@@ -143,7 +143,7 @@ SimilarityFit fit_similarity(const TriangleMesh& source, const TargetSurface& ta
   fit.standard_error =
       deviation_of_median * quantile(residuals, middle) / std::sqrt(static_cast<double>(residuals.size()));
   fit.suffices = fit.residual <= tolerance;
-  if (!fit.suffices && fit.residual <= settings.early_exit_factor * tolerance) {
+  if (!fit.suffices && fit.residual <= settings.max_noise * tolerance) {
     const auto of_all = plane_residuals(moved, areas, target, limits, static_cast<std::size_t>(areas.size()));
     fit.suffices =
         neighbour_correlation(of_all, areas.sum(), settings.min_cosine) <= settings.noise_correlation;
