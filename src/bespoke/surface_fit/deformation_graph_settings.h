@@ -8,7 +8,8 @@
 namespace bespoke {
 
 // Every tuned constant of the default surface fit, one struct for each stage. "Diagonal" is that of the
-// bounding box of the aligned source; models are fitted at a size where it is 1. The experiments behind the values: tests/accuracy/tuning.md.
+// bounding box of the aligned source; models are fitted at a size where it is 1. The experiments behind the
+// values: tests/accuracy/tuning.md.
 
 /// One similarity for the whole source (similarity_fit.h), by iteratively reweighted least squares.
 struct SimilaritySettings {
