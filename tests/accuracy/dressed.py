@@ -227,7 +227,7 @@ def changes(case, garment, carried):
 
 
 SAMPLES = [(i / 6, j / 6) for i in range(7) for j in range(7 - i)]  # shares of two corners: 28 places a face, its edges with them
-MARGIN = 5e-4  # of the diagonal: distances that the program looks up are as accurate
+MARGIN = 5e-4  # of the diagonal: what comes as near to its limit counts as too near
 TOLERANCE = 1e-4  # of the diagonal: smaller moves count as none
 
 
