@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "bespoke/surface_fit/surface_fit.h"
 
 namespace bespoke::test {
@@ -15,10 +17,11 @@ struct FittingScene {
   Eigen::VectorXd anchor_sigmas = Eigen::VectorXd(0);
   FacePatches source_patches = {};
   FacePatches target_patches = {};
+  std::vector<char> anchor_tested = {};
 
   SurfaceFit fit(const SurfaceFitOptions& options = {}) const {
     return fit_surface({source, warped, target, anchor_sources, anchor_targets, anchor_weights, anchor_sigmas,
-                        source_patches, target_patches},
+                        source_patches, target_patches, anchor_tested},
                        options);
   }
 };

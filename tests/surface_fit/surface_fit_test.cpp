@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "bespoke/error.h"
 #include "bespoke/surface_fit/surface_fit_methods.h"
@@ -39,6 +40,20 @@ TEST(FitSurface, RejectsWhatDoesNotBelongTogether) {
 }
 
 // Files of meshes are written inside out now and then; what nearest points say of either side settles it.
+TEST(FitSurface, TestsAnchorsOfATargetThatIsInsideOutToo) {
+  TriangleMesh inside_out = shapes::icosphere(3);
+  inside_out.vertices.row(1) *= 1.2;
+  Scene scene{shapes::icosphere(3), inside_out};
+  scene.target.faces.row(1).swap(scene.target.faces.row(2));
+  scene.anchor_sources = scene.source.vertices.leftCols(12);
+  scene.anchor_targets = inside_out.vertices.leftCols(12);
+  scene.anchor_weights = Eigen::VectorXd::Constant(12, std::numeric_limits<double>::infinity());
+  scene.anchor_tested.assign(12, 1);
+  const SurfaceFit fit = scene.fit();
+  EXPECT_TRUE(fit.summary.target_flipped);
+  EXPECT_TRUE(fit.summary.tested_anchors);
+}
+
 TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
   TriangleMesh target = shapes::icosphere(3);
   target.vertices.row(1) *= 1.2;
