@@ -15,6 +15,7 @@
 #include "bespoke/surface_fit/detail/anchor_meeting.h"
 #include "bespoke/surface_fit/detail/detail_layers.h"
 #include "bespoke/surface_fit/detail/misoriented_faces.h"
+#include "bespoke/surface_fit/detail/unit_models.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
 #include "bespoke/surface_fit/graph/geodesic_pose.h"
 #include "bespoke/surface_fit/graph/node_fit.h"
@@ -132,12 +133,6 @@ struct Alignment {
   bool suffices = false;
 };
 
-/// The similarity nearest to the warp.
-Similarity similarity_of_warp(const SurfaceFitInput& input) {
-  return align_similarly(input.source.vertices, input.warped_vertices,
-                         Eigen::VectorXd::Ones(input.source.vertices.cols()));
-}
-
 /// Of a surface that one similarity brings to the target: that of the exact anchors where they tell it more
 /// accurately than the surfaces do, and agree with these.
 Similarity more_accurate(const SimilarityFit& by_surfaces, const Points& surface, const Points& sources,
@@ -226,51 +221,6 @@ bool are_out_of_reach(const Scene& scene, const Points& anchors, const std::vect
   for (const Eigen::Index k : outliers) distances[k] = 0;
   return ((distances - settings.pose.anchor_reach * scene.anchors.sigmas).array() > reach).count() > 1;
 }
-
-/// The models, scaled so that the source's diagonal is 1, and that of the source aligned with the target as
-/// well: lengths are then fractions of it.
-class UnitModels {
- public:
-  explicit UnitModels(const SurfaceFitInput& input)
-      : given_(input),
-        source_size_(diagonal(input.source.vertices)),
-        target_size_(source_size_ * similarity_of_warp(input).scale),
-        source_{input.source.vertices / source_size_, input.source.faces},
-        target_{input.target.vertices / target_size_, input.target.faces},
-        warped_(input.warped_vertices / target_size_),
-        anchor_sources_(input.anchor_sources / source_size_),
-        anchor_targets_(input.anchor_targets / target_size_) {}
-
-  /// Refers to this and to what this was made of.
-  SurfaceFitInput input() const {
-    return {source_,
-            warped_,
-            target_,
-            anchor_sources_,
-            anchor_targets_,
-            given_.anchor_weights,
-            given_.anchor_sigmas / target_size_,
-            given_.source_patches,
-            given_.target_patches,
-            given_.anchor_tested};
-  }
-
-  /// Back in mesh units.
-  SurfaceFit restored(SurfaceFit fit) const {
-    fit.vertices *= target_size_;
-    for (Statistics* each : {&fit.summary.before, &fit.summary.after})
-      for (double* value : {&each->min, &each->median, &each->p95, &each->p99, &each->max})
-        *value *= target_size_;
-    for (AnchorGivenWay& anchor : fit.summary.anchors_given_way) anchor.sigma *= target_size_;
-    return fit;
-  }
-
- private:
-  const SurfaceFitInput& given_;
-  double source_size_, target_size_;  // mesh units: what becomes 1
-  TriangleMesh source_, target_;
-  Points warped_, anchor_sources_, anchor_targets_;
-};
 
 struct Deforming {
   const SurfaceFitOptions& options;
