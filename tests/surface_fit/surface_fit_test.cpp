@@ -39,7 +39,6 @@ TEST(FitSurface, RejectsWhatDoesNotBelongTogether) {
   EXPECT_THROW(scene.fit(), InvalidInput);
 }
 
-// Files of meshes are written inside out now and then; what nearest points say of either side settles it.
 TEST(FitSurface, TestsAnchorsOfATargetThatIsInsideOutToo) {
   TriangleMesh inside_out = shapes::icosphere(3);
   inside_out.vertices.row(1) *= 1.2;
@@ -54,6 +53,7 @@ TEST(FitSurface, TestsAnchorsOfATargetThatIsInsideOutToo) {
   EXPECT_TRUE(fit.summary.tested_anchors);
 }
 
+// Files of meshes are written inside out now and then; what nearest points say of either side settles it.
 TEST(FitSurface, TurnsATargetOverThatIsInsideOut) {
   TriangleMesh target = shapes::icosphere(3);
   target.vertices.row(1) *= 1.2;
