@@ -1,11 +1,11 @@
 #include "bespoke/alignment/detail/patch_deformation.h"
 
-#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
-#include "bespoke/error.h"
-#include "bespoke/rigid/nearest_rotation.h"
+#include "bespoke/rigid/similar_graph.h"
 
 namespace bespoke {
 namespace {
@@ -24,16 +24,9 @@ struct DeformationSettings {
 };
 constexpr DeformationSettings deformation_settings;
 
-/// From patch i to patch j, within two links.
-struct Link {
-  int to = 0;
-  Vector3 rest;       // mesh units, source frame
-  double weight = 0;  // area share / links of the patch / |rest|²
-};
-using Links = std::vector<std::vector<Link>>;
-
-Links make_links(const SurfacePatches& source) {
-  Links links(source.neighbours.size());
+/// Between patches within two links, each with its area's share over its links and their squared lengths.
+GraphEdges make_links(const SurfacePatches& source) {
+  GraphEdges links(source.neighbours.size());
   for (std::size_t i = 0; i < links.size(); ++i) {
     std::vector<int> wide = source.neighbours[i];
     for (const int j : source.neighbours[i])
@@ -51,70 +44,34 @@ Links make_links(const SurfacePatches& source) {
   return links;
 }
 
-/// Local step of an as-similar-as-possible deformation (Igarashi 2005; Sorkine, Alexa 2007).
-/// The similarity around every patch; turns the normals with it and measures the bending.
-void update_similarities(const SurfacePatches& source, const Links& links, PatchDeformation& state) {
+/// Root mean square deviation of the links from the similarity around their patch, relative to its scale.
+double bending_of(const SimilarGraph& graph, const Points& points) {
   double sum = 0;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    Matrix3 covariance = Matrix3::Zero();
-    double spread = 0;
-    for (const Link& link : links[i]) {
-      const Vector3 now = state.points.col(link.to) - state.points.col(column);
-      covariance += link.weight * now * link.rest.transpose();
-      spread += link.weight * link.rest.squaredNorm();
-    }
-    const NearestRotation nearest = nearest_rotation(covariance);
-    const double scale = nearest.trace / spread;
-    state.similarities[i] = scale * nearest.rotation;
-    state.normals.col(column) = nearest.rotation * source.normals.col(column);
-    for (const Link& link : links[i]) {
-      const Vector3 now = state.points.col(link.to) - state.points.col(column);
-      sum += link.weight * (now - state.similarities[i] * link.rest).squaredNorm() / (scale * scale);
+  for (std::size_t i = 0; i < graph.edges().size(); ++i) {
+    const Matrix3& similarity = graph.similarities[i];
+    const double squared_scale = similarity.squaredNorm() / 3;  // a rotation's squared norm is 3
+    for (const GraphEdge& link : graph.edges()[i]) {
+      const Vector3 now = points.col(link.to) - points.col(static_cast<Eigen::Index>(i));
+      sum += link.weight * (now - similarity * link.rest).squaredNorm() / squared_scale;
     }
   }
-  state.bending = std::sqrt(sum);
+  return std::sqrt(sum);
 }
 
-/// The global step: Σ_i w_i |x_i − y_i|² + stiffness Σ_ij |x_j − x_i − S_i e_ij|², whose matrix has one
-/// pattern throughout.
-class PatchSystem {
- public:
-  explicit PatchSystem(const Links& links) : links_(links) {}
-
-  Points solve(const PatchDeformation& state, double stiffness) {
-    const auto size = static_cast<Eigen::Index>(links_.size());
-    std::vector<Eigen::Triplet<double>> entries;
-    Points right = state.matches.targets * state.matches.weights.asDiagonal();
-    right += deformation_settings.free_floating * state.points;
-    for (Eigen::Index i = 0; i < size; ++i)
-      entries.emplace_back(i, i, state.matches.weights[i] + deformation_settings.free_floating);
-    for (Eigen::Index i = 0; i < size; ++i)
-      for (const Link& link : links_[static_cast<std::size_t>(i)]) {
-        const double weight = stiffness * link.weight;
-        const Vector3 pull = weight * (state.similarities[static_cast<std::size_t>(i)] * link.rest);
-        entries.emplace_back(i, i, weight);
-        entries.emplace_back(link.to, link.to, weight);
-        entries.emplace_back(i, link.to, -weight);
-        entries.emplace_back(link.to, i, -weight);
-        right.col(link.to) += pull;
-        right.col(i) -= pull;
-      }
-    Eigen::SparseMatrix<double> matrix(size, size);
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    if (!analyzed_) solver_.analyzePattern(matrix);
-    analyzed_ = true;
-    solver_.factorize(matrix);
-    if (solver_.info() != Eigen::Success)
-      throw SolverError("alignment: the system of the patches is singular");
-    return solver_.solve(Eigen::MatrixX3d(right.transpose())).transpose();
+/// Towards the matches, from where a patch without any stays.
+Points moved_to_matches(SimilarGraph& graph, const PatchDeformation& state, double stiffness) {
+  const Points& now = state.points;
+  std::vector<DrawnPoint> drawn;
+  Points goals(3, now.cols());
+  for (Eigen::Index i = 0; i < now.cols(); ++i) {
+    const double matched = state.matches.weights[i], weight = matched + deformation_settings.free_floating;
+    drawn.push_back({{{static_cast<int>(i), 1}}, weight});
+    goals.col(i) =
+        (matched * state.matches.targets.col(i) + deformation_settings.free_floating * now.col(i)) / weight;
   }
-
- private:
-  const Links& links_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-  bool analyzed_ = false;
-};
+  graph.set_drawn(std::move(drawn), stiffness);
+  return graph.places(goals);
+}
 
 }  // namespace
 
@@ -126,12 +83,11 @@ double PatchDeformation::misfit() const {
 
 PatchDeformation deform_patches(const SurfacePatches& source, const SurfacePatches& target,
                                 const Similarity& start) {
-  const Links links = make_links(source);
-  PatchSystem system(links);
+  SimilarGraph graph(make_links(source));
   PatchDeformation state;
   state.points = start * source.points;
   state.normals = start.rotation * source.normals;
-  state.similarities.assign(links.size(), start.scale * start.rotation);
+  graph.similarities.assign(graph.similarities.size(), start.scale * start.rotation);
   const double first = deformation_settings.first_length * target.radius;
   const double last =
       deformation_settings.last_length * std::max(target.spacing, start.scale * source.spacing);
@@ -140,18 +96,21 @@ PatchDeformation deform_patches(const SurfacePatches& source, const SurfacePatch
     const double length = first * std::pow(last / first, progress);
     state.matches = soft_matches(source, state.points, state.normals, target, length);
     const double in_source = length / start.scale;  // the links' weights are those of the source's lengths
-    state.points = system.solve(state, deformation_settings.stiffness * in_source * in_source);
-    update_similarities(source, links, state);
+    state.points = moved_to_matches(graph, state, deformation_settings.stiffness * in_source * in_source);
+    graph.fit_similarities(state.points);
+    for (Eigen::Index i = 0; i < state.normals.cols(); ++i)
+      state.normals.col(i) =
+          (graph.similarities[static_cast<std::size_t>(i)] * source.normals.col(i)).normalized();
   }
+  state.bending = bending_of(graph, state.points);
+  state.similarities = std::move(graph.similarities);
   state.residual = state.matches.residual(state.points) / target.radius;
   return state;
 }
 
 double distortion(const TriangleMesh& mesh, SurfacePatches patches, const Points& placed) {
   const Eigen::VectorXd areas = vertex_areas(mesh);
-  PatchDeformation moved;
-  moved.points = moved.normals = Points::Zero(3, patches.size());
-  moved.similarities.resize(static_cast<std::size_t>(patches.size()));
+  Points moved = Points::Zero(3, patches.size());
   patches.points.setZero();
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(patches.size());
   for (Eigen::Index i = 0; i < placed.cols(); ++i) {
@@ -159,12 +118,13 @@ double distortion(const TriangleMesh& mesh, SurfacePatches patches, const Points
     if (patch < 0) continue;
     sums[patch] += areas[i];
     patches.points.col(patch) += areas[i] * mesh.vertices.col(i);
-    moved.points.col(patch) += areas[i] * placed.col(i);
+    moved.col(patch) += areas[i] * placed.col(i);
   }
   patches.points *= sums.cwiseInverse().asDiagonal();
-  moved.points *= sums.cwiseInverse().asDiagonal();
-  update_similarities(patches, make_links(patches), moved);
-  return moved.bending;
+  moved *= sums.cwiseInverse().asDiagonal();
+  SimilarGraph graph(make_links(patches));
+  graph.fit_similarities(moved);
+  return bending_of(graph, moved);
 }
 
 Points deformed_vertices(const TriangleMesh& mesh, const SurfacePatches& patches,
