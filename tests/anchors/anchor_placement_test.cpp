@@ -57,6 +57,18 @@ TEST(ExchangedSides, AreFarFromTheirModelAndAtTheOther) {
   EXPECT_EQ(exchanged_sides({}, model, target), "");
 }
 
+TEST(FarPlacement, IsThatOfFarAnchorsByFewAndByMany) {
+  const TriangleMesh coarse = shapes::icosphere(1);  // whose vertices are farther apart than a quarter
+  for (const Eigen::Index count : {4, 40, 400}) {
+    const Points anchors = model.vertices.leftCols(count);
+    EXPECT_FALSE(far_placement(coarse, anchors)) << count;
+    const std::optional<AnchorPlacement> far = far_placement(coarse, 10 * anchors);
+    ASSERT_TRUE(far) << count;
+    EXPECT_EQ(far->median_distance, anchor_placement(coarse, 10 * anchors).median_distance);
+  }
+  EXPECT_THROW(far_placement({}, Points::Zero(3, 1)), InvalidInput);
+}
+
 TEST(AnchorPlacement, OfNothingIsNothing) {
   EXPECT_FALSE(anchor_placement(model, Points(3, 0)).is_far());
   EXPECT_THROW(anchor_placement({}, Points::Zero(3, 1)), InvalidInput);

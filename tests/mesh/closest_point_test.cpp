@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "bespoke/error.h"
 #include "support/shapes.h"
@@ -285,6 +286,19 @@ TEST(ClosestPoint, RefusesWhatHasNoAnswer) {
   const ClosestPointTree tree(shapes::triangle());
   EXPECT_THROW(tree.closest({0, std::nan(""), 0}), InvalidInput);
   EXPECT_THROW(tree.closest({0, 0, std::numeric_limits<double>::infinity()}), InvalidInput);
+}
+
+TEST(DistancesFromVertices, BoundThoseFromTheSurfaceAndAreZeroAtVertices) {
+  const TriangleMesh sphere = shapes::icosphere(2);
+  const ClosestPointTree tree(sphere);
+  Points queries = random_points(50, 2, 4);
+  queries.leftCols(10) = sphere.vertices.leftCols(10);
+  const std::vector<double> most = distances_from_vertices(sphere, queries);
+  ASSERT_EQ(most.size(), 50u);
+  for (Eigen::Index i = 0; i < queries.cols(); ++i)
+    EXPECT_GE(most[std::size_t(i)], std::sqrt(tree.closest(queries.col(i))->squared_distance) - 1e-6);
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(most[i], 0);
+  EXPECT_TRUE(distances_from_vertices({}, queries).empty());
 }
 
 TEST(Carried, PointsGoWithTheirFaceByAnyAffineMap) {

@@ -193,8 +193,8 @@ bool print(const std::string& finding) {
 
 bool print_far(const char* side, const std::optional<TriangleMesh>& model, const Points& points) {
   if (!model) return false;
-  const AnchorPlacement placement = anchor_placement(*model, points);
-  return placement.is_far() && print(std::string(side) + ": " + to_string(placement) + "; another unit?");
+  const std::optional<AnchorPlacement> far = far_placement(*model, points);
+  return far && print(std::string(side) + ": " + to_string(*far) + "; another unit?");
 }
 
 /// What no fit can begin with: points on a line or at one place.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,9 +17,8 @@ namespace {
 
 void warn_of_far_anchors(const RunContext& context, const std::string& role, const TriangleMesh& model,
                          const Points& anchors, const std::string& unit) {
-  const AnchorPlacement placement = anchor_placement(model, anchors);
-  if (placement.is_far())
-    context.warn(role + ": " + to_string(placement) + "; give the model and its anchors in one unit" +
+  if (const std::optional<AnchorPlacement> far = far_placement(model, anchors))
+    context.warn(role + ": " + to_string(*far) + "; give the model and its anchors in one unit" +
                      (unit.empty() ? "" : ", ") + unit,
                  Entry::anchors_far_away);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bespoke/anchors/anchors.h"
@@ -23,6 +24,10 @@ struct AnchorPlacement {
 /// `anchors`: 3×n. All zero without anchors. Throws InvalidInput when the mesh has no faces or something is
 /// not finite.
 AnchorPlacement anchor_placement(const TriangleMesh& model, const Points& anchors);
+
+/// That of anchors which are far. Those near vertices are told without a tree of closest points. Throws as
+/// anchor_placement.
+std::optional<AnchorPlacement> far_placement(const TriangleMesh& model, const Points& anchors);
 
 /// One line, empty unless either side lies far from its own model and not from the other's: the models, or
 /// "a" and "b", are exchanged. Throws as above.

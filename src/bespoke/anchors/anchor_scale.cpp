@@ -25,17 +25,21 @@ constexpr double min_factor = 2;
 constexpr double largest_factor = 2000;  // metres to millimetres, and somewhat more
 constexpr double grid_step = 1.03;       // finer than the distances that are told apart
 
+/// Three quarters of the anchors are no farther from the model than this, relative to the smaller span.
+double relative_distance(std::vector<double> distances, double anchor_span, double model_span) {
+  return nearest_rank(sorted_finite(std::move(distances)), 0.75) / std::min(anchor_span, model_span);
+}
+
 class ScaledAnchors {
  public:
   ScaledAnchors(const TriangleMesh& model, const Points& anchors)
       : tree_(model), anchors_(anchors), span_(diagonal(anchors)), model_span_(diagonal(model.vertices)) {}
 
-  /// Three quarters of the anchors are no farther from the model than this, relative to the smaller span.
   double distance(double factor) const {
     std::vector<double> distances;
     for (const auto& anchor : anchors_.colwise())
       distances.push_back(std::sqrt(tree_.closest(Vector3(factor * anchor))->squared_distance));
-    return nearest_rank(sorted_finite(std::move(distances)), 0.75) / std::min(factor * span_, model_span_);
+    return relative_distance(std::move(distances), factor * span_, model_span_);
   }
 
   /// The factor of the least distance near a place of the grid.
@@ -84,6 +88,10 @@ std::optional<double> anchor_scale(const TriangleMesh& model, const Points& anch
     for (Eigen::Index i = 0; i < max_anchors; ++i)
       some.col(i) = anchors.col(i * anchors.cols() / max_anchors);
   }
+  if (std::vector<double> most = distances_from_vertices(model, some);
+      !most.empty() &&
+      relative_distance(std::move(most), diagonal(some), diagonal(model.vertices)) <= plausible_distance)
+    return std::nullopt;
   const ScaledAnchors scaled(model, some);
   const double now = scaled.distance(1);
   if (now <= plausible_distance) return std::nullopt;

@@ -270,4 +270,18 @@ Vector3 carried(const SurfacePoint& point, const Faces& faces, const Points& ver
   return place;
 }
 
+std::vector<double> distances_from_vertices(const TriangleMesh& mesh, const Points& points) {
+  constexpr Eigen::Index quicker_than_a_tree = 100;
+  if (points.cols() > quicker_than_a_tree || mesh.faces.cols() == 0) return {};
+  std::vector<double> distances(static_cast<std::size_t>(points.cols()));
+  parallel_for(distances.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      distances[i] = std::sqrt((mesh.vertices.colwise() - points.col(static_cast<Eigen::Index>(i)))
+                                   .colwise()
+                                   .squaredNorm()
+                                   .minCoeff());
+  });
+  return distances;
+}
+
 }  // namespace bespoke

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "bespoke/mesh/triangle_mesh.h"
 
@@ -61,5 +62,9 @@ class ClosestPointTree {
   ClosestPointTree(BoxTree boxes, const TriangleMesh& mesh, const Points& normals);
   std::unique_ptr<const Tree> tree_;
 };
+
+/// Of points (3×k) from the nearest vertex of the mesh, mesh units, which is no nearer than the surface.
+/// Quicker than a tree for as few points as this answers for; empty for more, and for a mesh without faces.
+std::vector<double> distances_from_vertices(const TriangleMesh& mesh, const Points& points);
 
 }  // namespace bespoke

@@ -39,12 +39,15 @@ ElasticPairs elastic_pairs(const TriangleMesh& source, const Points& fitted) {
 
 std::vector<std::size_t> anchors_off_surface(const TriangleMesh& source, const Anchors& anchors,
                                              double off_surface) {
-  const ClosestPointTree surface(source);
   std::vector<std::size_t> found;
-  for (std::size_t i = 0; i < anchors.pairs.size(); ++i) {
-    const AnchorPair& anchor = anchors.pairs[i];
-    if (is_exact(anchor) && !surface.closest(anchor.a, {.max_distance = off_surface})) found.push_back(i);
-  }
+  const std::vector<double> most = distances_from_vertices(source, source_points(anchors));
+  for (std::size_t i = 0; i < anchors.pairs.size(); ++i)
+    if (is_exact(anchors.pairs[i]) && (most.empty() || most[i] > off_surface)) found.push_back(i);
+  if (found.empty()) return found;
+  const ClosestPointTree surface(source);
+  std::erase_if(found, [&](std::size_t i) {
+    return surface.closest(anchors.pairs[i].a, {.max_distance = off_surface}).has_value();
+  });
   return found;
 }
 
