@@ -187,11 +187,9 @@ struct NodeLevel {
 
 /// The smooth deformation (node_fit.h): non-rigid ICP with an M-estimator on an embedded deformation graph.
 struct NodeFitSettings {
-  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
-                                     NodeLevel{2500, 9, 8000, 5000}};
-  /// Of the first level without anchors, where surfaces converge more slowly. More let a shape without
-  /// features drift along itself.
-  int unanchored_iterations = 20;
+  /// More coarse iterations let a shape without features and anchors drift along itself.
+  std::array<NodeLevel, 2> levels = {NodeLevel{400, 20, 5000, 2000, false, false},
+                                     NodeLevel{2500, 6, 8000, 5000}};
   double coarsest_smoothing = 0.5;  ///< ℓ at the first iteration, diagonals
   double finest_smoothing = 0.01;   ///< ℓ at the last; geometric in between
   int boundary_start = 4;           ///< iteration at which cuts are compared: anchors and surfaces come first
@@ -225,10 +223,9 @@ struct NodeFitSettings {
 
 /// Layers of space (detail_layers.h): sums of Wendland's C4 functions, coarse to fine.
 struct DetailSettings {
-  double coarsest = 0.06;   ///< λ of the first scale, diagonals: some two spacings of the fine nodes
-  double ratio = 0.6;       ///< of λ from scale to scale
-  int scales = 6;           ///< the last λ is 0.5 % of the diagonal: the spacing of some 13,000 vertices
-  int steps_per_scale = 2;  ///< each searches the correspondences anew
+  double coarsest = 0.06;  ///< λ of the first scale, diagonals: some two spacings of the fine nodes
+  double ratio = 0.7;      ///< of λ from scale to scale
+  int scales = 8;          ///< the last λ is 0.5 % of the diagonal: the spacing of some 13,000 vertices
   double centers_per_radius = 3;  ///< λ over the spacing of centres: well conditioned with Wendland's C4
   double min_cosine = 0.3;        ///< as NodeFitSettings::min_cosine
   double min_reach = 0.01;        ///< diagonals: counterparts may be this far apart, or λ if that is more
