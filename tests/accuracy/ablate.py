@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 """What each rule and each constant of the registration is worth on the choosing set.
 
-    tests/accuracy/ablate.py --build build/release --clones DIR --work DIR [--only REGEX] [--without RULE[,RULE…]]
+    tests/accuracy/ablate.py --build build/release --clones DIR --work DIR [--only REGEX] [--without RULE[,RULE…]] [--vary FACTOR]
 
 Copies the registration's sources to --work, lets the copy read its constants from the environment, and links it with the
 library of --build: the library itself has no such door. Then it switches off each rule, and rounds each constant to one
 significant digit, one at a time, and registers the pairs anew. --without leaves rules out of all runs, for backward
-elimination. Runs are kept in --work and not repeated while sources and pairs stay the same. Prints a Markdown table.
+elimination. --vary changes each constant by a factor either way instead, on the first pairs alone. Runs are kept in --work
+and not repeated while sources and pairs stay the same. Prints a Markdown table.
 
 A factor is the geometric mean, over the pairs of a group, of the error over that of the registration as it is, of mean and
 95th percentile. All variants are first run on the pair of median error of each group; then those that cost less than 1 % there on all.
@@ -137,7 +138,8 @@ def main():
     everything = [str(k) for k in range(len(cases))]
     as_it_is, base = runner.run({}, everything), runner.run(base_values, everything)
     variants = [(f"no {rule.name}", values_of([rule])) for rule in RULES if rule.name not in without]
-    variants += [(f"{name} {number(old)} → {number(new)}", {name: new}) for name, old, new in rounded(constants)]
+    changed = varied(constants, options.vary) if options.vary else rounded(constants)
+    variants += [(f"{name} {number(old)} → {number(new)}", {name: new}) for name, old, new in changed]
     variants = [(name, {**base_values, **values}) for name, values in variants if re.search(options.only, name)]
     groups = options.groups.split(",") if options.groups else list(dict.fromkeys(case.group for case in cases))
     first = [middle(as_it_is, [str(k) for k, case in enumerate(cases) if case.group == group]) for group in groups]
@@ -147,7 +149,7 @@ def main():
         if time.monotonic() < end or runner.has(values, first):
             found[name] = runner.run(values, first)
     for name, values in sorted(variants, key=lambda each: factor(found.get(each[0], {}), base, first)):
-        if time.monotonic() < end and factor(found.get(name, {}), base, first) < CANDIDATE:
+        if not options.vary and time.monotonic() < end and factor(found.get(name, {}), base, first) < CANDIDATE:
             found[name] = runner.run(values, everything)
     rows = [("as it is", as_it_is, as_it_is)]
     if without:
@@ -167,6 +169,8 @@ def parse_options():
     parser.add_argument("--clones", type=Path, required=True, metavar="DIR", help="as public_pairs.py takes them")
     parser.add_argument("--work", type=Path, required=True, metavar="DIR")
     parser.add_argument("--only", default="", metavar="REGEX", help="variants whose names match")
+    parser.add_argument("--vary", type=float, default=0, metavar="FACTOR",
+                        help="instead of rounding, change each constant by this factor either way, on the first pairs alone")
     parser.add_argument("--without", default="", metavar="RULE[,RULE…]", help="rules left out of all runs")
     parser.add_argument("--groups", default="", metavar="GROUP[,GROUP…]", help="whose pairs are run first (default: all)")
     parser.add_argument("--minutes", type=float, default=1e9, metavar="N", help="then no further run begins")
@@ -618,6 +622,19 @@ def rounded(constants):
     for name, value in constants.items():
         if not isinstance(value, bool) and value and float(f"{value:.0e}") != value:
             yield name, value, float(f"{value:.0e}")
+
+
+def varied(constants, by):
+    """(name, value, changed), all larger ones first. What is near 1 is a share or a cosine: its distance from 1 changes."""
+    def changed(value, by):
+        if value == int(value):
+            return round(value * by)
+        return 1 - (1 - value) / by if 0.5 <= value < 1 else value * by
+    numbers = {name: value for name, value in constants.items() if not isinstance(value, bool) and value}
+    for factor_of_value in (by, 1 / by):
+        for name, value in numbers.items():
+            if (new := changed(value, factor_of_value)) != value:
+                yield name, value, new
 
 
 def number(value):

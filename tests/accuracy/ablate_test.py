@@ -34,5 +34,13 @@ class Rules(unittest.TestCase):
         self.assertEqual(len(names), len(set(names)))
 
 
+class Varied(unittest.TestCase):
+    def test_each_constant_goes_either_way(self):
+        constants = {"a.count": 3.0, "a.length": 0.1, "a.cosine": 0.9, "a.none": 0.0, "a.is_on": True}
+        self.assertEqual([(name, round(new, 9)) for name, _, new in ablate.varied(constants, 2)],
+                         [("a.count", 6), ("a.length", 0.2), ("a.cosine", 0.95),
+                          ("a.count", 2), ("a.length", 0.05), ("a.cosine", 0.8)])
+
+
 if __name__ == "__main__":
     unittest.main()
