@@ -64,7 +64,7 @@ class ClosestPointTree {
 };
 
 /// Of points (3×k) from the nearest vertex of the mesh, mesh units, which is no nearer than the surface.
-/// Quicker than a tree for as few points as this answers for; empty for more, and for a mesh without faces.
+/// Quicker than a tree for a few points; empty for more than a hundred, and for a mesh without faces.
 std::vector<double> distances_from_vertices(const TriangleMesh& mesh, const Points& points);
 
 }  // namespace bespoke

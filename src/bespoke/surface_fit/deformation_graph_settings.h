@@ -189,7 +189,7 @@ struct NodeLevel {
 struct NodeFitSettings {
   /// More coarse iterations let a shape without features and anchors drift along itself.
   std::array<NodeLevel, 2> levels = {NodeLevel{400, 20, 5000, 2000, false, false},
-                                     NodeLevel{2500, 6, 8000, 5000}};
+                                     NodeLevel{2500, 7, 8000, 5000}};
   double coarsest_smoothing = 0.5;  ///< ℓ at the first iteration, diagonals
   double finest_smoothing = 0.01;   ///< ℓ at the last; geometric in between
   int boundary_start = 4;           ///< iteration at which cuts are compared: anchors and surfaces come first
