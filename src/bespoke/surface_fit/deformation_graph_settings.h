@@ -223,9 +223,10 @@ struct NodeFitSettings {
 
 /// Layers of space (detail_layers.h): sums of Wendland's C4 functions, coarse to fine.
 struct DetailSettings {
-  double coarsest = 0.06;  ///< λ of the first scale, diagonals: some two spacings of the fine nodes
-  double ratio = 0.7;      ///< of λ from scale to scale
-  int scales = 8;          ///< the last λ is 0.5 % of the diagonal: the spacing of some 13,000 vertices
+  double coarsest = 0.06;   ///< λ of the first scale, diagonals: some two spacings of the fine nodes
+  double ratio = 0.6;       ///< of λ from scale to scale
+  int scales = 6;           ///< the last λ is 0.5 % of the diagonal: the spacing of some 13,000 vertices
+  int steps_per_scale = 2;  ///< each searches the correspondences anew
   double centers_per_radius = 3;  ///< λ over the spacing of centres: well conditioned with Wendland's C4
   double min_cosine = 0.3;        ///< as NodeFitSettings::min_cosine
   double min_reach = 0.01;        ///< diagonals: counterparts may be this far apart, or λ if that is more

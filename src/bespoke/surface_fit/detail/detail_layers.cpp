@@ -170,18 +170,20 @@ DetailFit fit_details(const DetailInput& input, const DetailSettings& settings, 
     const bool is_hidden = !input.hidden.empty() && input.hidden[static_cast<std::size_t>(i)];
     if (is_hidden || surface.is_excluded(i)) areas[i] = 0;
   }
+  const int layers = settings.scales * settings.steps_per_scale;
   DetailFit fit;
   fit.vertices = input.surface.vertices;
   fit.anchor_sources = input.anchor_sources;
   double lambda = settings.coarsest;
-  for (; fit.layers < settings.scales; ++fit.layers, lambda *= settings.ratio) {
-    progress.step("surface-fit details", static_cast<std::size_t>(fit.layers),
-                  static_cast<std::size_t>(settings.scales));
-    const TargetSurface moved = surface.moved(fit.vertices);
-    const Samples samples = sample({input, settings, moved, fit.anchor_sources, areas, lambda});
-    Layer layer(lambda, samples.centers, samples.values, settings);
-    fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
-  }
+  for (int scale = 0; scale < settings.scales; ++scale, lambda *= settings.ratio)
+    for (int step = 0; step < settings.steps_per_scale; ++step, ++fit.layers) {
+      progress.step("surface-fit details", static_cast<std::size_t>(fit.layers),
+                    static_cast<std::size_t>(layers));
+      const TargetSurface moved = surface.moved(fit.vertices);
+      const Samples samples = sample({input, settings, moved, fit.anchor_sources, areas, lambda});
+      Layer layer(lambda, samples.centers, samples.values, settings);
+      fit.last_step = apply(layer, settings.max_gradient, fit.vertices, fit.anchor_sources);
+    }
   return fit;
 }
 
