@@ -187,9 +187,11 @@ struct NodeLevel {
 
 /// The smooth deformation (node_fit.h): non-rigid ICP with an M-estimator on an embedded deformation graph.
 struct NodeFitSettings {
-  /// More coarse iterations let a shape without features and anchors drift along itself.
-  std::array<NodeLevel, 2> levels = {NodeLevel{400, 20, 5000, 2000, false, false},
-                                     NodeLevel{2500, 7, 8000, 5000}};
+  std::array<NodeLevel, 2> levels = {NodeLevel{400, 15, 5000, 2000, false, false},
+                                     NodeLevel{2500, 9, 8000, 5000}};
+  /// Of the first level without anchors, where surfaces converge more slowly. More let a shape without
+  /// features drift along itself.
+  int unanchored_iterations = 20;
   double coarsest_smoothing = 0.5;  ///< ℓ at the first iteration, diagonals
   double finest_smoothing = 0.01;   ///< ℓ at the last; geometric in between
   int boundary_start = 4;           ///< iteration at which cuts are compared: anchors and surfaces come first

@@ -70,11 +70,17 @@ void set_zero(const std::vector<char>& vertices, Eigen::VectorXd& areas) {
     if (vertices[i]) areas[static_cast<Eigen::Index>(i)] = 0;
 }
 
+/// With as many iterations as the anchors require.
+NodeFitSettings settings_for(const NodeFitInput& input, NodeFitSettings settings) {
+  if (input.anchor_sources.cols() == 0) settings.levels.front().iterations = settings.unanchored_iterations;
+  return settings;
+}
+
 }  // namespace
 
 NodeFitting::NodeFitting(const NodeFitInput& input, const NodeFitSettings& settings, const Progress& progress)
     : input_(input),
-      settings_(settings),
+      settings_(settings_for(input, settings)),
       progress_(progress),
       rest_(input.rest, input.patches),
       areas_(included_areas(rest_, settings)),

@@ -76,7 +76,7 @@ class NodeFitting {
   void find_unmatched_cavities();
 
   const NodeFitInput input_;
-  const NodeFitSettings settings_;
+  const NodeFitSettings settings_;  // as the input needs them
   const Progress& progress_;
   TargetSurface rest_;
   Eigen::VectorXd areas_, target_areas_;
