@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bespoke/rigid/similar_graph.h"
+#include "bespoke/rigid/as_similar_as_possible.h"
 
 namespace bespoke {
 namespace {
@@ -45,7 +45,7 @@ GraphEdges make_links(const SurfacePatches& source) {
 }
 
 /// Root mean square deviation of the links from the similarity around their patch, relative to its scale.
-double bending_of(const SimilarGraph& graph, const Points& points) {
+double bending_of(const AsSimilarAsPossible& graph, const Points& points) {
   double sum = 0;
   for (std::size_t i = 0; i < graph.edges().size(); ++i) {
     const Matrix3& similarity = graph.similarities[i];
@@ -58,19 +58,19 @@ double bending_of(const SimilarGraph& graph, const Points& points) {
   return std::sqrt(sum);
 }
 
-/// Towards the matches, from where a patch without any stays.
-Points moved_to_matches(SimilarGraph& graph, const PatchDeformation& state, double stiffness) {
+/// The points drawn to their matches; free_floating keeps a patch without any.
+Points moved_to_matches(AsSimilarAsPossible& graph, const PatchDeformation& state, double stiffness) {
   const Points& now = state.points;
-  std::vector<DrawnPoint> drawn;
-  Points goals(3, now.cols());
+  std::vector<SoftConstraint> constraints;
+  Points targets(3, now.cols());
   for (Eigen::Index i = 0; i < now.cols(); ++i) {
     const double matched = state.matches.weights[i], weight = matched + deformation_settings.free_floating;
-    drawn.push_back({{{static_cast<int>(i), 1}}, weight});
-    goals.col(i) =
+    constraints.push_back({{{static_cast<int>(i), 1}}, weight});
+    targets.col(i) =
         (matched * state.matches.targets.col(i) + deformation_settings.free_floating * now.col(i)) / weight;
   }
-  graph.set_drawn(std::move(drawn), stiffness);
-  return graph.places(goals);
+  graph.set_constraints(std::move(constraints), stiffness);
+  return graph.places(targets);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ double PatchDeformation::misfit() const {
 
 PatchDeformation deform_patches(const SurfacePatches& source, const SurfacePatches& target,
                                 const Similarity& start) {
-  SimilarGraph graph(make_links(source));
+  AsSimilarAsPossible graph(make_links(source));
   PatchDeformation state;
   state.points = start * source.points;
   state.normals = start.rotation * source.normals;
@@ -122,7 +122,7 @@ double distortion(const TriangleMesh& mesh, SurfacePatches patches, const Points
   }
   patches.points *= sums.cwiseInverse().asDiagonal();
   moved *= sums.cwiseInverse().asDiagonal();
-  SimilarGraph graph(make_links(patches));
+  AsSimilarAsPossible graph(make_links(patches));
   graph.fit_similarities(moved);
   return bending_of(graph, moved);
 }

@@ -8,8 +8,8 @@
 
 #include "bespoke/mesh/closest_point.h"
 #include "bespoke/parallel.h"
+#include "bespoke/rigid/as_similar_as_possible.h"
 #include "bespoke/rigid/nearest_rotation.h"
-#include "bespoke/rigid/similar_graph.h"
 #include "bespoke/surface_fit/graph/deformation_nodes.h"
 
 namespace bespoke {
@@ -31,8 +31,8 @@ GraphEdges edges_of(const DeformationNodes& nodes) {
 
 }  // namespace
 
-/// SimilarGraph over nodes of the surface, drawn by the anchors. Similarities stand on its right-hand side
-/// only, so one factorisation serves all iterations.
+/// AsSimilarAsPossible over nodes of the surface, constrained by the anchors. Similarities stand on its
+/// right-hand side only, so one factorisation serves all iterations.
 class PosingByAnchors::Nodes {
  public:
   Nodes(const AnchorPoseInput& input, const PoseSettings& settings, int count)
@@ -45,15 +45,15 @@ class PosingByAnchors::Nodes {
         targets_(input.anchor_targets) {
     const ClosestPointTree tree(input.rest);
     const double edge_sigma = settings.edge_misfit * nodes_.spacing;
-    std::vector<DrawnPoint> drawn;
+    std::vector<SoftConstraint> constraints;
     for (Eigen::Index k = 0; k < input.anchor_sources.cols(); ++k) {
       const Vector3 anchor = input.anchor_sources.col(k);
       anchors_.push_back({nodes_.at_point(*tree.closest(anchor), input.rest.faces), anchor});
-      DrawnPoint& point = drawn.emplace_back();
-      point.weight = std::pow(edge_sigma / std::hypot(input.sigmas[k], settings.min_sigma), 2);
-      for (const auto& [node, share] : anchors_.back().nodes) point.shares.emplace_back(node, share);
+      SoftConstraint& constraint = constraints.emplace_back();
+      constraint.weight = std::pow(edge_sigma / std::hypot(input.sigmas[k], settings.min_sigma), 2);
+      for (const auto& [node, share] : anchors_.back().nodes) constraint.shares.emplace_back(node, share);
     }
-    graph_.set_drawn(std::move(drawn), 1);
+    graph_.set_constraints(std::move(constraints), 1);
   }
 
   /// As fewer nodes have bent the surface.
@@ -71,11 +71,11 @@ class PosingByAnchors::Nodes {
   /// smoothness: β / h².
   void iterate(double smoothness) {
     graph_.fit_similarities(places_, smoothness * nodes_.spacing * nodes_.spacing, sweeps_);
-    Points goals = targets_;
+    Points targets = targets_;
     for (std::size_t k = 0; k < anchors_.size(); ++k)
       for (const auto& [node, share] : anchors_[k].nodes)
-        goals.col(static_cast<Eigen::Index>(k)) -= share * turned_arm(anchors_[k].rest, node);
-    places_ = graph_.places(goals);
+        targets.col(static_cast<Eigen::Index>(k)) -= share * turned_arm(anchors_[k].rest, node);
+    places_ = graph_.places(targets);
   }
 
   Points carried_anchors() const {
@@ -117,7 +117,7 @@ class PosingByAnchors::Nodes {
 
   int sweeps_;
   DeformationNodes nodes_;
-  SimilarGraph graph_;
+  AsSimilarAsPossible graph_;
   Points places_;
   Points targets_;
   std::vector<Follower> anchors_;

@@ -1,4 +1,4 @@
-#include "bespoke/rigid/similar_graph.h"
+#include "bespoke/rigid/as_similar_as_possible.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 struct Ring {
   static constexpr int count = 10;
   Points rest = test::random_points(count, 7);
-  SimilarGraph graph{edges()};
+  AsSimilarAsPossible graph{edges()};
 
   GraphEdges edges() const {
     GraphEdges all(count);
@@ -41,14 +41,14 @@ struct Ring {
 
 const Similarity similarity{2, test::random_rotation(3), Vector3(3, 0, -1)};
 
-TEST(SimilarGraph, FindsTheSimilarityThatMovesAllOfIt) {
+TEST(AsSimilarAsPossible, FindsTheSimilarityThatMovesAllOfIt) {
   Ring ring;
   ring.graph.fit_similarities(similarity * ring.rest);
   for (const Matrix3& found : ring.graph.similarities)
     EXPECT_LT((found - similarity.scale * similarity.rotation).norm(), 1e-12);
 }
 
-TEST(SimilarGraph, SweepsLowerTheEnergyOfSmoothSimilarities) {
+TEST(AsSimilarAsPossible, SweepsLowerTheEnergyOfSmoothSimilarities) {
   constexpr double smoothness = 0.3;
   Ring ring;
   const Points places = ring.rest + 0.5 * test::random_points(Ring::count, 8);
@@ -61,19 +61,20 @@ TEST(SimilarGraph, SweepsLowerTheEnergyOfSmoothSimilarities) {
   }
 }
 
-TEST(SimilarGraph, PlacesAreTheMinimum) {
+TEST(AsSimilarAsPossible, PlacesAreTheMinimum) {
   constexpr double stiffness = 3, step = 1e-4;
   Ring ring;
   ring.graph.fit_similarities(similarity * ring.rest + 0.3 * test::random_points(Ring::count, 9));
   const Points goals = 5 * test::random_points(2, 10);
-  const std::vector<DrawnPoint> drawn{{{{0, 0.25}, {3, 0.75}}, 2}, {{{5, 1}}, 0.5}};
-  ring.graph.set_drawn(drawn, stiffness);
+  const std::vector<SoftConstraint> constraints{{{{0, 0.25}, {3, 0.75}}, 2}, {{{5, 1}}, 0.5}};
+  ring.graph.set_constraints(constraints, stiffness);
   const auto energy = [&](const Points& x) {
     double sum = ring.energy(x, stiffness, 0);
     for (Eigen::Index k = 0; k < goals.cols(); ++k) {
       Vector3 off = -goals.col(k);
-      for (const auto& [node, share] : drawn[static_cast<std::size_t>(k)].shares) off += share * x.col(node);
-      sum += drawn[static_cast<std::size_t>(k)].weight * off.squaredNorm();
+      for (const auto& [node, share] : constraints[static_cast<std::size_t>(k)].shares)
+        off += share * x.col(node);
+      sum += constraints[static_cast<std::size_t>(k)].weight * off.squaredNorm();
     }
     return sum;
   };
@@ -84,9 +85,9 @@ TEST(SimilarGraph, PlacesAreTheMinimum) {
               least);
 }
 
-TEST(SimilarGraph, RefusesPlacesThatNothingDetermines) {
-  SimilarGraph apart(GraphEdges(2));
-  EXPECT_THROW(apart.set_drawn({{{{0, 1.0}}, 1}}, 1), SolverError);
+TEST(AsSimilarAsPossible, RefusesPlacesThatNothingDetermines) {
+  AsSimilarAsPossible apart(GraphEdges(2));
+  EXPECT_THROW(apart.set_constraints({{{{0, 1.0}}, 1}}, 1), SolverError);
 }
 
 }  // namespace

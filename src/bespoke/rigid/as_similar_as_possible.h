@@ -17,8 +17,8 @@ struct GraphEdge {
 };
 using GraphEdges = std::vector<std::vector<GraphEdge>>;  // of each node
 
-/// A point as a sum of nodes, and how much it is drawn to its goal.
-struct DrawnPoint {
+/// A weighted sum of nodes that is pulled to a target (a handle).
+struct SoftConstraint {
   std::vector<std::pair<int, double>> shares;  ///< nodes i and aₖᵢ
   double weight = 0;                           ///< v, ≥ 0
 };
@@ -26,10 +26,10 @@ struct DrawnPoint {
 /// As-similar-as-possible deformation of a graph (Igarashi 2005; Sorkine, Alexa 2007): places x' and
 /// similarities M = scale × rotation of its nodes that minimise, in alternation,
 ///   κ Σᵢⱼ wᵢⱼ |x'ⱼ − x'ᵢ − Mᵢ eᵢⱼ|² + β Σᵢⱼ |Mᵢ − Mⱼ|² + Σₖ vₖ |Σᵢ aₖᵢ x'ᵢ − yₖ|²
-/// over edges e at rest and drawn points k. Not thread-safe.
-class SimilarGraph {
+/// over edges e at rest and soft constraints k. Not thread-safe.
+class AsSimilarAsPossible {
  public:
-  explicit SimilarGraph(GraphEdges edges);
+  explicit AsSimilarAsPossible(GraphEdges edges);
 
   const GraphEdges& edges() const { return edges_; }
   /// M of each node; the identity at first.
@@ -40,16 +40,16 @@ class SimilarGraph {
   void fit_similarities(const Points& places, double smoothness = 0, int sweeps = 1);
 
   /// stiffness: κ. Throws SolverError where nothing determines a place.
-  void set_drawn(std::vector<DrawnPoint> points, double stiffness);
-  /// The places for these similarities. goals: 3×k, y of the drawn points.
-  Points places(const Points& goals) const;
+  void set_constraints(std::vector<SoftConstraint> constraints, double stiffness);
+  /// The places for these similarities. targets: 3×k, y of the constraints.
+  Points places(const Points& targets) const;
 
  private:
   GraphEdges edges_;
-  std::vector<DrawnPoint> drawn_;
+  std::vector<SoftConstraint> constraints_;
   double stiffness_ = 1;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
-  bool analysed_ = false;  // drawn points may change their weights, not their nodes
+  bool analysed_ = false;  // constraints may change their weights, not their nodes
 };
 
 }  // namespace bespoke

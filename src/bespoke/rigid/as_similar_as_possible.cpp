@@ -1,4 +1,4 @@
-#include "bespoke/rigid/similar_graph.h"
+#include "bespoke/rigid/as_similar_as_possible.h"
 
 #include <string>
 #include <utility>
@@ -8,10 +8,10 @@
 
 namespace bespoke {
 
-SimilarGraph::SimilarGraph(GraphEdges edges)
+AsSimilarAsPossible::AsSimilarAsPossible(GraphEdges edges)
     : similarities(edges.size(), Matrix3::Identity()), edges_(std::move(edges)) {}
 
-void SimilarGraph::fit_similarities(const Points& places, double smoothness, int sweeps) {
+void AsSimilarAsPossible::fit_similarities(const Points& places, double smoothness, int sweeps) {
   std::vector<Matrix3> covariances(edges_.size(), Matrix3::Zero());
   std::vector<double> spreads(edges_.size(), 0.0);
   for (std::size_t node = 0; node < edges_.size(); ++node)
@@ -33,8 +33,8 @@ void SimilarGraph::fit_similarities(const Points& places, double smoothness, int
     }
 }
 
-void SimilarGraph::set_drawn(std::vector<DrawnPoint> points, double stiffness) {
-  drawn_ = std::move(points);
+void AsSimilarAsPossible::set_constraints(std::vector<SoftConstraint> constraints, double stiffness) {
+  constraints_ = std::move(constraints);
   stiffness_ = stiffness;
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t node = 0; node < edges_.size(); ++node)
@@ -46,21 +46,21 @@ void SimilarGraph::set_drawn(std::vector<DrawnPoint> points, double stiffness) {
       entries.emplace_back(from, other, -weight);
       entries.emplace_back(other, from, -weight);
     }
-  for (const DrawnPoint& point : drawn_)
-    for (const auto& [a, share_of_a] : point.shares)
-      for (const auto& [b, share_of_b] : point.shares)
-        entries.emplace_back(a, b, point.weight * share_of_a * share_of_b);
+  for (const SoftConstraint& constraint : constraints_)
+    for (const auto& [a, share_of_a] : constraint.shares)
+      for (const auto& [b, share_of_b] : constraint.shares)
+        entries.emplace_back(a, b, constraint.weight * share_of_a * share_of_b);
   const auto size = static_cast<Eigen::Index>(edges_.size());
   Eigen::SparseMatrix<double> matrix(size, size);
   matrix.setFromTriplets(entries.begin(), entries.end());
   if (!std::exchange(analysed_, true)) factor_.analyzePattern(matrix);
   factor_.factorize(matrix);
   if (factor_.info() != Eigen::Success)
-    throw SolverError("the system of " + std::to_string(size) +
-                      " nodes that follow drawn points is not positive definite");
+    throw SolverError("the as-similar-as-possible system of " + std::to_string(size) +
+                      " nodes is not positive definite");
 }
 
-Points SimilarGraph::places(const Points& goals) const {
+Points AsSimilarAsPossible::places(const Points& targets) const {
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(edges_.size()), 3);
   for (std::size_t node = 0; node < edges_.size(); ++node)
     for (const GraphEdge& edge : edges_[node]) {
@@ -68,9 +68,10 @@ Points SimilarGraph::places(const Points& goals) const {
       right.row(edge.to) += pull.transpose();
       right.row(static_cast<Eigen::Index>(node)) -= pull.transpose();
     }
-  for (std::size_t k = 0; k < drawn_.size(); ++k)
-    for (const auto& [node, share] : drawn_[k].shares)
-      right.row(node) += drawn_[k].weight * share * goals.col(static_cast<Eigen::Index>(k)).transpose();
+  for (std::size_t k = 0; k < constraints_.size(); ++k)
+    for (const auto& [node, share] : constraints_[k].shares)
+      right.row(node) +=
+          constraints_[k].weight * share * targets.col(static_cast<Eigen::Index>(k)).transpose();
   return factor_.solve(right).transpose();
 }
 
